@@ -107,9 +107,9 @@ void register_kdl([[maybe_unused]] const joint_angles& angles) {
   expect_agreement("arm_rate_of_table", "kdl",
                    upper_rows(duet::jacobian_rate(table, angles, angles, duet::frame::hybrid)),
                    upper_rows(rate_of(angles)->data));
-  contest("arm_pose_of_table", "kdl", angles, pose_of);
-  contest("arm_jacobian_of_table", "kdl", angles, jacobian_of);
-  contest("arm_rate_of_table", "kdl", angles, rate_of);
+  comparison_table("arm_pose_of_table", "kdl", angles, pose_of);
+  comparison_table("arm_jacobian_of_table", "kdl", angles, jacobian_of);
+  comparison_table("arm_rate_of_table", "kdl", angles, rate_of);
 #endif
 }
 
@@ -124,11 +124,12 @@ const bool registered = [] {
 
   expect_agreement("arm_pose", "duet", numbers(fk7(angles)), numbers(known.pose(angles)));
   expect_agreement("arm_pose_of_table", "duet", numbers(fk7(angles)), numbers(table.pose(angles)));
-  contest("arm_pose", "duet", angles, [](const joint_angles& x) { return known.pose(x); });
-  contest("arm_pose", "hand", angles, [](const joint_angles& x) { return fk7(x); });
-  contest("arm_pose_of_table", "duet", angles,
-          [table](const joint_angles& x) { return table.pose(x); });
-  contest("arm_pose_of_table", "hand", angles, [](const joint_angles& x) { return fk7(x); });
+  comparison_table("arm_pose", "duet", angles, [](const joint_angles& x) { return known.pose(x); });
+  comparison_table("arm_pose", "hand", angles, [](const joint_angles& x) { return fk7(x); });
+  comparison_table("arm_pose_of_table", "duet", angles,
+                   [table](const joint_angles& x) { return table.pose(x); });
+  comparison_table("arm_pose_of_table", "hand", angles,
+                   [](const joint_angles& x) { return fk7(x); });
 
   const auto [a, jacobian] = by_hand(angles);
   const auto j = duet::pose_and_jacobian(known, angles, duet::frame::hybrid).jacobian;
@@ -137,26 +138,27 @@ const bool registered = [] {
     rows[k] = jacobian[k / joints][k % joints];
   }
   expect_agreement("arm_jacobian", "duet", rows, upper_rows(j));
-  contest("arm_jacobian", "duet", angles, [](const joint_angles& x) {
+  comparison_table("arm_jacobian", "duet", angles, [](const joint_angles& x) {
     return duet::pose_and_jacobian(known, x, duet::frame::hybrid);
   });
-  contest("arm_jacobian", "hand", angles, by_hand);
-  contest("arm_jacobian_of_table", "duet", angles, [table](const joint_angles& x) {
+  comparison_table("arm_jacobian", "hand", angles, by_hand);
+  comparison_table("arm_jacobian_of_table", "duet", angles, [table](const joint_angles& x) {
     return duet::pose_and_jacobian(table, x, duet::frame::hybrid);
   });
-  contest("arm_jacobian_of_table", "hand", angles, by_hand);
-  contest("arm_spatial_jacobian", "duet", angles,
-          [](const joint_angles& x) { return duet::jacobian(known, x, duet::frame::spatial); });
-  contest("arm_spatial_jacobian", "hand", angles, by_hand);
-  contest("arm_rate_of_table", "duet", angles, [table](const joint_angles& x) {
+  comparison_table("arm_jacobian_of_table", "hand", angles, by_hand);
+  comparison_table("arm_spatial_jacobian", "duet", angles, [](const joint_angles& x) {
+    return duet::jacobian(known, x, duet::frame::spatial);
+  });
+  comparison_table("arm_spatial_jacobian", "hand", angles, by_hand);
+  comparison_table("arm_rate_of_table", "duet", angles, [table](const joint_angles& x) {
     return duet::jacobian_rate(table, x, x, duet::frame::hybrid);
   });
   const auto by_duals = [](const joint_angles& x) {
     return duet::jacobian([](const auto& y) { return known.pose(y); }, x, duet::frame::hybrid);
   };
   expect_agreement("arm_by_duals", "duet", upper_rows(j), upper_rows(by_duals(angles).jacobian));
-  contest("arm_by_duals", "duet", angles, by_duals);
-  contest("arm_by_duals", "closed_form", angles, [](const joint_angles& x) {
+  comparison_table("arm_by_duals", "duet", angles, by_duals);
+  comparison_table("arm_by_duals", "closed_form", angles, [](const joint_angles& x) {
     return duet::pose_and_jacobian(known, x, duet::frame::hybrid);
   });
   register_kdl(angles);

@@ -73,7 +73,7 @@ struct spline_work {
 /// Contenders work where the work is, and return no copies of it.
 template <class Work, class F>
 void add(std::string_view workload, std::string_view contender, const F& work_on) {
-  contest(workload, contender, Work(), [=](Work& work) {
+  comparison_table(workload, contender, Work(), [=](Work& work) {
     work_on(work);
     benchmark::ClobberMemory();
     return 0;

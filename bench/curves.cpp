@@ -30,7 +30,7 @@ duet::quaternion<double> orientation(double u) {
   return duet::from_rotation_vector(
       duet::vector3<double>(0.15 * std::sin(u), 0.15 * std::cos(u), 0.26 * u));
 }
-duet::dual_quaternion<double> pose_at(double u) {
+duet::dual_quaternion<double> to_dual_quaternion(double u) {
   return duet::pose(orientation(u), duet::vector3<double>(std::sin(u), u, std::cos(2 * u)));
 }
 
@@ -69,9 +69,9 @@ private:
 template <class Spline>
 void add(std::string_view value, std::string_view motion, std::string_view contender,
          const Spline& s) {
-  contest(value, contender, places(), [=](places& u) { return s(u.next()); });
-  contest(motion, contender, places(),
-          [=](places& u) { return s.motion(u.next(), duet::frame::body); });
+  comparison_table(value, contender, places(), [=](places& u) { return s(u.next()); });
+  comparison_table(motion, contender, places(),
+                   [=](places& u) { return s.motion(u.next(), duet::frame::body); });
 }
 
 const bool registered = [] {
@@ -80,7 +80,7 @@ const bool registered = [] {
   using quintic = duet::rotation_vector_spline<double, 6>;
   const auto u = parameters();
   const auto rotations = through(orientation);
-  const auto poses = through(pose_at);
+  const auto poses = through(to_dual_quaternion);
   const duet::not_a_knot ends;
   const auto of_rotations = duet::interpolate<cumulative>(u, rotations, ends);
   const auto of_vectors = duet::interpolate<cubic>(u, rotations, ends);
@@ -93,11 +93,12 @@ const bool registered = [] {
   add("quintic", "quintic_motion", "duet", duet::interpolate<quintic>(u, rotations, ends));
   add("quintic", "quintic_motion", "cumulative", of_rotations);
 
-  contest("fit_1000", "duet", 0, [=](int) { return duet::interpolate<cubic>(u, rotations, ends); });
-  contest("fit_1000", "cumulative", 0,
-          [=](int) { return duet::interpolate<cumulative>(u, rotations, ends); });
-  contest("fit_1000", "quintic", 0,
-          [=](int) { return duet::interpolate<quintic>(u, rotations, ends); });
+  comparison_table("fit_1000", "duet", 0,
+                   [=](int) { return duet::interpolate<cubic>(u, rotations, ends); });
+  comparison_table("fit_1000", "cumulative", 0,
+                   [=](int) { return duet::interpolate<cumulative>(u, rotations, ends); });
+  comparison_table("fit_1000", "quintic", 0,
+                   [=](int) { return duet::interpolate<quintic>(u, rotations, ends); });
   return true;
 }();
 

@@ -46,8 +46,8 @@ private:
 template <std::size_t N, class F>
 void add(std::string_view workload, std::string_view contender, double lower, double upper,
          F evaluate) {
-  contest(workload, contender, random_inputs<N>(lower, upper),
-          [=](random_inputs<N>& inputs) { return evaluate(inputs.next()); });
+  comparison_table(workload, contender, random_inputs<N>(lower, upper),
+                   [=](random_inputs<N>& inputs) { return evaluate(inputs.next()); });
 }
 
 // The arms.

@@ -66,9 +66,9 @@ void add() {
   }
   const std::string workload = "hessian_" + std::to_string(N);
   const auto expected = by_second_dual(at);
-  contest(workload, "duet", at, by_second_dual<N>);
+  comparison_table(workload, "duet", at, by_second_dual<N>);
   expect_agreement(workload, "nested", expected, by_nested_duals(at));
-  contest(workload, "nested", at, by_nested_duals<N>);
+  comparison_table(workload, "nested", at, by_nested_duals<N>);
 }
 
 const bool registered = [] {

@@ -21,11 +21,11 @@
 namespace {
 
 using namespace timing_bench;
-using timing = duet::detail::timing_problem<-16>;
+using timing = duet::detail::time_parametrisation_input<-16>;
 using motion = duet::detail::timed_path<vector>;
 
 /// Where a motion is at a time, and how fast.
-std::array<double, 2> place_of(const motion& path, double t) {
+std::array<double, 2> to_tip_pose(const motion& path, double t) {
   double s = 0;
   std::size_t i = 0;
   for (; i + 1 < path.pieces.size() && path.pieces[i + 1].law.time <= t; ++i) {
@@ -52,8 +52,8 @@ double largest_share(const duet::joint_trajectory<-16>& q, const timing& limits)
 timing piece_of(timing problem, curve& path, const motion& whole, double from, double to) {
   const bool starts = from <= 0, ends = to >= whole.duration;
   auto& s = problem.polygon.s;
-  const auto [first, first_speed] = starts ? std::array{0.0, 0.0} : place_of(whole, from);
-  const auto [last, last_speed] = ends ? std::array{s.back(), 0.0} : place_of(whole, to);
+  const auto [first, first_speed] = starts ? std::array{0.0, 0.0} : to_tip_pose(whole, from);
+  const auto [last, last_speed] = ends ? std::array{s.back(), 0.0} : to_tip_pose(whole, to);
   curve piece;
   std::vector<double> knots{0};
   for (std::size_t e = 0; e < path.size(); ++e) {

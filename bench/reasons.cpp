@@ -84,5 +84,5 @@ int main(int argc, char** argv) {
   std::printf("%-14s %-22s %6s %4s %6s %6s %4s %7s\n", "arm", "from", "failed", "way", "before",
               "false", "both", "unknown");
   table_of(six_joints(), count, seed, argc > 3);
-  table_of(seven_joints(), count, seed, argc > 3);
+  table_of(redundant_arm(), count, seed, argc > 3);
 }

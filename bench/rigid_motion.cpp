@@ -175,45 +175,48 @@ const bool registered = [] {
   const auto product = [](const two<pose_type>& p) { return p.a * p.b; };
   const auto product_by_hand = [](const two<eight>& p) { return by_hand::product(p.a, p.b); };
   expect_agreement("pose_product", "hand", numbers_of(a * b), by_hand::product(a8, b8));
-  contest("pose_product", "duet", two<pose_type>{a, b}, product);
-  contest("pose_product", "hand", two<eight>{a8, b8}, product_by_hand);
-  contest("pose_product", "Eigen Isometry3d", two<Eigen::Isometry3d>{isometry(a), isometry(b)},
-          [](const two<Eigen::Isometry3d>& p) { return Eigen::Isometry3d(p.a * p.b); });
+  comparison_table("pose_product", "duet", two<pose_type>{a, b}, product);
+  comparison_table("pose_product", "hand", two<eight>{a8, b8}, product_by_hand);
+  comparison_table("pose_product", "Eigen Isometry3d",
+                   two<Eigen::Isometry3d>{isometry(a), isometry(b)},
+                   [](const two<Eigen::Isometry3d>& p) { return Eigen::Isometry3d(p.a * p.b); });
 
   const duet::dual_vector<double> v = log(a).vec();
   const six v6 = by_hand::logarithm(a8);
   const auto exponential = [](const duet::dual_vector<double>& x) { return duet::exp(x); };
   expect_agreement("pose_exp", "hand", a8, by_hand::exponential(v6));
-  contest("pose_exp", "duet", v, exponential);
-  contest("pose_exp", "hand", v6, by_hand::exponential);
+  comparison_table("pose_exp", "duet", v, exponential);
+  comparison_table("pose_exp", "hand", v6, by_hand::exponential);
 
   const auto logarithm = [](const pose_type& p) { return log(p); };
   expect_agreement(
       "pose_log", "hand",
       six{v[0].value(), v[1].value(), v[2].value(), v[0].epsilon(), v[1].epsilon(), v[2].epsilon()},
       v6);
-  contest("pose_log", "duet", a, logarithm);
-  contest("pose_log", "hand", a8, by_hand::general_logarithm);
+  comparison_table("pose_log", "duet", a, logarithm);
+  comparison_table("pose_log", "hand", a8, by_hand::general_logarithm);
 
   const auto interpolation = [](const two<pose_type>& p) { return sclerp(p.a, p.b, 0.3); };
   expect_agreement("sclerp", "hand", numbers_of(sclerp(a, b, 0.3)),
                    by_hand::interpolation(a8, b8, 0.3));
-  contest("sclerp", "duet", two<pose_type>{a, b}, interpolation);
-  contest("sclerp", "hand", two<eight>{a8, b8},
-          [](const two<eight>& p) { return by_hand::interpolation(p.a, p.b, 0.3); });
+  comparison_table("sclerp", "duet", two<pose_type>{a, b}, interpolation);
+  comparison_table("sclerp", "hand", two<eight>{a8, b8},
+                   [](const two<eight>& p) { return by_hand::interpolation(p.a, p.b, 0.3); });
 
   using point = duet::vector3<double>;
   const point x(0.1, 0.2, -0.4);
   const point moved = duet::transform_point(a, x);
   expect_agreement("transform_point", "hand", three{moved[0], moved[1], moved[2]},
                    by_hand::transformed(a8, {x[0], x[1], x[2]}));
-  contest("transform_point", "duet", with_point<pose_type, point>{a, x},
-          [](const with_point<pose_type, point>& p) { return duet::transform_point(p.a, p.x); });
-  contest("transform_point", "hand", with_point<eight, three>{a8, {x[0], x[1], x[2]}},
-          [](const with_point<eight, three>& p) { return by_hand::transformed(p.a, p.x); });
-  contest("transform_point", "Eigen Isometry3d",
-          with_point<Eigen::Isometry3d, point>{isometry(a), x},
-          [](const with_point<Eigen::Isometry3d, point>& p) { return point(p.a * p.x); });
+  comparison_table(
+      "transform_point", "duet", with_point<pose_type, point>{a, x},
+      [](const with_point<pose_type, point>& p) { return duet::transform_point(p.a, p.x); });
+  comparison_table(
+      "transform_point", "hand", with_point<eight, three>{a8, {x[0], x[1], x[2]}},
+      [](const with_point<eight, three>& p) { return by_hand::transformed(p.a, p.x); });
+  comparison_table("transform_point", "Eigen Isometry3d",
+                   with_point<Eigen::Isometry3d, point>{isometry(a), x},
+                   [](const with_point<Eigen::Isometry3d, point>& p) { return point(p.a * p.x); });
   return true;
 }();
 

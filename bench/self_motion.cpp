@@ -43,7 +43,7 @@ struct robot {
 
 /// Shoulder and wrist spherical, or not: `shoulder` between axes 1 and 3, `elbow` and `wrist`
 /// across.
-arm_chain seven_joints(double shoulder, double elbow, double wrist) {
+arm_chain redundant_arm(double shoulder, double elbow, double wrist) {
   constexpr double quarter = pi / 2;
   const std::array<dh_row<>, 7> rows{{{.d = .3, .alpha = -quarter},
                                       {.d = shoulder, .alpha = quarter},
@@ -167,11 +167,13 @@ void row(const robot& each, const family& kind, int count, std::uint64_t seed, b
 int main(int argc, char** argv) {
   const int count = argc > 1 ? std::atoi(argv[1]) : 50;
   const std::uint64_t seed = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 1;
-  const std::vector<robot> robots{
-      {"iiwa 14", robots::iiwa14().table()},          {"Panda", robots::panda().table()},
-      {"Baxter", robots::baxter_left().table()},      {"no offsets", seven_joints(0, 0, 0)},
-      {"elbow, wrist", seven_joints(0, .0525, .076)}, {"shoulder 12 mm", seven_joints(.012, 0, 0)},
-      {"all offsets", seven_joints(.1, .05, .05)}};
+  const std::vector<robot> robots{{"iiwa 14", robots::iiwa14().table()},
+                                  {"Panda", robots::panda().table()},
+                                  {"Baxter", robots::baxter_left().table()},
+                                  {"no offsets", redundant_arm(0, 0, 0)},
+                                  {"elbow, wrist", redundant_arm(0, .0525, .076)},
+                                  {"shoulder 12 mm", redundant_arm(.012, 0, 0)},
+                                  {"all offsets", redundant_arm(.1, .05, .05)}};
   std::printf("%-16s %-22s %5s %6s %6s %8s %5s %5s %6s %8s\n", "arm", "poses at", "poses", "curves",
               "points", "surfaces", "open", "none", "missed", "s each");
   for (const robot& each : robots) {

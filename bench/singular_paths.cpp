@@ -50,8 +50,8 @@ template <int N>
 std::optional<joints_of<N>> newton(const serial_chain<N>& chain, joints_of<N> theta,
                                    const goal_pose& goal) {
   for (int k = 0; k < 12; ++k) {
-    const auto here = detail::place_of(chain.pose(theta));
-    const auto e = detail::error_twist(here, detail::place_of(goal));
+    const auto here = detail::to_tip_pose(chain.pose(theta));
+    const auto e = detail::error_twist(here, detail::to_tip_pose(goal));
     const Eigen::Matrix<double, 6, 1> twist =
         Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&e.values[0]);
     if (apart(chain.pose(theta), goal) < 1e-7) {
@@ -216,5 +216,5 @@ int main(int argc, char** argv) {
   std::printf("%-14s %-22s %4s %4s %4s %4s %4s %7s\n", "arm", "from", "on", "both", "plan", "less",
               "bad", "ms");
   table_of(six_joints(), count, seed);
-  table_of(seven_joints(), count, seed);
+  table_of(redundant_arm(), count, seed);
 }

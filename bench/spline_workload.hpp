@@ -125,11 +125,11 @@ private:
         j = d3;
         continue;
       }
-      w = turned_back(e, w);
-      a = turned_back(e, a);
+      w = wrap_angle(e, w);
+      a = wrap_angle(e, a);
       const auto wd = cross(w, d);
       if constexpr (has_jerk) {
-        j = turned_back(e, j);
+        j = wrap_angle(e, j);
         const auto wd2 = cross(w, d2);
         const auto twice = cross({a[0] + wd[0], a[1] + wd[1], a[2] + wd[2]}, d);
         j = {j[0] + d3[0] + 4 * twice[0] + 2 * wd2[0], j[1] + d3[1] + 4 * twice[1] + 2 * wd2[1],
@@ -177,8 +177,8 @@ private:
             p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
   }
   /// e* v e
-  static std::array<double, 3> turned_back(const std::array<double, 4>& e,
-                                           const std::array<double, 3>& v) {
+  static std::array<double, 3> wrap_angle(const std::array<double, 4>& e,
+                                          const std::array<double, 3>& v) {
     const double tx = 2 * (e[2] * v[2] - e[3] * v[1]);
     const double ty = 2 * (e[3] * v[0] - e[1] * v[2]);
     const double tz = 2 * (e[1] * v[1] - e[2] * v[0]);

@@ -164,7 +164,7 @@ void register_kdl_jacobian(const std::string& workload, const duet::kinematic_tr
   expect_agreement(workload, "kdl",
                    numbers(jacobian(robot, q, duet::frame::hybrid, robot.link("left_hand"))),
                    numbers(jacobian_of(q)->data));
-  contest(workload, "kdl", q, jacobian_of);
+  comparison_table(workload, "kdl", q, jacobian_of);
 }
 
 void register_kdl_poses(const duet::kinematic_tree& robot, const coordinates& q) {
@@ -185,7 +185,7 @@ void register_kdl_poses(const duet::kinematic_tree& robot, const coordinates& q)
     }
   }
   expect_agreement("tree_poses", "kdl", ours, theirs);
-  contest("tree_poses", "kdl", q, poses_of);
+  comparison_table("tree_poses", "kdl", q, poses_of);
 }
 #endif
 
@@ -195,14 +195,14 @@ void register_jacobian(const std::string& workload, const duet::kinematic_tree& 
   const auto by_tree = [robot, hand](const coordinates& x) {
     return duet::jacobian(robot, x, duet::frame::hybrid, hand);
   };
-  contest(workload, "duet", q, by_tree);
+  comparison_table(workload, "duet", q, by_tree);
   const duet::bounded_chain<16> chain = robot.chain("base", "left_hand");
   const auto by_chain = [chain](const coordinates& x) {
     return duet::jacobian(chain, x, duet::frame::hybrid);
   };
   if (chain.size() == robot.size()) {
     expect_agreement(workload, "chain", numbers(by_tree(q)), numbers(by_chain(q)));
-    contest(workload, "chain", q, by_chain);
+    comparison_table(workload, "chain", q, by_chain);
   }
 #if DUET_BENCH_KDL
   register_kdl_jacobian(workload, robot, q);
@@ -220,7 +220,8 @@ void register_jacobian(const std::string& workload, const duet::kinematic_tree& 
 const bool registered = [] {
   const duet::kinematic_tree robot(two_arms()), alone(one_arm());
   const coordinates q = somewhere(robot);
-  contest("tree_poses", "duet", q, [robot](const coordinates& x) { return robot.poses(x); });
+  comparison_table("tree_poses", "duet", q,
+                   [robot](const coordinates& x) { return robot.poses(x); });
 #if DUET_BENCH_KDL
   register_kdl_poses(robot, q);
 #endif

@@ -4,8 +4,8 @@
 
 #define DUET_DEFINES_COMPILED
 
+#include <duet/mechanism/loops/assembly_search.hpp>
 #include <duet/mechanism/loops/motion_follower.hpp>
-#include <duet/mechanism/loops/position_search.hpp>
-#include <duet/mechanism/loops/surroundings.hpp>
+#include <duet/mechanism/loops/neighbourhood.hpp>
 #include <duet/mechanism/loops/tracer.hpp>
-#include <duet/mechanism/loops/tree_closing.hpp>
+#include <duet/mechanism/loops/tree_closure_solver.hpp>

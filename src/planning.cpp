@@ -12,5 +12,5 @@
 #include <duet/planning/goals.hpp>
 #include <duet/planning/inverse_kinematics.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
-#include <duet/planning/start_chooser.hpp>
-#include <duet/planning/timing/pace_search.hpp>
+#include <duet/planning/start_search.hpp>
+#include <duet/planning/timing/log_barrier_solver.hpp>

@@ -32,7 +32,8 @@ template <class F, class Input>
 /// Times `evaluate(input)`. The input is hidden from the optimiser in every turn, and the result
 /// counts as used.
 template <class Input, class F>
-void contest(std::string_view workload, std::string_view contender, Input input, F evaluate) {
+void comparison_table(std::string_view workload, std::string_view contender, Input input,
+                      F evaluate) {
   const std::string name = std::string(workload) + '/' + std::string(contender);
   contests().push_back(name);
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) mutable {

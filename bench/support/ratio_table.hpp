@@ -45,10 +45,10 @@ public:
               << "duet/best" << std::setw(10) << "duet/hand"
               << "  nanoseconds, fastest of the repetitions\n"
               << std::fixed;
-    for (const auto& [name, contenders] : workloads_) {
+    for (const auto& [name, competitors] : workloads_) {
       const auto was_run = [](const auto& entry) { return !entry.second.nanoseconds.empty(); };
-      if (std::any_of(contenders.begin(), contenders.end(), was_run)) {
-        print_row(name, contenders);
+      if (std::any_of(competitors.begin(), competitors.end(), was_run)) {
+        print_row(name, competitors);
       }
     }
   }
@@ -74,16 +74,17 @@ private:
     return at != entries.end() ? at->second : entries.emplace_back(name, Value{}).second;
   }
 
-  contender& find(const std::string& contest) {
-    const std::size_t slash = contest.find('/');
-    return find(find(workloads_, contest.substr(0, slash)), contest.substr(slash + 1));
+  contender& find(const std::string& comparison_table) {
+    const std::size_t slash = comparison_table.find('/');
+    return find(find(workloads_, comparison_table.substr(0, slash)),
+                comparison_table.substr(slash + 1));
   }
 
-  static void print_row(const std::string& workload, const named<contender>& contenders) {
+  static void print_row(const std::string& workload, const named<contender>& competitors) {
     double duet = 0;
     double hand = 0;
     double best = 0;
-    for (const auto& [name, c] : contenders) {
+    for (const auto& [name, c] : competitors) {
       if (c.nanoseconds.empty()) {
         continue;
       }
@@ -100,7 +101,7 @@ private:
     print_ratio(duet, best);
     print_ratio(duet, hand);
     std::cout << ' ' << std::setprecision(1);
-    for (const auto& [name, c] : contenders) {
+    for (const auto& [name, c] : competitors) {
       if (c.nanoseconds.empty()) {
         continue;
       }

@@ -24,7 +24,7 @@ using rotation_vector_cubic = duet::rotation_vector_spline<double>;
 using rotation_vector_quintic = duet::rotation_vector_spline<double, 6>;
 
 enum spline_kind { cumulative, cubic, quintic, hermite };
-enum end_kind { natural, not_a_knot, clamped, acceleration, both };
+enum end_condition_kind { natural, not_a_knot, clamped, acceleration, both };
 
 /// The mechanism at as many heights as the page of documents has, solved once.
 class reference {

@@ -26,7 +26,7 @@ void run(const options& given) {
       given.is_long_way ? duet::slerp_arc::longest : duet::slerp_arc::shortest;
   const screw between = screw_between(from, to, given.is_long_way);
   std::cout << in_words(between);
-  if (is_half_turn_apart(from, to)) {
+  if (differs_by_half_turn(from, to)) {
     std::cout << "The poses are half a turn apart: the other way round is as short.\n";
   }
   const std::vector<sample> path = samples(from, to, round, given.steps);

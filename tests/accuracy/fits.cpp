@@ -49,14 +49,14 @@ row fit_row(const std::string& name, int count) {
     while (controls.size() < 6) {
       controls.push_back(controls.back() * some_turn<T>(0.5, 0.5 * length, random));
     }
-    const spline truth(typename spline::basis_type(knots), controls);
+    const spline reference(typename spline::basis_type(knots), controls);
     std::vector<double> u;
     std::vector<duet::quaternion<T>> rows;
     input at{noise.name, {}, {}, {}};
     for (int i = 0; i < 12; ++i) {
       u.push_back(i == 0 ? 0 : i == 11 ? 3 : (i + random.uniform(-0.3, 0.3)) * 3 / 11);
-      rows.push_back(
-          normalized(truth(u.back()) * some_turn<T>(noise.value, noise.value * length, random)));
+      rows.push_back(normalized(reference(u.back()) *
+                                some_turn<T>(noise.value, noise.value * length, random)));
       append(at, rows.back());
     }
     const spline s = duet::fit<spline>(u, rows, knots, {.length = length}).curve;

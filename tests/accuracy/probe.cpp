@@ -141,7 +141,7 @@ void judge(row& r, const input& at, const numbers& d2, const oracle_function& ex
   const auto& [coefficients, parts, orders] = computed;
   const jet_shape& shape = *jet_shape::current;
   const jets x = variables(at.x, at.direction, d2);
-  const jets truth = exact(x);
+  const jets reference = exact(x);
   constexpr int samples = 4;
   random_source random(77);
   std::vector<jets> neighbours, elsewhere;
@@ -161,13 +161,13 @@ void judge(row& r, const input& at, const numbers& d2, const oracle_function& ex
       for (std::size_t i = first; i < first + count; ++i) {
         const double c = coefficients[i][m];
         is_finite = is_finite && c - c == 0;
-        error += is_finite ? pow(real(c) - truth[i].c[m], 2) : real(0);
-        size += pow(truth[i].c[m], 2);
+        error += is_finite ? pow(real(c) - reference[i].c[m], 2) : real(0);
+        size += pow(reference[i].c[m], 2);
         for (const jets& y : elsewhere) {
           typical += pow(y[i].c[m], 2) / samples;
         }
         for (const jets& y : neighbours) {
-          change += pow((y[i].c[m] - truth[i].c[m]) * real("1e30"), 2) / samples;
+          change += pow((y[i].c[m] - reference[i].c[m]) * real("1e30"), 2) / samples;
         }
       }
       if (sqrt(size) > std::numeric_limits<double>::max() / 4) {

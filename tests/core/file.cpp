@@ -242,23 +242,24 @@ TEST_CASE("what cannot be written is found before") {
 TEST_CASE("two files are written, or neither") {
   const playground here("pair");
   const std::string a = here.at("a.csv"), b = here.at("b.csv");
-  const auto complaint = [](const std::string& first, const std::string& second) {
+  const auto error_message = [](const std::string& first, const std::string& second) {
     return duet_test::message_of<duet::file_error>(
         [&] { duet::write_files(first, "1\n", second, "2\n"); });
   };
-  CHECK(complaint(a, b).empty());
+  CHECK(error_message(a, b).empty());
   CHECK(content_of(a) == "1\n");
   CHECK(content_of(b) == "2\n");
   write_file(a, "before\n");
   const std::string far = here.at("none/b.csv");
-  CHECK(complaint(a, far) == "duet: " + far + ": cannot be written: No such file or directory");
-  CHECK(complaint(far, a) == complaint(a, far));
-  CHECK(complaint(a, here.at("./a.csv")) ==
+  CHECK(error_message(a, far) == "duet: " + far + ": cannot be written: No such file or directory");
+  CHECK(error_message(far, a) == error_message(a, far));
+  CHECK(error_message(a, here.at("./a.csv")) ==
         "duet: " + here.at("./a.csv") + ": is the same file as " + a);
   fs::create_symlink("a.csv", here.at("link"));
-  CHECK(complaint(here.at("link"), a) == "duet: " + a + ": is the same file as " + here.at("link"));
+  CHECK(error_message(here.at("link"), a) ==
+        "duet: " + a + ": is the same file as " + here.at("link"));
   const std::string none = here.at("new.csv"); // not there yet
-  CHECK(complaint(none, here.at("./new.csv")).ends_with(": is the same file as " + none));
+  CHECK(error_message(none, here.at("./new.csv")).ends_with(": is the same file as " + none));
   CHECK(content_of(a) == "before\n");
   CHECK(here.count() == 3);
 
@@ -281,11 +282,11 @@ TEST_CASE("two files are written, or neither") {
   }
 
   if (fs::is_character_file("/dev/full") && fs::is_character_file("/dev/null")) {
-    CHECK(complaint("/dev/full", a) == message("/dev/full"));
-    CHECK(complaint(a, "/dev/full") == message("/dev/full"));
+    CHECK(error_message("/dev/full", a) == message("/dev/full"));
+    CHECK(error_message(a, "/dev/full") == message("/dev/full"));
     CHECK(content_of(a) == "before\n");
-    CHECK(complaint("/dev/null", "/dev/null").empty());
-    CHECK(complaint("/dev/null", a).empty());
+    CHECK(error_message("/dev/null", "/dev/null").empty());
+    CHECK(error_message("/dev/null", a).empty());
     CHECK(content_of(a) == "2\n");
   }
 }

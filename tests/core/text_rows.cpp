@@ -21,7 +21,7 @@ const std::string path = "text_rows_test.csv";
 
 void write(const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
-std::string complaint(const std::string& file, std::size_t columns = 0) {
+std::string error_message(const std::string& file, std::size_t columns = 0) {
   return duet_test::message_of<duet::file_error>(
       [&] { static_cast<void>(csv_file(file, columns)); });
 }
@@ -74,33 +74,35 @@ TEST_CASE("headers are read as headers, with as many columns as were written") {
 }
 
 TEST_CASE("what is no file of rows says why") {
-  CHECK(complaint("no/such/file") == "duet: no/such/file: cannot be read");
-  CHECK(complaint(".") == "duet: .: is a folder, not a file");
+  CHECK(error_message("no/such/file") == "duet: no/such/file: cannot be read");
+  CHECK(error_message(".") == "duet: .: is a folder, not a file");
   CHECK_THROWS_AS(static_cast<void>(csv_file(".")), duet::invalid_input); // as other bad input
   write("a,b\n");
-  CHECK(complaint(path) == "duet: " + path + ": holds no rows");
+  CHECK(error_message(path) == "duet: " + path + ": holds no rows");
   write("\xff\xfe"
         "1\n");
-  CHECK(complaint(path) == "duet: " + path + ": is UTF-16: UTF-8 expected");
+  CHECK(error_message(path) == "duet: " + path + ": is UTF-16: UTF-8 expected");
   write("1,2\n" + std::string(2'000'000, '1'));
-  CHECK(complaint(path) == "duet: " + path + ":2: more than a million characters: no file of rows");
+  CHECK(error_message(path) ==
+        "duet: " + path + ":2: more than a million characters: no file of rows");
   write("1,1e400\n");
-  CHECK(complaint(path) == "duet: " + path + ":1: column 2 is 1e400, beyond the range of a double");
+  CHECK(error_message(path) ==
+        "duet: " + path + ":1: column 2 is 1e400, beyond the range of a double");
   write("1,-1e-400\n");
-  CHECK(complaint(path) ==
+  CHECK(error_message(path) ==
         "duet: " + path + ":1: column 2 is -1e-400, beyond the range of a double");
   write("1,inf\n");
-  CHECK(complaint(path) == "duet: " + path + ":1: column 2 is inf");
+  CHECK(error_message(path) == "duet: " + path + ":1: column 2 is inf");
   write("1,2\n1,2,3\n");
-  CHECK(complaint(path, 2) == "duet: " + path + ":2: 2 numbers expected, got 3");
+  CHECK(error_message(path, 2) == "duet: " + path + ":2: 2 numbers expected, got 3");
   // Decimal commas, which are neither names nor a header.
   for (const char* text : {"1,2;3\n", "1,5;2,5\n", "+1,5e3;1\n"}) {
     write(text);
-    CHECK(complaint(path).starts_with("duet: " + path + ":1: column 1 is not a number: '"));
-    CHECK(complaint(path).ends_with("': decimals come after a point"));
+    CHECK(error_message(path).starts_with("duet: " + path + ":1: column 1 is not a number: '"));
+    CHECK(error_message(path).ends_with("': decimals come after a point"));
   }
   write("1;2\n3;1,2,3\n");
-  CHECK(complaint(path) == "duet: " + path + ":2: column 2 is not a number: '1,2,3'");
+  CHECK(error_message(path) == "duet: " + path + ":2: column 2 is not a number: '1,2,3'");
   std::remove(path.c_str());
 }
 

@@ -59,13 +59,13 @@ struct perturbation {
     const MatrixXd moved = slope.lazyProduct(vectors);
     const MatrixXd b = vectors.transpose().lazyProduct(moved);
     values_slope = b.diagonal();
-    gap = std::numeric_limits<double>::infinity();
+    max_abs_difference = std::numeric_limits<double>::infinity();
     MatrixXd rotation = MatrixXd::Zero(a.rows(), a.rows());
     for (int i = 0; i < a.rows(); ++i) {
       for (int j = 0; j < a.rows(); ++j) {
         if (i != j) {
           rotation(i, j) = b(i, j) / (values[j] - values[i]);
-          gap = std::min(gap, std::abs(values[j] - values[i]));
+          max_abs_difference = std::min(max_abs_difference, std::abs(values[j] - values[i]));
         }
       }
     }
@@ -74,7 +74,7 @@ struct perturbation {
 
   VectorXd values, values_slope;
   MatrixXd vectors, vectors_slope;
-  double gap;
+  double max_abs_difference;
 };
 
 template <int N>
@@ -96,8 +96,9 @@ void check(const MatrixXd& value, const MatrixXd& slope) {
   CHECK((plain.values == solver.eigenvalues()));
   CHECK((plain.vectors == solver.eigenvectors()));
   const perturbation exact(value, slope);
-  const double tolerance = 2e-14 * (1 + slope.norm()) * std::max(1.0, value.norm() / exact.gap) /
-                           std::min(1.0, exact.gap);
+  const double tolerance = 2e-14 * (1 + slope.norm()) *
+                           std::max(1.0, value.norm() / exact.max_abs_difference) /
+                           std::min(1.0, exact.max_abs_difference);
   for (int j = 0; j < value.rows(); ++j) {
     CHECK(e.values[j].value() == plain.values[j]);
     CHECK(std::abs(e.values[j].partial(0) - exact.values_slope[j]) <= tolerance);
@@ -251,11 +252,11 @@ TEST_CASE("repeated eigenvalues have no derivatives, but constants are fine") {
   CHECK(message(a) == "duet: symmetric_eigen: eigenvalues 0 and 1, both 0 with a gap of 0, have no "
                       "derivatives, as A is not constant");
   // A gap that is only small is one: 64 ε, and vectors that turn by 1/gap.
-  constexpr double gap = 64 * std::numeric_limits<double>::epsilon();
-  a = Eigen::Vector3d(1, 1 + gap, -1).asDiagonal().toDenseMatrix().cast<D>();
+  constexpr double max_abs_difference = 64 * std::numeric_limits<double>::epsilon();
+  a = Eigen::Vector3d(1, 1 + max_abs_difference, -1).asDiagonal().toDenseMatrix().cast<D>();
   a(1, 0) = D(0, 1);
   const auto v = symmetric_eigen(a).vectors.col(1).eval();
-  CHECK(v[1].epsilon() * v[0].value() == doctest::Approx(-1 / gap));
+  CHECK(v[1].epsilon() * v[0].value() == doctest::Approx(-1 / max_abs_difference));
   // Rounding keeps two eigenvalues of a full matrix apart, but not far enough to be two.
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     duet_test::random_source random(seed);

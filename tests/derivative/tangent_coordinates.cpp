@@ -41,7 +41,7 @@ matrix hat(const vector& w) {
 }
 
 template <class A, class B>
-double gap(const A& a, const B& b) {
+double max_abs_difference(const A& a, const B& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
@@ -52,9 +52,9 @@ TEST_CASE("a vector turned by a rotation") {
   const matrix R = rotation_matrix(q);
   const auto [y, J] = jacobian(turn, q, spatial);
   static_assert(decltype(J)::RowsAtCompileTime == 3 && decltype(J)::ColsAtCompileTime == 3);
-  CHECK(gap(y, R * v) < 1e-15);
-  CHECK(gap(J, -hat(R * v)) < 1e-15);
-  CHECK(gap(jacobian(turn, q, body).jacobian, -R * hat(v)) < 1e-15);
+  CHECK(max_abs_difference(y, R * v) < 1e-15);
+  CHECK(max_abs_difference(J, -hat(R * v)) < 1e-15);
+  CHECK(max_abs_difference(jacobian(turn, q, body).jacobian, -R * hat(v)) < 1e-15);
   CHECK(jacobian(turn, q, duet::frame::hybrid).jacobian == J);
 }
 
@@ -62,42 +62,43 @@ TEST_CASE("rotations to rotations") {
   const matrix R = rotation_matrix(q);
   const matrix S = rotation_matrix(r);
   const auto inverse = [](const auto& x) { return conj(x); };
-  CHECK(gap(jacobian(inverse, q, body).jacobian, -R) < 1e-15);
-  CHECK(gap(jacobian(inverse, q, spatial).jacobian, -R.transpose()) < 1e-15);
+  CHECK(max_abs_difference(jacobian(inverse, q, body).jacobian, -R) < 1e-15);
+  CHECK(max_abs_difference(jacobian(inverse, q, spatial).jacobian, -R.transpose()) < 1e-15);
 
   const auto product = [](const auto& both) { return std::get<0>(both) * std::get<1>(both); };
   const auto at = std::tuple(q, r);
   Eigen::Matrix<double, 3, 6> expected;
   expected << matrix::Identity(), R;
-  CHECK(gap(jacobian(product, at, spatial).jacobian, expected) < 1e-15);
+  CHECK(max_abs_difference(jacobian(product, at, spatial).jacobian, expected) < 1e-15);
   expected << S.transpose(), matrix::Identity();
-  CHECK(gap(jacobian(product, at, body).jacobian, expected) < 1e-15);
+  CHECK(max_abs_difference(jacobian(product, at, body).jacobian, expected) < 1e-15);
 
   // Coordinates of the same motion: both frames differ by the rotations themselves.
   const auto cube = [](const auto& x) { return pow(x, 3); };
   const matrix cubed = rotation_matrix(pow(q, 3));
-  CHECK(gap(cubed * jacobian(cube, q, body).jacobian, jacobian(cube, q, spatial).jacobian * R) <
-        4e-15);
+  CHECK(max_abs_difference(cubed * jacobian(cube, q, body).jacobian,
+                           jacobian(cube, q, spatial).jacobian * R) < 4e-15);
 }
 
 TEST_CASE("vectors to rotations: Euler rates and the exponential's Jacobian") {
   const auto angles = [](const auto& a) { return duet::from_euler<duet::zyx>(a[0], a[1], a[2]); };
   const vector a(0.4, -0.9, 2.2);
-  CHECK(gap(jacobian(angles, a, spatial).jacobian, duet::euler_rate_matrix<duet::zyx>(a[0], a[1])) <
-        1e-15);
+  CHECK(max_abs_difference(jacobian(angles, a, spatial).jacobian,
+                           duet::euler_rate_matrix<duet::zyx>(a[0], a[1])) < 1e-15);
 
   const auto exponential = [](const auto& w) { return duet::from_rotation_vector(w); };
   const vector w(0.8, -0.3, 1.1);
   const double t = w.norm();
   const matrix left = matrix::Identity() + (1 - std::cos(t)) / (t * t) * hat(w) +
                       (t - std::sin(t)) / (t * t * t) * hat(w) * hat(w);
-  CHECK(gap(jacobian(exponential, w, spatial).jacobian, left) < 1e-15);
-  CHECK(gap(jacobian(exponential, w, body).jacobian, left.transpose()) < 1e-15);
-  CHECK(gap(jacobian(exponential, vector(0, 0, 0), body).jacobian, matrix::Identity()) == 0);
+  CHECK(max_abs_difference(jacobian(exponential, w, spatial).jacobian, left) < 1e-15);
+  CHECK(max_abs_difference(jacobian(exponential, w, body).jacobian, left.transpose()) < 1e-15);
+  CHECK(max_abs_difference(jacobian(exponential, vector(0, 0, 0), body).jacobian,
+                           matrix::Identity()) == 0);
   // And back: the logarithm's is the inverse.
   const auto logarithm = [](const auto& x) { return duet::rotation_vector(x); };
-  CHECK(gap(jacobian(logarithm, duet::from_rotation_vector(w), spatial).jacobian, left.inverse()) <
-        1e-14);
+  CHECK(max_abs_difference(jacobian(logarithm, duet::from_rotation_vector(w), spatial).jacobian,
+                           left.inverse()) < 1e-14);
 }
 
 TEST_CASE("scalars, arrays and tuples on either side") {
@@ -110,11 +111,11 @@ TEST_CASE("scalars, arrays and tuples on either side") {
   static_assert(decltype(J)::RowsAtCompileTime == 4 && decltype(J)::ColsAtCompileTime == 7);
   CHECK(std::get<1>(y) == 0.3 * 0.3);
   const vector rate = duet::rotate(q, duet::rotation_vector(conj(q) * r));
-  CHECK(gap(J.col(0).head(3), rate) < 1e-14);
+  CHECK(max_abs_difference(J.col(0).head(3), rate) < 1e-14);
   CHECK(J(3, 0) == 0.6);
   CHECK(J.row(3).tail(6).isZero(0));
   // Moving both ends by one rotation moves the curve by it.
-  CHECK(gap(J.block(0, 1, 3, 3) + J.block(0, 4, 3, 3), matrix::Identity()) < 1e-14);
+  CHECK(max_abs_difference(J.block(0, 1, 3, 3) + J.block(0, 4, 3, 3), matrix::Identity()) < 1e-14);
 }
 
 TEST_CASE("a result whose size is known at run time") {
@@ -127,7 +128,7 @@ TEST_CASE("a result whose size is known at run time") {
   const auto J = jacobian(all, q, spatial).jacobian;
   CHECK(J.rows() == 6);
   CHECK(J.cols() == 3);
-  CHECK(gap(J.topRows(3), -hat(rotation_matrix(q) * v)) < 1e-15);
+  CHECK(max_abs_difference(J.topRows(3), -hat(rotation_matrix(q) * v)) < 1e-15);
 }
 
 TEST_CASE("more coordinates than one pass takes") {
@@ -145,7 +146,8 @@ TEST_CASE("more coordinates than one pass takes") {
   const auto J = jacobian(sum, many, spatial).jacobian;
   CHECK(J.cols() == 36);
   for (int i = 0; i < 12; ++i) {
-    CHECK(gap(J.middleCols<3>(3 * i), -hat(duet::rotate(many[std::size_t(i)], v))) < 1e-15);
+    CHECK(max_abs_difference(J.middleCols<3>(3 * i), -hat(duet::rotate(many[std::size_t(i)], v))) <
+          1e-15);
   }
 }
 
@@ -162,7 +164,7 @@ TEST_CASE("a vector whose size is known at run time, in several passes") {
   const auto J = jacobian(turned, x, body).jacobian;
   REQUIRE(J.cols() == 40);
   for (int i = 0; i < 40; ++i) {
-    CHECK(gap(J.col(i), vector(0, 0, .02 * (i + 1) * x[i])) < 1e-14);
+    CHECK(max_abs_difference(J.col(i), vector(0, 0, .02 * (i + 1) * x[i])) < 1e-14);
   }
   const auto product = [](const auto& at) { return at[0] * at[1] * at[1]; };
   const Eigen::VectorXd two = Eigen::Vector2d(2, 3);
@@ -181,13 +183,14 @@ TEST_CASE("gradients and Hessians: the squared distance of rotations") {
   const vector w = duet::rotation_vector(q * conj(r));
   const auto [y, g] = gradient(distance, q, spatial);
   CHECK(y == doctest::Approx(w.squaredNorm() / 2).epsilon(1e-14));
-  CHECK(gap(g, w) < 1e-14);
-  CHECK(gap(gradient(distance, q, body).gradient, rotation_matrix(q).transpose() * w) < 1e-14);
+  CHECK(max_abs_difference(g, w) < 1e-14);
+  CHECK(max_abs_difference(gradient(distance, q, body).gradient,
+                           rotation_matrix(q).transpose() * w) < 1e-14);
 
   const auto at_r = hessian(distance, r, spatial);
   CHECK(at_r.value == 0);
   CHECK(at_r.gradient.norm() == 0);
-  CHECK(gap(at_r.hessian, matrix::Identity()) < 1e-15);
+  CHECK(max_abs_difference(at_r.hessian, matrix::Identity()) < 1e-15);
 
   // Elsewhere (θ/2) cot(θ/2) (I − ŵŵᵀ) + ŵŵᵀ.
   const auto [value, slope, H] = hessian(distance, q, spatial);
@@ -195,10 +198,10 @@ TEST_CASE("gradients and Hessians: the squared distance of rotations") {
   const matrix along = w * w.transpose() / (t * t);
   const matrix expected = t / 2 / std::tan(t / 2) * (matrix::Identity() - along) + along;
   CHECK(value == doctest::Approx(y).epsilon(1e-14));
-  CHECK(gap(slope, w) < 1e-14);
-  CHECK(gap(H, expected) < 1e-13);
+  CHECK(max_abs_difference(slope, w) < 1e-14);
+  CHECK(max_abs_difference(H, expected) < 1e-13);
   const matrix R = rotation_matrix(q);
-  CHECK(gap(hessian(distance, q, body).hessian, R.transpose() * H * R) < 1e-13);
+  CHECK(max_abs_difference(hessian(distance, q, body).hessian, R.transpose() * H * R) < 1e-13);
 }
 
 TEST_CASE("inside another differentiation") {

@@ -49,7 +49,7 @@ public:
   [[nodiscard]] auto all_of(const Predicate& predicate) const {
     return predicate(value_) && predicate(slope_);
   }
-  [[nodiscard]] static sloped surviving_product(const sloped& s, const sloped& x) {
+  [[nodiscard]] static sloped zero_preserving_product(const sloped& s, const sloped& x) {
     return {duet::detail::guarded_product(s.value_, x.value_),
             T(duet::detail::guarded_product(s.value_, x.slope_) +
               duet::detail::product_of_partial(s.slope_, x.value_))};

@@ -21,7 +21,7 @@ namespace test_dual_quaternion_average {
 
 using duet::average;
 using duet::conj;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::vector;
 using rotation = duet::quaternion<double>;
 using dual_quaternion = duet::dual_quaternion<double>;
@@ -58,7 +58,7 @@ std::string message(const std::vector<Q>& q, const std::vector<double>& weights)
 }
 
 double gap_of_poses(const dual_quaternion& a, const dual_quaternion& b) {
-  return std::min(gap(a, b), gap(a, -b));
+  return std::min(max_abs_difference(a, b), max_abs_difference(a, -b));
 }
 
 } // namespace
@@ -84,8 +84,8 @@ TEST_CASE("the equation holds, in rotation and translation") {
     }
     CHECK(duet::real_part(sum).norm() < 1e-15);
     CHECK(duet::dual_part(sum).norm() < 1e-14);
-    CHECK(gap(duet::rotation_matrix(duet::rotation(mean)),
-              duet::rotation_matrix(average(rotations_of(p)))) < 1e-15);
+    CHECK(max_abs_difference(duet::rotation_matrix(duet::rotation(mean)),
+                             duet::rotation_matrix(average(rotations_of(p)))) < 1e-15);
   }
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("pure translations have the mean of the translations") {
   for (const vector& t : {vector(1, 2, 3), vector(-2, 0, 1), vector(4, 4, 2)}) {
     p.push_back(duet::pose(rotation(1.0), t));
   }
-  CHECK(gap(duet::translation(average(p)), vector(1, 2, 2)) < 1e-15);
+  CHECK(max_abs_difference(duet::translation(average(p)), vector(1, 2, 2)) < 1e-15);
 }
 
 TEST_CASE("moving all moves the mean along, from either side") {
@@ -172,10 +172,10 @@ TEST_CASE("derivatives to third order, against 50-digit differences of 50-digit 
     }
     return dual_quaternion(sum * wide(1 / scale));
   };
-  CHECK(gap(d[0], dual_quaternion(at[2])) < 2e-15);
-  CHECK(gap(d[1], difference({1, -8, 0, 8, -1}, wide(12 * h))) < 1e-14);
-  CHECK(gap(d[2], difference({-1, 16, -30, 16, -1}, wide(12 * h * h))) < 1e-13);
-  CHECK(gap(d[3], difference({-1, 2, 0, -2, 1}, wide(2 * h * h * h))) < 1e-12);
+  CHECK(max_abs_difference(d[0], dual_quaternion(at[2])) < 2e-15);
+  CHECK(max_abs_difference(d[1], difference({1, -8, 0, 8, -1}, wide(12 * h))) < 1e-14);
+  CHECK(max_abs_difference(d[2], difference({-1, 16, -30, 16, -1}, wide(12 * h * h))) < 1e-13);
+  CHECK(max_abs_difference(d[3], difference({-1, 2, 0, -2, 1}, wide(2 * h * h * h))) < 1e-12);
 }
 
 TEST_CASE("what has no mean") {

@@ -46,7 +46,7 @@ inline std::vector<pose_type> poses() {
 }
 
 /// The largest difference of the eight components.
-inline double gap(const pose_type& a, const pose_type& b) {
+inline double max_abs_difference(const pose_type& a, const pose_type& b) {
   const pose_type d = a - b;
   double largest = 0;
   for (const auto& part : {duet::real_part(d), duet::dual_part(d)}) {

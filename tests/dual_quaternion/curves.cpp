@@ -22,7 +22,7 @@ using duet::bezier;
 using duet::slerp_arc;
 using duet::squad;
 using duet::squad_control;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::vector;
 using dual_quaternion = duet::dual_quaternion<double>;
 
@@ -61,17 +61,17 @@ TEST_CASE("squad goes through the poses, with one velocity where segments join")
   for (std::size_t i = 1; i + 3 < p.size(); ++i) {
     const auto begin = duet::derivative<duet_test::shared_tag>(segment(i), 0.0);
     const auto end = duet::derivative<duet_test::shared_tag>(segment(i), 1.0);
-    CHECK(gap(begin.value, p[i]) < 2e-15);
-    CHECK(gap(end.value, p[i + 1]) < 4e-15);
-    CHECK(gap(body_twist(end),
-              body_twist(duet::derivative<duet_test::shared_tag>(segment(i + 1), 0.0))) < 4e-14);
+    CHECK(max_abs_difference(begin.value, p[i]) < 2e-15);
+    CHECK(max_abs_difference(end.value, p[i + 1]) < 4e-15);
+    CHECK(max_abs_difference(body_twist(end), body_twist(duet::derivative<duet_test::shared_tag>(
+                                                  segment(i + 1), 0.0))) < 4e-14);
   }
   // The velocity there: the mean of the logarithms to both sides.
   const auto forth = log(conj(p[1]) * p[2]).vec();
   const auto back = log(conj(p[1]) * p[0]).vec();
   const duet::dual_vector<double> mean = forth - back;
-  CHECK(gap(body_twist(duet::derivative<duet_test::shared_tag>(segment(1), 0.0)),
-            duet::twist_of(mean)) < 2e-14);
+  CHECK(max_abs_difference(body_twist(duet::derivative<duet_test::shared_tag>(segment(1), 0.0)),
+                           duet::twist_of(mean)) < 2e-14);
 }
 
 TEST_CASE("Bézier curves start and end along the control polygon, n times as fast") {
@@ -81,18 +81,20 @@ TEST_CASE("Bézier curves start and end along the control polygon, n times as fa
     const auto curve = [&](const auto& tau) { return bezier(points, tau); };
     const auto begin = duet::derivative<duet_test::shared_tag>(curve, 0.0);
     const auto end = duet::derivative<duet_test::shared_tag>(curve, 1.0);
-    CHECK(gap(begin.value, points.front()) < 2e-15);
-    CHECK(gap(end.value, points.back()) < 2e-14);
+    CHECK(max_abs_difference(begin.value, points.front()) < 2e-15);
+    CHECK(max_abs_difference(end.value, points.back()) < 2e-14);
     const auto speed = double(n) * 2.0;
     const duet::dual_vector<double> first = log(conj(points[0]) * points[1]).vec() * speed;
     const duet::dual_vector<double> last = log(conj(points[n - 1]) * points[n]).vec() * speed;
-    CHECK(gap(body_twist(begin), duet::twist_of(first)) < 4e-14);
-    CHECK(gap(body_twist(end), duet::twist_of(last)) < 4e-14);
+    CHECK(max_abs_difference(body_twist(begin), duet::twist_of(first)) < 4e-14);
+    CHECK(max_abs_difference(body_twist(end), duet::twist_of(last)) < 4e-14);
   }
-  CHECK(gap(bezier(std::vector<dual_quaternion>{p[0]}, 0.4), p[0]) == 0);
-  CHECK(gap(bezier(std::array{p[0], p[1], p[2], p[3]}, 0.4),
-            bezier(std::vector<dual_quaternion>(p.begin(), p.begin() + 4), 0.4)) == 0);
-  CHECK(gap(bezier(std::vector<dual_quaternion>{p[0], p[1]}, 0.4), sclerp(p[0], p[1], 0.4)) == 0);
+  CHECK(max_abs_difference(bezier(std::vector<dual_quaternion>{p[0]}, 0.4), p[0]) == 0);
+  CHECK(max_abs_difference(bezier(std::array{p[0], p[1], p[2], p[3]}, 0.4),
+                           bezier(std::vector<dual_quaternion>(p.begin(), p.begin() + 4), 0.4)) ==
+        0);
+  CHECK(max_abs_difference(bezier(std::vector<dual_quaternion>{p[0], p[1]}, 0.4),
+                           sclerp(p[0], p[1], 0.4)) == 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(bezier(std::vector<dual_quaternion>(), 0.4)),
                        "duet: bezier: there are no control points", duet::invalid_input);
 }
@@ -102,7 +104,8 @@ TEST_CASE("third derivatives agree with the slopes of second ones") {
   const auto curve = [&](const auto& tau) { return bezier(p, tau); };
   const auto d = duet::derivatives<3>(curve, 0.4);
   const auto second = [&](const auto& tau) { return duet::derivatives<2>(curve, tau)[2]; };
-  CHECK(gap(d[3], duet::derivative<duet_test::shared_tag>(second, 0.4).derivative) < 4e-12);
+  CHECK(max_abs_difference(d[3], duet::derivative<duet_test::shared_tag>(second, 0.4).derivative) <
+        4e-12);
 }
 
 TEST_CASE("the long way round, the short one, and the one the signs say") {
@@ -112,8 +115,8 @@ TEST_CASE("the long way round, the short one, and the one the signs say") {
     const auto angle = [&](slerp_arc round) {
       const auto d = duet::derivative<duet_test::shared_tag>(
           [&](auto t) { return sclerp(a, goal, t, round); }, 0.0);
-      CHECK(gap(duet::transform_matrix(sclerp(a, goal, 1.0, round)), duet::transform_matrix(b)) <
-            2e-15);
+      CHECK(max_abs_difference(duet::transform_matrix(sclerp(a, goal, 1.0, round)),
+                               duet::transform_matrix(b)) < 2e-15);
       return duet::twist(d.value, d.derivative, duet::frame::body)[5];
     };
     const double long_way = 1 - 2 * 3.141592653589793;
@@ -122,10 +125,10 @@ TEST_CASE("the long way round, the short one, and the one the signs say") {
     CHECK(angle(slerp_arc::as_given) ==
           doctest::Approx(duet::real_part(goal).w() > 0 ? 1.0 : long_way).epsilon(1e-15));
   }
-  CHECK_FALSE(is_half_turn_apart(a, b));
+  CHECK_FALSE(differs_by_half_turn(a, b));
   const auto half_turn = duet::pose(duet::quaternion<double>(0, 0.6, 0.8, 0), vector(1, 2, 3));
-  CHECK(is_half_turn_apart(a, half_turn));
-  CHECK_FALSE(is_half_turn_apart(
+  CHECK(differs_by_half_turn(a, half_turn));
+  CHECK_FALSE(differs_by_half_turn(
       a, duet::pose(duet::from_axis_angle(vector(1, 0, 0), 3.1415926), vector(1, 2, 3))));
 }
 

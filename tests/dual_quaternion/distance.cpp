@@ -20,7 +20,7 @@
 namespace test_dual_quaternion_distance {
 
 using duet::screw_parameters;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::poses;
 using duet_test::vector;
 using dual_quaternion = duet::dual_quaternion<double>;
@@ -216,9 +216,9 @@ TEST_CASE("N21: J2 takes the rate of [t; α] to the spatial twist, and back") {
     duet::vector6<double> v;
     v << 0.3, -1, 0.4, 0.7, 0.2, -0.5;
     const auto gamma = duet::pose_coordinates(a);
-    CHECK(gap(duet::from_pose_coordinates(gamma), a) < 2e-15);
+    CHECK(max_abs_difference(duet::from_pose_coordinates(gamma), a) < 2e-15);
     const auto rate = duet::pose_coordinates_rate(a, v);
-    CHECK(gap(duet::pose_rate_matrix(a) * rate, v) < 1e-14);
+    CHECK(max_abs_difference(duet::pose_rate_matrix(a) * rate, v) < 1e-14);
     // The same by AD: along A exp(½Vt) in spatial axes.
     const auto by_ad = duet::derivative<duet_test::shared_tag>(
         [&](auto t) {
@@ -227,7 +227,7 @@ TEST_CASE("N21: J2 takes the rate of [t; α] to the spatial twist, and back") {
           return duet::pose_coordinates(duet::exp(half) * duet::dual_quaternion<S>(a));
         },
         0.0);
-    CHECK(gap(by_ad.derivative, rate) < 1e-14);
+    CHECK(max_abs_difference(by_ad.derivative, rate) < 1e-14);
   }
 }
 

@@ -22,7 +22,7 @@
 namespace test_dual_quaternion_exponential_jacobian {
 
 using duet::vector6;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::vector;
 using twist = vector6<double>;
 
@@ -66,11 +66,12 @@ TEST_CASE("rates of poses by AD are J_l ẋ in spatial and J_r ẋ in body axes"
         },
         0.0);
     const double size = 1 + x.head<3>().norm();
-    CHECK(gap(duet::left_jacobian(x) * x_dot, duet::twist(a, a_dot, duet::frame::spatial)) <
-          2e-15 * size * size);
-    CHECK(gap(duet::right_jacobian(x) * x_dot, duet::twist(a, a_dot, duet::frame::body)) <
-          2e-15 * size * size);
-    CHECK(gap(duet::left_jacobian(x), duet::Ad(a) * duet::right_jacobian(x)) < 4e-15 * size * size);
+    CHECK(max_abs_difference(duet::left_jacobian(x) * x_dot,
+                             duet::twist(a, a_dot, duet::frame::spatial)) < 2e-15 * size * size);
+    CHECK(max_abs_difference(duet::right_jacobian(x) * x_dot,
+                             duet::twist(a, a_dot, duet::frame::body)) < 2e-15 * size * size);
+    CHECK(max_abs_difference(duet::left_jacobian(x), duet::Ad(a) * duet::right_jacobian(x)) <
+          4e-15 * size * size);
   }
 }
 
@@ -78,14 +79,16 @@ TEST_CASE("inverses") {
   for (const twist& x : twists()) {
     CAPTURE(x.transpose());
     const duet::matrix6<double> one = duet::matrix6<double>::Identity();
-    CHECK(gap(duet::left_jacobian_inverse(x) * duet::left_jacobian(x), one) < 1e-13);
-    CHECK(gap(duet::right_jacobian(x) * duet::right_jacobian_inverse(x), one) < 1e-13);
+    CHECK(max_abs_difference(duet::left_jacobian_inverse(x) * duet::left_jacobian(x), one) < 1e-13);
+    CHECK(max_abs_difference(duet::right_jacobian(x) * duet::right_jacobian_inverse(x), one) <
+          1e-13);
     const vector r = x.tail<3>();
-    CHECK(gap(duet::left_jacobian_inverse(r),
-              duet::left_jacobian_inverse(x).bottomRightCorner<3, 3>()) <=
+    CHECK(max_abs_difference(duet::left_jacobian_inverse(r),
+                             duet::left_jacobian_inverse(x).bottomRightCorner<3, 3>()) <=
           duet_test::if_fused(1e-15));
-    CHECK(gap(duet::right_jacobian(r), duet::left_jacobian(r).transpose()) == 0);
-    CHECK(gap(duet::right_jacobian_inverse(r), duet::left_jacobian_inverse(r).transpose()) == 0);
+    CHECK(max_abs_difference(duet::right_jacobian(r), duet::left_jacobian(r).transpose()) == 0);
+    CHECK(max_abs_difference(duet::right_jacobian_inverse(r),
+                             duet::left_jacobian_inverse(r).transpose()) == 0);
   }
   // At a full turn the inverse does not exist.
   const auto at_full_turn = duet::left_jacobian_inverse(vector(0, 0, 2 * M_PI));
@@ -100,8 +103,8 @@ TEST_CASE("the series in ad(x), as the matrix exponential sums it") {
     m.topLeftCorner<6, 6>() = duet::ad(x);
     m.topRightCorner<6, 6>().setIdentity();
     const Eigen::Matrix<double, 12, 12> e = m.exp();
-    CHECK(gap(duet::left_jacobian(x), e.topRightCorner<6, 6>()) < 2e-13);
-    CHECK(gap(duet::Ad(pose_of(x)), e.topLeftCorner<6, 6>()) < 2e-13);
+    CHECK(max_abs_difference(duet::left_jacobian(x), e.topRightCorner<6, 6>()) < 2e-13);
+    CHECK(max_abs_difference(duet::Ad(pose_of(x)), e.topLeftCorner<6, 6>()) < 2e-13);
   }
 }
 
@@ -134,9 +137,9 @@ TEST_CASE("wrenches: power does not depend on the frame, and coad is the rate of
     CHECK(moved.dot(duet::Ad(a) * v) == doctest::Approx(f.dot(v)).epsilon(1e-14));
     // The force turns along, its moment about the origin grows by t × f.
     const vector force = duet::rotate(duet::rotation(a), vector(f.head<3>()));
-    CHECK(gap(moved.head<3>(), force) < 1e-14);
+    CHECK(max_abs_difference(moved.head<3>(), force) < 1e-14);
     const vector moment = duet::rotate(duet::rotation(a), vector(f.tail<3>()));
-    CHECK(gap(moved.tail<3>(), moment + duet::translation(a).cross(force)) < 4e-14);
+    CHECK(max_abs_difference(moved.tail<3>(), moment + duet::translation(a).cross(force)) < 4e-14);
   }
   const twist v = make_twist(vector(0.7, -0.4, 0.2), vector(-0.3, 0.5, 0.9));
   const auto rate = duet::derivative<duet_test::shared_tag>(
@@ -145,7 +148,7 @@ TEST_CASE("wrenches: power does not depend on the frame, and coad is the rate of
         return duet::coAd(pose_of<S>(v.cast<S>() * t));
       },
       0.0);
-  CHECK(gap(rate.derivative, duet::coad(v)) < 1e-15);
+  CHECK(max_abs_difference(rate.derivative, duet::coad(v)) < 1e-15);
 }
 
 } // namespace test_dual_quaternion_exponential_jacobian

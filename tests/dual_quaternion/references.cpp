@@ -23,7 +23,7 @@
 
 namespace test_dual_quaternion_references {
 
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::poses;
 using duet_test::vector;
 using dual_quaternion = duet::dual_quaternion<double>;
@@ -61,10 +61,10 @@ TEST_CASE("exp and log are those of 4×4 matrices") {
     const Eigen::Matrix4d m = matrix_of(x).exp();
     const double size = 1 + x.norm();
     const double rounding = duet_test::if_fused(1e-15 * amplification(a));
-    CHECK(gap(m, duet::transform_matrix(a)) < 4e-15 * size + rounding);
+    CHECK(max_abs_difference(m, duet::transform_matrix(a)) < 4e-15 * size + rounding);
     if (x.tail<3>().norm() < 3) { // the principal logarithm
       const Eigen::Matrix4d back = duet::transform_matrix(a).log();
-      CHECK(gap(back, matrix_of(x)) < 4e-14 * size);
+      CHECK(max_abs_difference(back, matrix_of(x)) < 4e-14 * size);
     }
   }
 }
@@ -106,7 +106,7 @@ TEST_CASE("Ȧ = ½ V A and q̇ = ½ ω q, integrated") {
   // A constant spatial twist is one screw motion.
   const auto expected =
       duet::exp(duet::dual_vector<double>(duet::dual_vector_of(v) * (1.7 / 2))) * start;
-  CHECK(gap(pose_of(s), expected) < 1e-11);
+  CHECK(max_abs_difference(pose_of(s), expected) < 1e-11);
   // Its real part has integrated q̇ = ½ ω q.
   const auto turned = duet::exp(duet::vector3<double>(v.tail<3>() * (1.7 / 2))) * p;
   CHECK(size_of(duet::real_part(pose_of(s)) - turned) < 1e-11);

@@ -21,7 +21,7 @@ using duet::Ad;
 using duet::ad;
 using duet::twist;
 using duet::vector6;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::poses;
 using duet_test::vector;
 namespace frame = duet::frame;
@@ -52,39 +52,41 @@ TEST_CASE("twists of a moving pose, from the motion of its parts") {
   const auto R = duet::rotation_matrix(duet::rotation(pose));
   vector6<double> expected;
   expected << velocity + place.cross(w), w;
-  CHECK(gap(twist(pose, rate, frame::spatial), expected) < 1e-14);
+  CHECK(max_abs_difference(twist(pose, rate, frame::spatial), expected) < 1e-14);
   expected << R.transpose() * velocity, R.transpose() * w;
-  CHECK(gap(twist(pose, rate, frame::body), expected) < 1e-14);
+  CHECK(max_abs_difference(twist(pose, rate, frame::body), expected) < 1e-14);
   expected << velocity, w;
-  CHECK(gap(twist(pose, rate, frame::hybrid), expected) < 1e-14);
+  CHECK(max_abs_difference(twist(pose, rate, frame::hybrid), expected) < 1e-14);
 }
 
 TEST_CASE("pose_rate undoes twist, Ad changes the frame") {
   for (const auto& a : poses()) {
     const auto rate = duet::pose_rate(a, v_body, frame::body);
-    CHECK(gap(twist(a, rate, frame::body), v_body) < 1e-14);
+    CHECK(max_abs_difference(twist(a, rate, frame::body), v_body) < 1e-14);
     const vector6<double> v_spatial = twist(a, rate, frame::spatial);
-    CHECK(gap(v_spatial, Ad(a) * v_body) < 4e-14);
-    CHECK(gap(duet::pose_rate(a, v_spatial, frame::spatial), rate) < 4e-14);
-    CHECK(gap(duet::pose_rate(a, twist(a, rate, frame::hybrid), frame::hybrid), rate) < 4e-14);
+    CHECK(max_abs_difference(v_spatial, Ad(a) * v_body) < 4e-14);
+    CHECK(max_abs_difference(duet::pose_rate(a, v_spatial, frame::spatial), rate) < 4e-14);
+    CHECK(max_abs_difference(duet::pose_rate(a, twist(a, rate, frame::hybrid), frame::hybrid),
+                             rate) < 4e-14);
     // Twists are lines with a pitch: Ad is A V A*.
-    CHECK(gap(duet::twist_of(duet::transform_line(a, duet::dual_vector_of(v_body))), v_spatial) <
-          4e-14);
+    CHECK(max_abs_difference(duet::twist_of(duet::transform_line(a, duet::dual_vector_of(v_body))),
+                             v_spatial) < 4e-14);
   }
 }
 
 TEST_CASE("Ad is a homomorphism, ad its derivative and the Lie bracket") {
   const auto all = poses();
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
-    CHECK(gap(Ad(all[i] * all[i + 1]), Ad(all[i]) * Ad(all[i + 1])) < 4e-14);
+    CHECK(max_abs_difference(Ad(all[i] * all[i + 1]), Ad(all[i]) * Ad(all[i + 1])) < 4e-14);
   }
   const vector6<double> w = (vector6<double>() << 1, 0.4, -0.3, -0.8, 0.1, 0.6).finished();
   const auto moved = [&](auto t) {
     const auto step = exp((duet::dual_vector_of(v_body) * (t / 2)).eval());
     return (Ad(step) * w).eval();
   };
-  CHECK(gap(duet::derivative<duet_test::shared_tag>(moved, 0).derivative, ad(v_body) * w) < 1e-15);
-  CHECK(gap(ad(v_body) * w, -(ad(w) * v_body)) < 1e-15);
+  CHECK(max_abs_difference(duet::derivative<duet_test::shared_tag>(moved, 0).derivative,
+                           ad(v_body) * w) < 1e-15);
+  CHECK(max_abs_difference(ad(v_body) * w, -(ad(w) * v_body)) < 1e-15);
 }
 
 TEST_CASE("Jacobians of and into poses") {
@@ -97,13 +99,15 @@ TEST_CASE("Jacobians of and into poses") {
     for (int j = 0; j < 3; ++j) {
       expected.col(3 + j) = R * vector(vector::Unit(j)).cross(point);
     }
-    CHECK(gap(body, expected) < 1e-14);
-    CHECK(gap(duet::jacobian<duet_test::shared_tag>(place, a, frame::spatial).jacobian * Ad(a),
+    CHECK(max_abs_difference(body, expected) < 1e-14);
+    CHECK(max_abs_difference(
+              duet::jacobian<duet_test::shared_tag>(place, a, frame::spatial).jacobian * Ad(a),
               body) < 4e-14);
 
     const auto inverse = [](const auto& x) { return conj(x); };
-    CHECK(gap(duet::jacobian<duet_test::shared_tag>(inverse, a, frame::body).jacobian, -Ad(a)) <
-          1e-14);
+    CHECK(
+        max_abs_difference(duet::jacobian<duet_test::shared_tag>(inverse, a, frame::body).jacobian,
+                           -Ad(a)) < 1e-14);
   }
 }
 
@@ -121,20 +125,22 @@ TEST_CASE("Jacobians of and into poses whose origins move apart from their rotat
     const duet::matrix3<double> zero = duet::matrix3<double>::Zero();
 
     const auto place = [](const auto& x) { return duet::transform_point(x, point); };
-    CHECK(gap(duet::jacobian<duet_test::shared_tag>(place, a, frame::hybrid).jacobian,
-              with_turn(one, -hat(R * point))) < 1e-14);
+    CHECK(
+        max_abs_difference(duet::jacobian<duet_test::shared_tag>(place, a, frame::hybrid).jacobian,
+                           with_turn(one, -hat(R * point))) < 1e-14);
 
     const auto same = [](const auto& x) { return x; };
     const auto [value, J] = duet::jacobian<duet_test::shared_tag>(same, a, frame::hybrid);
     CHECK(value == a);
-    CHECK(gap(J, duet::matrix6<double>::Identity()) < 4e-14);
+    CHECK(max_abs_difference(J, duet::matrix6<double>::Identity()) < 4e-14);
 
     // (R, t) ↦ (Rᵀ, −Rᵀt)
     const auto inverse = [](const auto& x) { return conj(x); };
     const auto of_inverse =
         duet::jacobian<duet_test::shared_tag>(inverse, a, frame::hybrid).jacobian;
-    CHECK(gap(of_inverse.topRows<3>(), with_turn(-R.transpose(), -R.transpose() * hat(t))) < 4e-14);
-    CHECK(gap(of_inverse.bottomRows<3>(), with_turn(zero, -R.transpose())) < 1e-14);
+    CHECK(max_abs_difference(of_inverse.topRows<3>(),
+                             with_turn(-R.transpose(), -R.transpose() * hat(t))) < 4e-14);
+    CHECK(max_abs_difference(of_inverse.bottomRows<3>(), with_turn(zero, -R.transpose())) < 1e-14);
   }
 }
 
@@ -147,10 +153,11 @@ TEST_CASE("a pose, a rotation and a number in the hybrid frame") {
   const auto J =
       duet::jacobian<duet_test::shared_tag>(f, std::tuple(a, q, 2.0), frame::hybrid).jacobian;
   const vector turned = duet::rotate(q * duet::rotation(a), point);
-  CHECK(gap(J.leftCols<3>(), duet::matrix3<double>::Identity()) < 1e-15);
-  CHECK(gap(J.middleCols<3>(3), -2 * hat(turned) * duet::rotation_matrix(q)) < 4e-14);
-  CHECK(gap(J.middleCols<3>(6), -2 * hat(turned)) < 4e-14);
-  CHECK(gap(J.col(9), turned) < 1e-14);
+  CHECK(max_abs_difference(J.leftCols<3>(), duet::matrix3<double>::Identity()) < 1e-15);
+  CHECK(max_abs_difference(J.middleCols<3>(3), -2 * hat(turned) * duet::rotation_matrix(q)) <
+        4e-14);
+  CHECK(max_abs_difference(J.middleCols<3>(6), -2 * hat(turned)) < 4e-14);
+  CHECK(max_abs_difference(J.col(9), turned) < 1e-14);
 }
 
 TEST_CASE("gradients and Hessians by poses: half the squared distance of a point") {
@@ -165,9 +172,9 @@ TEST_CASE("gradients and Hessians by poses: half the squared distance of a point
     const double scale = 1 + d.squaredNorm();
     vector6<double> slope;
     slope << d, r.cross(d);
-    CHECK(gap(g, slope) < 1e-14 * scale);
-    CHECK(gap(duet::gradient<duet_test::shared_tag>(f, a, frame::hybrid).gradient, slope) <
-          1e-14 * scale);
+    CHECK(max_abs_difference(g, slope) < 1e-14 * scale);
+    CHECK(max_abs_difference(duet::gradient<duet_test::shared_tag>(f, a, frame::hybrid).gradient,
+                             slope) < 1e-14 * scale);
     // ½|d + v + ω × r + ½ ω × (ω × r)|² to second order
     duet::matrix6<double> expected;
     expected.topLeftCorner<3, 3>().setIdentity();
@@ -176,11 +183,11 @@ TEST_CASE("gradients and Hessians by poses: half the squared distance of a point
     expected.bottomRightCorner<3, 3>() = hat(r).transpose() * hat(r) +
                                          (d * r.transpose() + r * d.transpose()) / 2 -
                                          r.dot(d) * duet::matrix3<double>::Identity();
-    CHECK(gap(H, expected) < 1e-14 * scale);
+    CHECK(max_abs_difference(H, expected) < 1e-14 * scale);
     // Along screws: one form in two axes.
     const duet::matrix6<double> spatial = duet::hessian(f, a, frame::spatial).hessian;
-    CHECK(gap(Ad(a).transpose() * spatial * Ad(a), duet::hessian(f, a, frame::body).hessian) <
-          1e-13 * scale * scale);
+    CHECK(max_abs_difference(Ad(a).transpose() * spatial * Ad(a),
+                             duet::hessian(f, a, frame::body).hessian) < 1e-13 * scale * scale);
   }
 }
 
@@ -193,8 +200,10 @@ TEST_CASE("a pose far from the origin, moved in the hybrid frame, is itself") {
   const vector6<double> much = (vector6<double>() << 1, 2, 3, 2.5, -0.4, 1.3).finished();
   for (const auto& b : poses()) {
     const auto moved = duet::manifold<duet::dual_quaternion<double>>::plus(b, much, frame::hybrid);
-    CHECK(gap(duet::translation(moved), duet::translation(b) + vector(1, 2, 3)) < 4e-15);
-    CHECK(gap(duet::rotation_matrix(duet::rotation(moved)),
+    CHECK(max_abs_difference(duet::translation(moved), duet::translation(b) + vector(1, 2, 3)) <
+          4e-15);
+    CHECK(max_abs_difference(
+              duet::rotation_matrix(duet::rotation(moved)),
               duet::rotation_matrix(duet::from_rotation_vector(vector(2.5, -0.4, 1.3)) *
                                     duet::rotation(b))) < 4e-15);
   }
@@ -219,7 +228,8 @@ TEST_CASE("accelerations: the classical one is not the derivative of the spatial
         1e-15);
   const auto classical =
       duet::derivative<duet_test::shared_tag>(twists(frame::hybrid), t).derivative;
-  CHECK(gap(classical.head<3>(), vector(-2 * std::cos(t), -2 * std::sin(t), 0)) < 1e-15);
+  CHECK(max_abs_difference(classical.head<3>(), vector(-2 * std::cos(t), -2 * std::sin(t), 0)) <
+        1e-15);
 }
 
 } // namespace test_dual_quaternion_twist

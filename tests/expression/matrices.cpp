@@ -24,7 +24,7 @@ namespace test_expression_matrices {
 namespace {
 
 using namespace duet::expression;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using matrix2 = Eigen::Matrix2d;
 using matrix3 = Eigen::Matrix3d;
 using matrix4 = Eigen::Matrix4d;
@@ -48,7 +48,7 @@ constexpr bool have_same_node(const A&, const B&) {
 double distance(double a, double b) { return std::abs(a - b); }
 template <class A, class B>
 double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
-  return gap(a, b);
+  return max_abs_difference(a, b);
 }
 
 /// A matrix that is as good as any, and regular.
@@ -98,14 +98,15 @@ TEST_CASE("matrix operations: expression derivatives are dual derivatives") {
 TEST_CASE("closed forms") {
   const matrix2 A0 = some_matrix<2, 2>(0.3), B0 = some_matrix<2, 2>(1), inverse0 = A0.inverse();
   const auto path = A + u * B;
-  CHECK(gap(derivative(inverse(path), u)(u = 0.0, A = A0, B = B0), -inverse0 * B0 * inverse0) <
-        1e-14);
+  CHECK(max_abs_difference(derivative(inverse(path), u)(u = 0.0, A = A0, B = B0),
+                           -inverse0 * B0 * inverse0) < 1e-14);
   CHECK(distance(derivative(determinant(path), u)(u = 0.0, A = A0, B = B0),
                  A0.determinant() * (inverse0 * B0).trace()) < 1e-14);
   const auto along_B = directional_derivative(solve(A, C), along(A, B));
   const matrix23 C0 = some_matrix<2, 3>(2);
-  CHECK(gap(along_B(A = A0, B = B0, C = C0), -inverse0 * B0 * inverse0 * C0) < 1e-14);
-  CHECK(gap(adjugate(A)(A = A0), A0.determinant() * inverse0) < 1e-14);
+  CHECK(max_abs_difference(along_B(A = A0, B = B0, C = C0), -inverse0 * B0 * inverse0 * C0) <
+        1e-14);
+  CHECK(max_abs_difference(adjugate(A)(A = A0), A0.determinant() * inverse0) < 1e-14);
 
   // What has no inverse has a determinant, and derivatives of it.
   const matrix2 singular = (matrix2() << 1, 2, 2, 4).finished();
@@ -117,7 +118,8 @@ TEST_CASE("closed forms") {
   const matrix6 large = some_matrix<6, 6>(0.5);
   constexpr matrix_symbol<"L", 6, 6> L;
   CHECK(determinant(L)(L = large) == doctest::Approx(large.determinant()).epsilon(1e-13));
-  CHECK(gap((L * adjugate(L) / determinant(L))(L = large), matrix6::Identity()) < 1e-13);
+  CHECK(max_abs_difference((L * adjugate(L) / determinant(L))(L = large), matrix6::Identity()) <
+        1e-13);
 }
 
 TEST_CASE("rotations as matrices") {
@@ -127,11 +129,11 @@ TEST_CASE("rotations as matrices") {
   const auto at = [&](const auto& f, const auto& t) { return f(u = t, q = q0, w = w0); };
   const auto f = rotation_matrix(turning);
   const auto expected = duet::derivative<struct by_u>([&](auto t) { return at(f, t); }, 0.7);
-  CHECK(gap(at(derivative(f, u), 0.7), expected.derivative) < 2e-15);
-  CHECK(gap(at(f * w, 0.7), at(rotate(turning, w), 0.7)) < 1e-15);
-  CHECK(gap(at(transpose(f) * f, 0.7), matrix3::Identity()) < 1e-15);
-  CHECK(gap(at(skew(w) * rotate(q, w) + u * w - u * w, 0.7), w0.cross(duet::rotate(q0, w0))) <
-        1e-16);
+  CHECK(max_abs_difference(at(derivative(f, u), 0.7), expected.derivative) < 2e-15);
+  CHECK(max_abs_difference(at(f * w, 0.7), at(rotate(turning, w), 0.7)) < 1e-15);
+  CHECK(max_abs_difference(at(transpose(f) * f, 0.7), matrix3::Identity()) < 1e-15);
+  CHECK(max_abs_difference(at(skew(w) * rotate(q, w) + u * w - u * w, 0.7),
+                           w0.cross(duet::rotate(q0, w0))) < 1e-16);
 }
 
 TEST_CASE("kinds of matrices, and what is known of zeros") {

@@ -19,7 +19,7 @@ namespace test_expression_matrix_gradients {
 namespace {
 
 using namespace duet::expression;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using matrix2 = Eigen::Matrix2d;
 using matrix3 = Eigen::Matrix3d;
 
@@ -53,52 +53,54 @@ TEST_CASE("gradients and Hessians by vectors and by the entries of a matrix, col
   const Eigen::Vector4d x0(0.1, -0.7, 1.3, 0.4);
   const auto form = hessian(transpose(x) * M * x, wrt(x))(x = x0);
   CHECK(form.value == doctest::Approx(x0.dot(M * x0)));
-  CHECK(gap(form.gradient, (M + M.transpose()) * x0) < 1e-14);
-  CHECK(gap(form.hessian, M + M.transpose()) == 0);
+  CHECK(max_abs_difference(form.gradient, (M + M.transpose()) * x0) < 1e-14);
+  CHECK(max_abs_difference(form.hessian, M + M.transpose()) == 0);
 
   const auto by_A = gradient(transpose(w) * A * w, wrt(w, A))(A = A0, w = w0).gradient;
-  CHECK(gap(by_A.head<3>(), (A0 + A0.transpose()) * w0) < 1e-15);
-  CHECK(gap(by_A.tail<9>(), matrix3(w0 * w0.transpose()).reshaped()) < 1e-15);
+  CHECK(max_abs_difference(by_A.head<3>(), (A0 + A0.transpose()) * w0) < 1e-15);
+  CHECK(max_abs_difference(by_A.tail<9>(), matrix3(w0 * w0.transpose()).reshaped()) < 1e-15);
 
   // det A by duals, and its gradient by cofactors.
   const auto det = hessian(determinant(A), wrt(A))(A = A0);
   const auto expected = duet::hessian([](const auto& a) { return a.reshaped(3, 3).determinant(); },
                                       Eigen::Matrix<double, 9, 1>(A0.reshaped()));
   CHECK(det.value == doctest::Approx(expected.value).epsilon(1e-15));
-  CHECK(gap(det.gradient, expected.gradient) < 1e-14);
-  CHECK(gap(det.hessian, expected.hessian) < 1e-14);
+  CHECK(max_abs_difference(det.gradient, expected.gradient) < 1e-14);
+  CHECK(max_abs_difference(det.hessian, expected.hessian) < 1e-14);
   const matrix3 cofactors = A0.determinant() * A0.inverse().transpose();
-  CHECK(gap(det.gradient, cofactors.reshaped()) < 1e-14);
+  CHECK(max_abs_difference(det.gradient, cofactors.reshaped()) < 1e-14);
 }
 
 TEST_CASE("Jacobians by the entries of a matrix") {
   const matrix3 one = matrix3::Identity();
   const auto [y, J] = jacobian(A * w, wrt(A, w))(A = A0, w = w0);
-  CHECK(gap(y, A0 * w0) < 1e-15);
-  CHECK(gap(J.leftCols<9>(), kronecker(w0.transpose(), one)) == 0);
-  CHECK(gap(J.rightCols<3>(), A0) == 0);
+  CHECK(max_abs_difference(y, A0 * w0) < 1e-15);
+  CHECK(max_abs_difference(J.leftCols<9>(), kronecker(w0.transpose(), one)) == 0);
+  CHECK(max_abs_difference(J.rightCols<3>(), A0) == 0);
 
   const matrix3 inverse0 = A0.inverse();
-  CHECK(gap(jacobian(inverse(A), wrt(A))(A = A0).jacobian,
-            -kronecker(inverse0.transpose(), inverse0)) < 1e-14);
+  CHECK(max_abs_difference(jacobian(inverse(A), wrt(A))(A = A0).jacobian,
+                           -kronecker(inverse0.transpose(), inverse0)) < 1e-14);
   const auto [z, S] = jacobian(solve(A, w), wrt(A, w))(A = A0, w = w0);
-  CHECK(gap(S.leftCols<9>(), -kronecker(z.transpose(), inverse0)) < 1e-14);
-  CHECK(gap(S.rightCols<3>(), inverse0) < 1e-15);
+  CHECK(max_abs_difference(S.leftCols<9>(), -kronecker(z.transpose(), inverse0)) < 1e-14);
+  CHECK(max_abs_difference(S.rightCols<3>(), inverse0) < 1e-15);
 
   const Eigen::Matrix<double, 2, 3> C0 = A0.topRows<2>();
   const auto K = jacobian(B * C * A, wrt(B, C))(A = A0, B = B0, C = C0).jacobian;
-  CHECK(gap(K.leftCols<4>(), kronecker((C0 * A0).transpose(), matrix2(matrix2::Identity()))) <
-        1e-15);
-  CHECK(gap(K.rightCols<6>(), kronecker(A0.transpose(), B0)) < 1e-15);
+  CHECK(max_abs_difference(K.leftCols<4>(),
+                           kronecker((C0 * A0).transpose(), matrix2(matrix2::Identity()))) < 1e-15);
+  CHECK(max_abs_difference(K.rightCols<6>(), kronecker(A0.transpose(), B0)) < 1e-15);
   const auto by_entry = jacobian(row<1>(C * A) / entry<0, 1>(B), wrt(B))(A = A0, B = B0, C = C0);
-  CHECK(gap(by_entry.jacobian.col(2), -by_entry.value.transpose() / B0(0, 1)) < 1e-15);
+  CHECK(max_abs_difference(by_entry.jacobian.col(2), -by_entry.value.transpose() / B0(0, 1)) <
+        1e-15);
 
   const auto q0 = duet::exp(duet::vector3<double>(-0.4, 0.1, 0.9));
   const auto R = jacobian(rotation_matrix(q), wrt(q), duet::frame::spatial)(q = q0);
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = one.col(i);
     for (int j = 0; j < 3; ++j) {
-      CHECK(gap(R.jacobian.block<3, 1>(3 * j, i), axis.cross(R.value.col(j))) < 1e-15);
+      CHECK(max_abs_difference(R.jacobian.block<3, 1>(3 * j, i), axis.cross(R.value.col(j))) <
+            1e-15);
     }
   }
 }

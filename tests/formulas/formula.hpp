@@ -56,7 +56,7 @@ struct formula {
 
   /// Value and first derivative along a direction, in a row.
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> closed;
-  std::function<numbers<wide>(const numbers<wide>&, const numbers<wide>&)> truth;
+  std::function<numbers<wide>(const numbers<wide>&, const numbers<wide>&)> reference;
   /// The same by duet over duals; over Taylor numbers and nested duals the second derivative too.
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> dual;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> taylor;
@@ -126,7 +126,7 @@ formula make_formula(std::string label, std::string text, std::string function, 
   using second = duet::dual<first, 1, duet::derivative_tag<struct outer>>;
   using series = duet::taylor<double, 2>;
   f.closed = [closed](const numbers<double>& x, const numbers<double>& d) { return closed(x, d); };
-  f.truth = [closed](const numbers<wide>& x, const numbers<wide>& d) { return closed(x, d); };
+  f.reference = [closed](const numbers<wide>& x, const numbers<wide>& d) { return closed(x, d); };
   f.dual = [library](const numbers<double>& x, const numbers<double>& d) {
     numbers<first> s;
     for (std::size_t i = 0; i < x.size(); ++i) {

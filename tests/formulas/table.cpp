@@ -106,7 +106,7 @@ struct exact_values {
   exact_values(const formula& f, const numbers<double>& x_double, const numbers<double>& d_double) {
     const numbers<wide> x = widened(x_double);
     const numbers<wide> d = widened(d_double);
-    values = f.truth(x, d);
+    values = f.reference(x, d);
     size = values.size() / 2;
     const numbers<wide> second = second_derivative(f, x, d);
     values.insert(values.end(), second.begin(), second.end());
@@ -122,7 +122,7 @@ struct exact_values {
       }
       numbers<wide> moved = x;
       moved[i] *= 1 + step;
-      numbers<wide> y = f.truth(moved, d);
+      numbers<wide> y = f.reference(moved, d);
       const numbers<wide> s = second_derivative(f, moved, d);
       y.insert(y.end(), s.begin(), s.end());
       for (std::size_t j = 0; j < y.size(); ++j) {
@@ -163,8 +163,8 @@ private:
       forth[i] += h * d[i];
       back[i] -= h * d[i];
     }
-    const numbers<wide> a = f.truth(forth, d);
-    const numbers<wide> b = f.truth(back, d);
+    const numbers<wide> a = f.reference(forth, d);
+    const numbers<wide> b = f.reference(back, d);
     numbers<wide> result;
     for (std::size_t i = a.size() / 2; i < a.size(); ++i) {
       result.push_back((a[i] - b[i]) / (2 * h));

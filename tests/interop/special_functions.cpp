@@ -43,19 +43,19 @@ void check(const char* name, F f, Standard standard, Exact exact, std::initializ
   for (const double x : at) {
     const auto y = f(duet::taylor<double, 3>::variable(x));
     const R length = R(0.3);
-    std::array<R, 5> truth;
-    truth[0] = exact(R(x));
+    std::array<R, 5> reference;
+    reference[0] = exact(R(x));
     for (std::size_t k = 1; k < 5; ++k) {
-      truth[k] = central_difference(exact, R(x), int(k), length);
+      reference[k] = central_difference(exact, R(x), int(k), length);
     }
     CHECK_MESSAGE(std::abs(y.value() - standard(x)) <= 1e-13 * (std::abs(standard(x)) + 1), name);
     for (std::size_t k = 0; k <= 3; ++k) {
-      if (abs(truth[k]) < 1e-25) { // 0 but for what a difference makes of it
+      if (abs(reference[k]) < 1e-25) { // 0 but for what a difference makes of it
         CHECK_MESSAGE(std::abs(y.derivative(int(k))) <= 1e-14, name);
         continue;
       }
-      const R scale = abs(truth[k]) + abs(R(truth[k + 1] * x));
-      worst.add(duet_test::ulps(y.derivative(int(k)), truth[k], scale), k, x);
+      const R scale = abs(reference[k]) + abs(R(reference[k + 1] * x));
+      worst.add(duet_test::ulps(y.derivative(int(k)), reference[k], scale), k, x);
     }
   }
   CHECK_MESSAGE(worst <= limit, worst);

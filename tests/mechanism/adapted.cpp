@@ -27,7 +27,7 @@ namespace test_mechanism_adapted {
 namespace {
 
 using namespace duet;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 const auto base =
     pose(from_rotation_vector(Eigen::Vector3d(.4, -1.2, 2)), Eigen::Vector3d(.3, -.7, 1.1));
@@ -71,21 +71,21 @@ TEST_CASE("tools and bases: poses, links and Jacobians") {
     static_assert(std::is_same_v<decltype(standing), const std::decay_t<decltype(arm)>>);
     const auto both = with_tool(standing, tool);
     for (const auto& theta : duet_test::configurations(arm, 5)) {
-      CHECK(gap(transform_matrix(equipped.pose(theta)), transform_matrix(arm.pose(theta) * tool)) <
-            4e-15);
-      CHECK(gap(transform_matrix(standing.pose(theta)), transform_matrix(base * arm.pose(theta))) <
-            8e-15);
+      CHECK(max_abs_difference(transform_matrix(equipped.pose(theta)),
+                               transform_matrix(arm.pose(theta) * tool)) < 4e-15);
+      CHECK(max_abs_difference(transform_matrix(standing.pose(theta)),
+                               transform_matrix(base * arm.pose(theta))) < 8e-15);
       for (int i = 1; i <= arm.size(); ++i) {
-        CHECK(gap(transform_matrix(equipped.pose(theta, i)),
-                  transform_matrix(arm.pose(theta, i))) == 0);
-        CHECK(gap(transform_matrix(standing.pose(theta, i)),
-                  transform_matrix(base * arm.pose(theta, i))) < 8e-15);
+        CHECK(max_abs_difference(transform_matrix(equipped.pose(theta, i)),
+                                 transform_matrix(arm.pose(theta, i))) == 0);
+        CHECK(max_abs_difference(transform_matrix(standing.pose(theta, i)),
+                                 transform_matrix(base * arm.pose(theta, i))) < 8e-15);
       }
       CHECK(transform_matrix(standing.pose(theta, 0)) == Eigen::Matrix4d::Identity());
       duet_test::for_each_frame([&](auto frame) {
         const auto by_duals = jacobian<duet_test::shared_tag>(
             [&](const auto& x) { return base * arm.pose(x) * tool; }, theta, frame);
-        CHECK(gap(jacobian(both, theta, frame), by_duals.jacobian) < 4e-14);
+        CHECK(max_abs_difference(jacobian(both, theta, frame), by_duals.jacobian) < 4e-14);
       });
     }
     CHECK(lower_limits(both) == lower_limits(arm));
@@ -103,10 +103,12 @@ TEST_CASE("locked joints: what is left moves as before") {
         const auto locked = with_locked_joint(arm, i, theta[i]);
         static_assert(std::is_same_v<decltype(locked), const serial_chain<n - 1>>);
         const auto rest = without<n>(theta, i);
-        CHECK(gap(transform_matrix(locked.pose(rest)), transform_matrix(arm.pose(theta))) < 8e-15);
+        CHECK(max_abs_difference(transform_matrix(locked.pose(rest)),
+                                 transform_matrix(arm.pose(theta))) < 8e-15);
         for (int link = 0; link < n; ++link) {
-          CHECK(gap(transform_matrix(locked.pose(rest, link)),
-                    transform_matrix(arm.pose(theta, link <= i ? link : link + 1))) < 8e-15);
+          CHECK(max_abs_difference(transform_matrix(locked.pose(rest, link)),
+                                   transform_matrix(arm.pose(theta, link <= i ? link : link + 1))) <
+                8e-15);
           if (link != i) {
             CHECK(locked.limits(link - (link > i)).lower == arm.limits(link).lower);
             CHECK(locked.kind(link - (link > i)) == arm.kind(link));
@@ -116,7 +118,7 @@ TEST_CASE("locked joints: what is left moves as before") {
           const auto all = jacobian(arm, theta, frame);
           Eigen::Matrix<double, 6, n - 1> expected;
           expected << all.leftCols(i), all.rightCols(n - 1 - i);
-          CHECK(gap(jacobian(locked, rest, frame), expected) < 2e-14);
+          CHECK(max_abs_difference(jacobian(locked, rest, frame), expected) < 2e-14);
         });
       }
     }
@@ -138,15 +140,17 @@ TEST_CASE("chains that the compiler knows: what is made of them it knows, too") 
   static_assert(std::is_same_v<decltype(hanging), const serial_chain<7>>);
   const Eigen::Matrix<double, 7, 1> theta(.3, -.7, .5, -2.3, .2, 1.6, .8);
   const auto expected = arm.pose(theta) * pose(quaternion<double>(1), Eigen::Vector3d(0, 0, .1));
-  CHECK(gap(transform_matrix(six.pose(without<7>(theta, 2))), transform_matrix(expected)) < 4e-15);
-  CHECK(gap(translation(hanging.pose(theta)),
+  CHECK(max_abs_difference(transform_matrix(six.pose(without<7>(theta, 2))),
+                           transform_matrix(expected)) < 4e-15);
+  CHECK(max_abs_difference(
+            translation(hanging.pose(theta)),
             Eigen::Vector3d(
                 Eigen::Vector3d(0, 0, 2) +
                 translation(arm.pose(theta)).cwiseProduct(Eigen::Vector3d(1, -1, -1)))) < 4e-15);
   // To the end: the goal of the tool is the tool's.
   const auto found = inverse_kinematics(six, expected, Eigen::Matrix<double, 6, 1>::Zero().eval());
   CHECK(found.reason == stop_reason::reached);
-  CHECK(gap(translation(six.pose(found.joints)), translation(expected)) < 1e-6);
+  CHECK(max_abs_difference(translation(six.pose(found.joints)), translation(expected)) < 1e-6);
 }
 
 TEST_CASE("to fifty digits") {
@@ -187,8 +191,8 @@ TEST_CASE("a chain from a file keeps names, and its links are where they were") 
     REQUIRE(changed.links().size() == chain.links().size());
     for (const urdf_link& each : chain.links()) {
       const auto expected = before * chain.pose(theta, each.frame);
-      CHECK(gap(transform_matrix(changed.pose(rest, changed.link(each.name))),
-                transform_matrix(expected)) < 4e-15);
+      CHECK(max_abs_difference(transform_matrix(changed.pose(rest, changed.link(each.name))),
+                               transform_matrix(expected)) < 4e-15);
     }
   };
   const dual_quaternion<double> none(1);
@@ -199,8 +203,8 @@ TEST_CASE("a chain from a file keeps names, and its links are where they were") 
   check(with_locked_joint(chain, 2, .8), {.3, -.6}, none);
   check(with_base(with_locked_joint(with_locked_joint(chain, 2, .8), "slide", .3), base), {-.6},
         base);
-  CHECK(gap(transform_matrix(with_tool(chain, tool).pose(theta)),
-            transform_matrix(chain.pose(theta) * tool)) < 4e-15);
+  CHECK(max_abs_difference(transform_matrix(with_tool(chain, tool).pose(theta)),
+                           transform_matrix(chain.pose(theta) * tool)) < 4e-15);
   const auto locked = with_locked_joint(chain, "shoulder", -.6);
   CHECK(locked.joint_names() == std::vector<std::string>{"slide", "elbow"});
   const auto still = with_locked_joint(with_locked_joint(locked, 1, .8), 0, .3);

@@ -12,7 +12,7 @@ namespace test_mechanism_analytic_jacobian {
 namespace {
 
 using namespace duet;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 template <euler_sequence Sequence, class Chain, class X>
 void check_euler(const Chain& arm, const X& theta) {
@@ -28,7 +28,7 @@ void check_euler(const Chain& arm, const X& theta) {
   // Towards gimbal lock both grow, and so do their errors.
   const double size = std::max(1.0, by_duals.cwiseAbs().maxCoeff());
   CAPTURE(size);
-  CHECK(gap(closed, by_duals) < 1e-13 * size * size);
+  CHECK(max_abs_difference(closed, by_duals) < 1e-13 * size * size);
 }
 
 template <class Chain>
@@ -63,9 +63,9 @@ TEST_CASE("N20, N21: ∂γ/∂θ against dual numbers, and J2 of it is the spati
             jacobian<duet_test::shared_tag>(
                 [&](const auto& x) { return pose_coordinates(arm.pose(x, at...)); }, theta)
                 .jacobian;
-        CHECK(gap(closed, by_duals) < 1e-13);
-        CHECK(gap(pose_rate_matrix(arm.pose(theta, at...)) * closed,
-                  jacobian(arm, theta, frame::spatial, at...)) < 1e-13);
+        CHECK(max_abs_difference(closed, by_duals) < 1e-13);
+        CHECK(max_abs_difference(pose_rate_matrix(arm.pose(theta, at...)) * closed,
+                                 jacobian(arm, theta, frame::spatial, at...)) < 1e-13);
       };
       check();
       check(point);

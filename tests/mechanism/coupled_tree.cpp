@@ -22,7 +22,7 @@ namespace {
 using namespace duet;
 using duet_test::all_joints;
 using duet_test::for_each_frame;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 /// All coordinates of the tree by four.
 constexpr auto waves = [](const auto& y) {
@@ -62,45 +62,46 @@ TEST_CASE("a function of four numbers moves all joints: against dual numbers thr
         const auto by_duals = jacobian<duet_test::shared_tag>(
             [&](const auto& x) { return tree.pose(x, at); }, y, frame);
         const auto closed = pose_and_jacobian(tree, y, frame, at);
-        CHECK(gap(transform_matrix(closed.value), transform_matrix(by_duals.value)) < 2e-14);
-        CHECK(gap(closed.jacobian, by_duals.jacobian) < 1e-13);
-        CHECK(gap(jacobian(tree, y, frame, at), closed.jacobian) < 1e-13);
+        CHECK(max_abs_difference(transform_matrix(closed.value), transform_matrix(by_duals.value)) <
+              2e-14);
+        CHECK(max_abs_difference(closed.jacobian, by_duals.jacobian) < 1e-13);
+        CHECK(max_abs_difference(jacobian(tree, y, frame, at), closed.jacobian) < 1e-13);
         const auto rate =
             derivative<duet_test::shared_tag>(
                 [&](const auto& t) { return jacobian(tree, along(y, v, t), frame, at); }, 0.)
                 .derivative;
         const auto both = jacobian_with_rate(tree, y, v, frame, at);
         const double scale = 1 + rate.cwiseAbs().maxCoeff();
-        CHECK(gap(both.rate, rate) < 1e-13 * scale);
-        CHECK(gap(both.jacobian, closed.jacobian) < 1e-13);
-        CHECK(gap(jacobian_rate(tree, y, v, frame, at), both.rate) < 1e-13 * scale);
+        CHECK(max_abs_difference(both.rate, rate) < 1e-13 * scale);
+        CHECK(max_abs_difference(both.jacobian, closed.jacobian) < 1e-13);
+        CHECK(max_abs_difference(jacobian_rate(tree, y, v, frame, at), both.rate) < 1e-13 * scale);
         const auto h = kinematic_hessian(tree, y, frame, at);
         Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(6, 4);
         for (int j = 0; j < 4; ++j) {
           sum += h[std::size_t(j)] * v[j];
         }
-        CHECK(gap(sum, rate) < 1e-13 * scale);
+        CHECK(max_abs_difference(sum, rate) < 1e-13 * scale);
       });
     };
     check(hand);
     check(relative);
     check(tree.tree().link("finger").link);
-    CHECK(gap(translation(tree.poses(y)[0]), translation(tree.pose(y, 0))) < 1e-14);
+    CHECK(max_abs_difference(translation(tree.poses(y)[0]), translation(tree.pose(y, 0))) < 1e-14);
     const auto m =
         jacobian<duet_test::shared_tag>([&](const auto& x) { return centre_of_mass(tree, x); }, y)
             .jacobian;
-    CHECK(gap(centre_of_mass_jacobian(tree, y), m) < 2e-14);
+    CHECK(max_abs_difference(centre_of_mass_jacobian(tree, y), m) < 2e-14);
     const auto rate =
         derivative<duet_test::shared_tag>(
             [&](const auto& t) { return centre_of_mass_jacobian(tree, along(y, v, t)); }, 0.)
             .derivative;
-    CHECK(gap(centre_of_mass_jacobian_rate(tree, y, v), rate) < 1e-13);
+    CHECK(max_abs_difference(centre_of_mass_jacobian_rate(tree, y, v), rate) < 1e-13);
     const auto h = centre_of_mass_hessian(tree, y);
     Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(3, 4);
     for (int j = 0; j < 4; ++j) {
       sum += h[std::size_t(j)] * v[j];
     }
-    CHECK(gap(sum, rate) < 1e-13);
+    CHECK(max_abs_difference(sum, rate) < 1e-13);
   }
 }
 
@@ -126,10 +127,11 @@ TEST_CASE("a linear coupling is what mimic is") {
   for (const Eigen::VectorXd& y : duet_test::coordinates_of(follows, 3)) {
     for (const char* name : {"thumb", "screw", "tool"}) {
       const relative_frame at{follows.link(name), follows.link("finger")};
-      CHECK(gap(jacobian(coupled, y, frame::body, at), jacobian(follows, y, frame::body, at)) <
-            1e-14);
+      CHECK(max_abs_difference(jacobian(coupled, y, frame::body, at),
+                               jacobian(follows, y, frame::body, at)) < 1e-14);
     }
-    CHECK(gap(centre_of_mass_jacobian(coupled, y), centre_of_mass_jacobian(follows, y)) < 1e-14);
+    CHECK(max_abs_difference(centre_of_mass_jacobian(coupled, y),
+                             centre_of_mass_jacobian(follows, y)) < 1e-14);
   }
   CHECK(
       duet_test::message_of([&] {

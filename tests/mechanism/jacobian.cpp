@@ -16,7 +16,7 @@ namespace {
 using namespace duet;
 using duet_test::coordinates;
 using duet_test::for_each_frame;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 } // namespace
 
@@ -28,11 +28,11 @@ TEST_CASE("N18, N20: Jacobians of the tip, of links and of points against dual n
         const auto tip = jacobian<duet_test::shared_tag>([&](const auto& x) { return arm.pose(x); },
                                                          theta, frame)
                              .jacobian;
-        CHECK(gap(jacobian(arm, theta, frame), tip) < 1e-13);
+        CHECK(max_abs_difference(jacobian(arm, theta, frame), tip) < 1e-13);
         const auto on_link = jacobian<duet_test::shared_tag>(
                                  [&](const auto& x) { return arm.pose(x, point); }, theta, frame)
                                  .jacobian;
-        CHECK(gap(jacobian(arm, theta, frame, point), on_link) < 1e-13);
+        CHECK(max_abs_difference(jacobian(arm, theta, frame, point), on_link) < 1e-13);
       });
     }
     const auto theta = duet_test::configurations(arm, 1).back();
@@ -41,7 +41,7 @@ TEST_CASE("N18, N20: Jacobians of the tip, of links and of points against dual n
                                [&](const auto& x) { return arm.pose(x, i); }, theta, frame::hybrid)
                                .jacobian;
       const auto m = jacobian(arm, theta, frame::hybrid, i);
-      CHECK(gap(m, of_link) < 1e-13);
+      CHECK(max_abs_difference(m, of_link) < 1e-13);
       CHECK(m.rightCols(arm.size() - i).isZero(0));
     }
   });
@@ -54,7 +54,8 @@ TEST_CASE("the upper rows of the hybrid Jacobian are those of a point's coordina
     const auto of_point = jacobian<duet_test::shared_tag>(
                               [&](const auto& x) { return translation(arm.pose(x, point)); }, theta)
                               .jacobian;
-    CHECK(gap(jacobian(arm, theta, frame::hybrid, point).topRows<3>(), of_point) < 1e-13);
+    CHECK(max_abs_difference(jacobian(arm, theta, frame::hybrid, point).topRows<3>(), of_point) <
+          1e-13);
   }
 }
 
@@ -63,8 +64,8 @@ TEST_CASE("frames: V^s = Ad(A) V^b, and the pose comes with the Jacobian") {
     for (const auto& theta : duet_test::configurations(arm, 10)) {
       const auto [a, body] = pose_and_jacobian(arm, theta, frame::body);
       const auto spatial = jacobian(arm, theta, frame::spatial);
-      CHECK(gap(spatial, Ad(a) * body) < 1e-14);
-      CHECK(gap(transform_matrix(a), transform_matrix(arm.pose(theta))) == 0);
+      CHECK(max_abs_difference(spatial, Ad(a) * body) < 1e-14);
+      CHECK(max_abs_difference(transform_matrix(a), transform_matrix(arm.pose(theta))) == 0);
     }
   });
 }
@@ -73,8 +74,10 @@ TEST_CASE("an arm known to the compiler has the Jacobians of its table") {
   duet_test::for_each_known_arm([](const auto& arm) {
     for (const auto& theta : duet_test::configurations(arm, 10)) {
       for_each_frame([&](auto frame) {
-        CHECK(gap(jacobian(arm, theta, frame), jacobian(arm.table(), theta, frame)) < 4e-15);
-        CHECK(gap(jacobian(arm, theta, frame, 3), jacobian(arm.table(), theta, frame, 3)) < 4e-15);
+        CHECK(max_abs_difference(jacobian(arm, theta, frame), jacobian(arm.table(), theta, frame)) <
+              4e-15);
+        CHECK(max_abs_difference(jacobian(arm, theta, frame, 3),
+                                 jacobian(arm.table(), theta, frame, 3)) < 4e-15);
       });
     }
   });
@@ -91,9 +94,9 @@ TEST_CASE("as many joints as there turn out to be") {
   const Eigen::Vector3d theta(.3, -1.2, .7);
   const auto m = jacobian(chain, Eigen::VectorXd(theta), frame::body);
   CHECK(m.cols() == 3);
-  CHECK(gap(m, jacobian(same, theta, frame::body)) == 0);
-  CHECK(gap(m, jacobian(chain, std::array{.3, -1.2, .7}, frame::body)) == 0);
-  CHECK(gap(m, jacobian(chain, std::vector{.3, -1.2, .7}, frame::body)) == 0);
+  CHECK(max_abs_difference(m, jacobian(same, theta, frame::body)) == 0);
+  CHECK(max_abs_difference(m, jacobian(chain, std::array{.3, -1.2, .7}, frame::body)) == 0);
+  CHECK(max_abs_difference(m, jacobian(chain, std::vector{.3, -1.2, .7}, frame::body)) == 0);
 }
 
 TEST_CASE("wrenches: τ = Jᵀ F is the same in every frame, and has the same power") {
@@ -110,15 +113,15 @@ TEST_CASE("wrenches: τ = Jᵀ F is the same in every frame, and has the same po
     const auto efforts = joint_efforts(arm, theta, wrench, frame::body);
     CHECK(efforts.dot(rates) == doctest::Approx(wrench.dot(body * rates)).epsilon(1e-13));
     const vector6<double> spatial = coAd(a) * wrench;
-    CHECK(gap(efforts, joint_efforts(arm, theta, spatial, frame::spatial)) < 1e-13);
+    CHECK(max_abs_difference(efforts, joint_efforts(arm, theta, spatial, frame::spatial)) < 1e-13);
     const vector6<double> hybrid = coAd(pose(rotation(a), Eigen::Vector3d(0, 0, 0))) * wrench;
-    CHECK(gap(efforts, joint_efforts(arm, theta, hybrid, frame::hybrid)) < 1e-13);
+    CHECK(max_abs_difference(efforts, joint_efforts(arm, theta, hybrid, frame::hybrid)) < 1e-13);
     // A force that holds a weight at the tip: minus the gradient of its potential.
     vector6<double> force = vector6<double>::Zero();
     force[2] = 5;
     const auto potential = [&](const auto& x) { return 5 * translation(arm.pose(x))[2]; };
-    CHECK(gap(joint_efforts(arm, theta, force, frame::hybrid),
-              gradient(potential, theta).gradient) < 1e-13);
+    CHECK(max_abs_difference(joint_efforts(arm, theta, force, frame::hybrid),
+                             gradient(potential, theta).gradient) < 1e-13);
   }
 }
 

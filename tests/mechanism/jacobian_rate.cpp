@@ -13,7 +13,7 @@ namespace {
 using namespace duet;
 using duet_test::coordinates;
 using duet_test::for_each_frame;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 template <int N>
 coordinates<N> rates(duet_test::random_source& random) {
@@ -45,14 +45,14 @@ TEST_CASE("Jacobian rates and Hessians against derivatives of the Jacobian") {
           };
           const auto [m, m_dot] = derivative<duet_test::shared_tag>(along, 0.0);
           const auto closed = jacobian_with_rate(arm, theta, v, frame, at...);
-          CHECK(gap(closed.jacobian, m) < 1e-13);
-          CHECK(gap(closed.rate, m_dot) < 1e-13);
+          CHECK(max_abs_difference(closed.jacobian, m) < 1e-13);
+          CHECK(max_abs_difference(closed.rate, m_dot) < 1e-13);
           const auto h = kinematic_hessian(arm, theta, frame, at...);
           Eigen::Matrix<double, 6, n> sum = Eigen::Matrix<double, 6, n>::Zero();
           for (int j = 0; j < n; ++j) {
             sum += h[j] * v[j];
           }
-          CHECK(gap(sum, m_dot) < 1e-13);
+          CHECK(max_abs_difference(sum, m_dot) < 1e-13);
         };
         check();
         check(point);
@@ -77,9 +77,10 @@ TEST_CASE("every matrix of the Hessian, by dual numbers through the pose alone")
             return position(x);
           },
           0.0);
-      CHECK(gap(h[j].template topRows<3>(), by_j.derivative) < 1e-13);
+      CHECK(max_abs_difference(h[j].template topRows<3>(), by_j.derivative) < 1e-13);
       for (int k = 0; k < 7; ++k) {
-        CHECK(gap(h[j].col(k).template head<3>(), h[k].col(j).template head<3>()) < 1e-14);
+        CHECK(max_abs_difference(h[j].col(k).template head<3>(), h[k].col(j).template head<3>()) <
+              1e-14);
       }
     }
   }
@@ -105,15 +106,15 @@ TEST_CASE("acceleration: p̈ is the hybrid one; the spatial and the body's diffe
     };
     const auto classical = acceleration(frame::hybrid);
     const double scale = 1 + p[2].norm();
-    CHECK(gap(classical.head<3>(), p[2]) < 1e-13 * scale);
+    CHECK(max_abs_difference(classical.head<3>(), p[2]) < 1e-13 * scale);
     const Eigen::Vector3d omega = (jacobian(arm, theta, frame::hybrid) * v).tail<3>();
     // v^s = ṗ + p × ω and v^b = Rᵀṗ, differentiated.
     const Eigen::Vector3d alpha = classical.tail<3>();
-    CHECK(gap(acceleration(frame::spatial).head<3>(),
-              p[2] + p[1].cross(omega) + p[0].cross(alpha)) < 1e-13 * scale);
-    CHECK(gap(acceleration(frame::body).head<3>(),
-              rotate(conj(rotation(arm.pose(theta))), Eigen::Vector3d(p[2] - omega.cross(p[1])))) <
-          1e-13 * scale);
+    CHECK(max_abs_difference(acceleration(frame::spatial).head<3>(),
+                             p[2] + p[1].cross(omega) + p[0].cross(alpha)) < 1e-13 * scale);
+    CHECK(max_abs_difference(acceleration(frame::body).head<3>(),
+                             rotate(conj(rotation(arm.pose(theta))),
+                                    Eigen::Vector3d(p[2] - omega.cross(p[1])))) < 1e-13 * scale);
   }
 }
 

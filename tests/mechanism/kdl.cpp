@@ -36,7 +36,7 @@ namespace test_mechanism_kdl {
 namespace {
 
 using namespace duet;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using element = boost::property_tree::ptree;
 using vector = Eigen::VectorXd;
 
@@ -145,7 +145,7 @@ double rate_gap(const Chain& arm, const KDL::Chain& other, int representation, c
   solver.setRepresentation(representation);
   KDL::Jacobian expected(other.getNrOfJoints());
   REQUIRE(solver.JntToJacDot(KDL::JntArrayVel(as_kdl(theta), as_kdl(rates)), expected) == 0);
-  return gap(jacobian_rate(arm, theta, rates, frame_of_rate), expected.data);
+  return max_abs_difference(jacobian_rate(arm, theta, rates, frame_of_rate), expected.data);
 }
 
 /// Zero, straight angles, right angles, then random.
@@ -199,10 +199,10 @@ TEST_CASE("poses, Jacobians and their rates of every link are Orocos KDL's") {
         const vector rates = configuration(3, arm.size(), random);
         KDL::Frame tip;
         REQUIRE(forward.JntToCart(as_kdl(theta), tip) == 0);
-        CHECK(gap(transform_matrix(arm.pose(theta)), matrix_of(tip)) < 1e-12);
+        CHECK(max_abs_difference(transform_matrix(arm.pose(theta)), matrix_of(tip)) < 1e-12);
         KDL::Jacobian columns(other.getNrOfJoints());
         REQUIRE(by_angles.JntToJac(as_kdl(theta), columns) == 0);
-        CHECK(gap(jacobian(arm, theta, frame::hybrid), columns.data) < 1e-12);
+        CHECK(max_abs_difference(jacobian(arm, theta, frame::hybrid), columns.data) < 1e-12);
         using solver = KDL::ChainJntToJacDotSolver;
         CHECK(rate_gap(arm, other, solver::HYBRID, theta, rates, frame::hybrid) < 1e-10);
         CHECK(rate_gap(arm, other, solver::BODYFIXED, theta, rates, frame::body) < 1e-10);
@@ -265,14 +265,15 @@ TEST_CASE("trees of every robot file are Orocos KDL's, the joints that follow ot
         KDL::Frame expected;
         REQUIRE(forward.JntToCart(q, expected, link) >= 0);
         const int at = tree.link(link).link;
-        CHECK(gap(transform_matrix(tree.pose(y, at)), matrix_of(expected)) < 1e-12);
-        CHECK(gap(transform_matrix(poses[std::size_t(at)]), matrix_of(expected)) < 1e-12);
+        CHECK(max_abs_difference(transform_matrix(tree.pose(y, at)), matrix_of(expected)) < 1e-12);
+        CHECK(max_abs_difference(transform_matrix(poses[std::size_t(at)]), matrix_of(expected)) <
+              1e-12);
         KDL::Jacobian columns(other.getNrOfJoints());
         if (link != robot.root()) {
           REQUIRE(by_angles.JntToJac(q, columns, link) >= 0);
         }
-        CHECK(gap(jacobian(tree, y, frame::hybrid, at), Eigen::MatrixXd(columns.data * to_all)) <
-              1e-12);
+        CHECK(max_abs_difference(jacobian(tree, y, frame::hybrid, at),
+                                 Eigen::MatrixXd(columns.data * to_all)) < 1e-12);
         ++frames;
         const double weight =
             robot.link_of.at(link).get<double>("inertial.mass.<xmlattr>.value", 0);
@@ -283,7 +284,7 @@ TEST_CASE("trees of every robot file are Orocos KDL's, the joints that follow ot
         moment += weight * Eigen::Vector3d(centre.x(), centre.y(), centre.z());
       }
       if (mass > 0) {
-        CHECK(gap(centre_of_mass(tree, y), Eigen::Vector3d(moment / mass)) < 1e-12);
+        CHECK(max_abs_difference(centre_of_mass(tree, y), Eigen::Vector3d(moment / mass)) < 1e-12);
       }
     }
   }

@@ -25,7 +25,7 @@ using duet_test::at_point;
 using duet_test::four_bar;
 using duet_test::message_of;
 using duet_test::real_100;
-using duet_test::turning_joint;
+using duet_test::revolute_joint;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
@@ -224,10 +224,10 @@ TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
   // A five-bar whose right crank is held where its end is a crank's length from the left foot.
   robot_description robot;
   robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
-  robot.joints = {turning_joint("left", "ground", at_point(-.3, 0)),
-                  turning_joint("left_coupler", "left", at_point(.5, 0)),
-                  turning_joint("right", "ground", at_point(.3, 0)),
-                  turning_joint("right_coupler", "right", at_point(.5, 0))};
+  robot.joints = {revolute_joint("left", "ground", at_point(-.3, 0)),
+                  revolute_joint("left_coupler", "left", at_point(.5, 0)),
+                  revolute_joint("right", "ground", at_point(.3, 0)),
+                  revolute_joint("right_coupler", "right", at_point(.5, 0))};
   const closed_chain_mechanism five_bar(kinematic_tree(robot),
                                         {{{constraint_kind::revolute,
                                            {"left_coupler", at_point(.7, 0)},
@@ -279,10 +279,11 @@ TEST_CASE("four-bars that are nearly flat have one branch, and are told from tho
 TEST_CASE("two parallelograms that are flat together: four lines in a kernel of three") {
   robot_description robot;
   robot.links = {{"ground"}, {"crank"}, {"c1"}, {"r1"}, {"c2"}, {"r2"}};
-  robot.joints = {
-      turning_joint("crank", "ground", {}), turning_joint("c1", "crank", at_point(.3, 0)),
-      turning_joint("r1", "ground", at_point(.8, 0)), turning_joint("c2", "crank", at_point(.3, 0)),
-      turning_joint("r2", "ground", at_point(-.6, 0))};
+  robot.joints = {revolute_joint("crank", "ground", {}),
+                  revolute_joint("c1", "crank", at_point(.3, 0)),
+                  revolute_joint("r1", "ground", at_point(.8, 0)),
+                  revolute_joint("c2", "crank", at_point(.3, 0)),
+                  revolute_joint("r2", "ground", at_point(-.6, 0))};
   const closed_chain_mechanism both(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"c1", at_point(.8, 0)}, {"r1", at_point(.3, 0)}},
@@ -312,10 +313,10 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
 
   // A parallelogram with a third crank stays one: where it is flat it is shaky, but has one branch.
   robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}, {"third"}};
-  robot.joints = {turning_joint("crank", "ground", {}),
-                  turning_joint("coupler", "crank", at_point(.3, 0)),
-                  turning_joint("rocker", "ground", at_point(.8, 0)),
-                  turning_joint("third", "ground", at_point(.5, 0))};
+  robot.joints = {revolute_joint("crank", "ground", {}),
+                  revolute_joint("coupler", "crank", at_point(.3, 0)),
+                  revolute_joint("rocker", "ground", at_point(.8, 0)),
+                  revolute_joint("third", "ground", at_point(.5, 0))};
   const closed_chain_mechanism three(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
@@ -335,8 +336,8 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
     const double r = .3 * mm;
     robot_description robot;
     robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"slide"}};
-    robot.joints = {turning_joint("crank", "ground", {}),
-                    turning_joint("coupler", "crank", at_point(r, 0)),
+    robot.joints = {revolute_joint("crank", "ground", {}),
+                    revolute_joint("coupler", "crank", at_point(r, 0)),
                     {"slide", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}}};
     const closed_chain_mechanism mechanism(
         kinematic_tree(robot),
@@ -387,10 +388,10 @@ TEST_CASE("of ways that fill a plane none is returned") {
   // Two cranks with couplers of their length move one slide. With that at rest both turn freely.
   robot_description robot;
   robot.links = {{"ground"}, {"a"}, {"b"}, {"c"}, {"d"}, {"slide"}};
-  robot.joints = {turning_joint("a", "ground", {}),
-                  turning_joint("b", "a", at_point(.3, 0)),
-                  turning_joint("c", "ground", {}),
-                  turning_joint("d", "c", at_point(.3, 0)),
+  robot.joints = {revolute_joint("a", "ground", {}),
+                  revolute_joint("b", "a", at_point(.3, 0)),
+                  revolute_joint("c", "ground", {}),
+                  revolute_joint("d", "c", at_point(.3, 0)),
                   {"slide", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}}};
   const closed_chain_mechanism mechanism(
       kinematic_tree(robot),

@@ -25,9 +25,9 @@ namespace {
 using namespace duet;
 using duet_test::at_point;
 using duet_test::four_bar;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::real_100;
-using duet_test::turning_joint;
+using duet_test::revolute_joint;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -55,10 +55,10 @@ T freudenstein(double a, double b, double c, double d, const T& theta, double si
 closed_chain_mechanism five_bar(double foot, double crank, double coupler) {
   robot_description robot;
   robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
-  robot.joints = {turning_joint("left", "ground", at_point(-foot, 0)),
-                  turning_joint("left_coupler", "left", at_point(crank, 0)),
-                  turning_joint("right", "ground", at_point(foot, 0)),
-                  turning_joint("right_coupler", "right", at_point(crank, 0))};
+  robot.joints = {revolute_joint("left", "ground", at_point(-foot, 0)),
+                  revolute_joint("left_coupler", "left", at_point(crank, 0)),
+                  revolute_joint("right", "ground", at_point(foot, 0)),
+                  revolute_joint("right_coupler", "right", at_point(crank, 0))};
   return closed_chain_mechanism(kinematic_tree(robot),
                                 {{{constraint_kind::revolute,
                                    {"left_coupler", at_point(coupler, 0)},
@@ -99,8 +99,8 @@ TEST_CASE("derivatives up to the third against 50 digits") {
   // A spatial four-bar: crank, ball, ball, rocker on a skew axis; a rod is its coupler.
   robot_description robot;
   robot.links = {{"ground"}, {"crank"}, {"rocker"}};
-  robot.joints = {turning_joint("crank", "ground", {}),
-                  turning_joint("rocker", "ground", duet_test::place(.9, .4, 0, .9, .3, .2))};
+  robot.joints = {revolute_joint("crank", "ground", {}),
+                  revolute_joint("rocker", "ground", duet_test::place(.9, .4, 0, .9, .3, .2))};
   const closed_chain_mechanism mechanism(kinematic_tree(robot), {{{constraint_kind::distance,
                                                                    {"crank", at_point(.3, 0, .1)},
                                                                    {"rocker", at_point(.6, .1, 0)},
@@ -141,13 +141,13 @@ TEST_CASE("a five-bar by both cranks: its point, Jacobian and Hessian against th
     const auto both = pose_and_jacobian(driven, u, frame::hybrid, tip);
     CHECK((translation(both.value).head<2>() - Vector2d(expected.value[0], expected.value[1]))
               .norm() < 1e-13);
-    CHECK(gap(both.jacobian.topRows(2), expected.jacobian) < 1e-12);
+    CHECK(max_abs_difference(both.jacobian.topRows(2), expected.jacobian) < 1e-12);
     const auto second = kinematic_hessian(driven, u, frame::hybrid, tip);
     for (int j = 0; j < 2; ++j) {
       const auto change =
           directional_derivative([&](const auto& x) { return jacobian(by_hand, x).jacobian; }, u,
                                  Vector2d(Vector2d::Unit(j)));
-      CHECK(gap(second[std::size_t(j)].topRows(2), change.derivative) < 1e-11);
+      CHECK(max_abs_difference(second[std::size_t(j)].topRows(2), change.derivative) < 1e-11);
     }
   }
 }
@@ -157,7 +157,7 @@ TEST_CASE("a mechanism of three rods and a sliding drive: nothing depends on uni
     robot_description robot;
     robot.links = {{"ground"}, {"slide"}, {"arm"}};
     robot.joints = {{"push", "ground", "slide", {joint_kind::prismatic, {}, {1, 0, 0}}},
-                    turning_joint("arm", "ground", at_point(0, .3 * mm))};
+                    revolute_joint("arm", "ground", at_point(0, .3 * mm))};
     const closed_chain_mechanism mechanism(kinematic_tree(robot), {{{constraint_kind::distance,
                                                                      {"slide", at_point(0, 0)},
                                                                      {"arm", at_point(.4 * mm, 0)},
@@ -280,7 +280,7 @@ TEST_CASE("coordinates that are singular, drives that do not drive, and other mi
       closed_chain_mechanism(kinematic_tree(robot),
                              {{{constraint_kind::revolute, {"base", {}}, {"body", {}}}}}),
       vector({0, 0, 1}), {2});
-  CHECK(gap(turn(6.), vector({0, 0, 6})) < 1e-12);
+  CHECK(max_abs_difference(turn(6.), vector({0, 0, 6})) < 1e-12);
   const std::string text = message_of<loop_closure_failure>([&] { (void)turn(7.); });
   CHECK(text.starts_with("duet: driven_motion: cannot close beyond ball.rz = 6.2831"));
   CHECK(text.ends_with(": no step leads on, branches touch or coordinates are singular"));
@@ -310,7 +310,7 @@ TEST_CASE("coordinates that are singular, drives that do not drive, and other mi
   CHECK(message_of([&] { (void)trace(motion, 1); }) == "duet: trace: no drive 1 of 1");
   const driven_motion moved = motion.warm_started_at(vector({2.5}));
   CHECK(moved.start()[0] == 2.5);
-  CHECK(gap(moved(3.), motion(3.)) < 1e-13);
+  CHECK(max_abs_difference(moved(3.), motion(3.)) < 1e-13);
 }
 
 } // namespace test_mechanism_loop_motion

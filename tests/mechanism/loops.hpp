@@ -37,8 +37,8 @@ inline duet::robot_description turning(const std::vector<duet::placement<double>
   return robot;
 }
 
-inline duet::tree_joint turning_joint(const std::string& name, const std::string& parent,
-                                      const duet::placement<double>& origin) {
+inline duet::tree_joint revolute_joint(const std::string& name, const std::string& parent,
+                                       const duet::placement<double>& origin) {
   return {name, parent, name, {duet::joint_kind::continuous, origin}};
 }
 
@@ -49,9 +49,9 @@ four_bar(double crank, double coupler, double rocker, double ground,
          duet::constraint_kind kind = duet::constraint_kind::revolute) {
   duet::robot_description robot;
   robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}};
-  robot.joints = {turning_joint("crank", "ground", {}),
-                  turning_joint("coupler", "crank", at_point(crank, 0)),
-                  turning_joint("rocker", "ground", at_point(ground, 0))};
+  robot.joints = {revolute_joint("crank", "ground", {}),
+                  revolute_joint("coupler", "crank", at_point(crank, 0)),
+                  revolute_joint("rocker", "ground", at_point(ground, 0))};
   return duet::closed_chain_mechanism(
       duet::kinematic_tree(robot),
       {{{kind, {"coupler", at_point(coupler, 0)}, {"rocker", at_point(rocker, 0)}}}});

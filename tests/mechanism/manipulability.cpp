@@ -16,7 +16,7 @@ namespace {
 
 using namespace duet;
 using duet_test::coordinates;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 /// √det(JJᵀ) by elimination.
 template <class M>
@@ -59,7 +59,7 @@ TEST_CASE("manipulability is √det(JJᵀ), and its gradient that by dual number
           exact);
       CHECK(closed.value == manipulability(arm, all[i]));
       CHECK(std::abs(closed.value - double(by_duals.value)) < 1e-14);
-      CHECK(gap(closed.gradient, by_duals.gradient.template cast<double>()) < 1e-13);
+      CHECK(max_abs_difference(closed.gradient, by_duals.gradient.template cast<double>()) < 1e-13);
     }
   }
 }
@@ -83,7 +83,7 @@ TEST_CASE("a planar arm of two links: w = a b |sin θ₂|") {
         bend);
     const auto closed = manipulability_gradient(arm, theta);
     CHECK(closed.value == doctest::Approx(w).epsilon(1e-12));
-    CHECK(gap(closed.gradient, Eigen::Vector2d(0, slope)) < 1e-13);
+    CHECK(max_abs_difference(closed.gradient, Eigen::Vector2d(0, slope)) < 1e-13);
   }
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("the gradient within rounding of a singularity is as steep as beside i
     const auto [volume, of_entries] = detail::volume_of<true>(m);
     CHECK(std::abs(volume - std::abs(small)) <= 1e-15 * std::abs(small));
     cofactors *= small > 0 ? 1 : -1;
-    CHECK(gap(of_entries, cofactors) < 1e-15);
+    CHECK(max_abs_difference(of_entries, cofactors) < 1e-15);
   }
 }
 
@@ -148,8 +148,8 @@ TEST_CASE("as many joints as there turn out to be") {
   coordinates<7> regular;
   regular << .3, -1, 1.5, -1.2, .4, .9, .7;
   const Eigen::VectorXd x = regular;
-  CHECK(gap(manipulability_gradient(chain, x).gradient,
-            manipulability_gradient(panda, regular).gradient) < 1e-14);
+  CHECK(max_abs_difference(manipulability_gradient(chain, x).gradient,
+                           manipulability_gradient(panda, regular).gradient) < 1e-14);
 }
 
 } // namespace test_mechanism_manipulability

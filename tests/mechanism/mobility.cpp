@@ -18,8 +18,8 @@ namespace {
 using namespace duet;
 using duet_test::at_point;
 using duet_test::four_bar;
+using duet_test::revolute_joint;
 using duet_test::ring;
-using duet_test::turning_joint;
 using Eigen::VectorXd;
 
 VectorXd vector(std::initializer_list<double> x) {
@@ -91,8 +91,8 @@ TEST_CASE("a stretched frame has rates, but does not move") {
   // Two links in a row between pins as far apart as both are long.
   robot_description robot;
   robot.links = {{"ground"}, {"first"}, {"second"}};
-  robot.joints = {turning_joint("first", "ground", {}),
-                  turning_joint("second", "first", at_point(.7, 0))};
+  robot.joints = {revolute_joint("first", "ground", {}),
+                  revolute_joint("second", "first", at_point(.7, 0))};
   const closed_chain_mechanism shaky(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"second", at_point(.5, 0)}, {"ground", at_point(1.2, 0)}}}});
@@ -129,8 +129,8 @@ TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carri
 
   robot_description robot = flat.tree().description();
   robot.links.insert(robot.links.end(), {{"first"}, {"second"}});
-  robot.joints.push_back(turning_joint("first", "coupler", at_point(0, .1)));
-  robot.joints.push_back(turning_joint("second", "first", at_point(.3, 0)));
+  robot.joints.push_back(revolute_joint("first", "coupler", at_point(0, .1)));
+  robot.joints.push_back(revolute_joint("second", "first", at_point(.3, 0)));
   const closed_chain_mechanism both(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},

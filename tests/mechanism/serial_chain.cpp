@@ -21,12 +21,12 @@ namespace {
 
 using namespace duet;
 using duet_test::coordinates;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 using std::numbers::pi;
 
 double gap_of_poses(const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
-  return gap(transform_matrix(a), transform_matrix(b));
+  return max_abs_difference(transform_matrix(a), transform_matrix(b));
 }
 
 /// The transform of a chain by matrices: products of Eigen's own.
@@ -56,15 +56,17 @@ static_assert(std::is_empty_v<decltype(robots::panda())>);
 
 TEST_CASE("the four robots stand where their makers' drawings say") {
   coordinates<7> theta = coordinates<7>::Zero();
-  CHECK(gap(translation(robots::iiwa14().pose(theta)), Eigen::Vector3d(0, 0, 1.306)) < 4e-15);
-  CHECK(gap(translation(robots::baxter_left().pose(theta)),
+  CHECK(max_abs_difference(translation(robots::iiwa14().pose(theta)),
+                           Eigen::Vector3d(0, 0, 1.306)) < 4e-15);
+  CHECK(max_abs_difference(
+            translation(robots::baxter_left().pose(theta)),
             Eigen::Vector3d(.069 + .36442 + .37429 + .229525, 0, .27035 - .069 - .01)) < 4e-15);
   theta[3] = -pi / 2;
   const auto a = robots::panda().pose(theta);
-  CHECK(gap(translation(a), Eigen::Vector3d(.3595, 0, .6435)) < 1e-15);
-  CHECK(gap(transform_direction(a, z_axis), -x_axis) < 4e-15);
-  CHECK(gap(translation(robots::ur5e().pose(coordinates<6>(coordinates<6>::Zero()))),
-            Eigen::Vector3d(-.8172, -.2329, .0628)) < 1e-15);
+  CHECK(max_abs_difference(translation(a), Eigen::Vector3d(.3595, 0, .6435)) < 1e-15);
+  CHECK(max_abs_difference(transform_direction(a, z_axis), -x_axis) < 4e-15);
+  CHECK(max_abs_difference(translation(robots::ur5e().pose(coordinates<6>(coordinates<6>::Zero()))),
+                           Eigen::Vector3d(-.8172, -.2329, .0628)) < 1e-15);
 }
 
 TEST_CASE("both conventions of Denavit and Hartenberg against products of matrices") {
@@ -83,12 +85,14 @@ TEST_CASE("both conventions of Denavit and Hartenberg against products of matric
       const double d = row.d + (slides ? theta[i] : 0);
       a.turn(z_axis, angle).shift(0, 0, d).shift(row.a, 0, 0).turn(x_axis, row.alpha);
       b.turn(x_axis, row.alpha).shift(row.a, 0, 0).turn(z_axis, angle).shift(0, 0, d);
-      CHECK(gap(transform_matrix(standard.pose(theta, i + 1)), a.value.matrix()) < 1e-14);
-      CHECK(gap(transform_matrix(modified.pose(theta, i + 1)), b.value.matrix()) < 1e-14);
+      CHECK(max_abs_difference(transform_matrix(standard.pose(theta, i + 1)), a.value.matrix()) <
+            1e-14);
+      CHECK(max_abs_difference(transform_matrix(modified.pose(theta, i + 1)), b.value.matrix()) <
+            1e-14);
     }
     b.shift(0, 0, .5);
-    CHECK(gap(transform_matrix(standard.pose(theta)), a.value.matrix()) < 1e-14);
-    CHECK(gap(transform_matrix(modified.pose(theta)), b.value.matrix()) < 1e-14);
+    CHECK(max_abs_difference(transform_matrix(standard.pose(theta)), a.value.matrix()) < 1e-14);
+    CHECK(max_abs_difference(transform_matrix(modified.pose(theta)), b.value.matrix()) < 1e-14);
   }
 }
 
@@ -158,7 +162,8 @@ TEST_CASE("poses in double precision against 50 digits, and unit") {
       const auto a = arm.pose(theta);
       const Eigen::Matrix<wide, n, 1> exact = theta.template cast<wide>();
       const auto b = arm.pose(exact);
-      CHECK(gap(transform_matrix(a), transform_matrix(b).template cast<double>()) < 1e-14);
+      CHECK(max_abs_difference(transform_matrix(a), transform_matrix(b).template cast<double>()) <
+            1e-14);
       CHECK(is_unit(a, 1e-14));
     }
   });
@@ -180,8 +185,9 @@ TEST_CASE("frames on links and points of them") {
   const auto arm = robots::panda().table();
   for (const auto& theta : duet_test::configurations(arm, 5)) {
     const auto at = arm.link(4).at_point({.1, -.2, .3});
-    CHECK(gap(translation(arm.pose(theta, at)),
-              transform_point(arm.pose(theta, 4), Eigen::Vector3d(.1, -.2, .3))) < 1e-15);
+    CHECK(max_abs_difference(translation(arm.pose(theta, at)),
+                             transform_point(arm.pose(theta, 4), Eigen::Vector3d(.1, -.2, .3))) <
+          1e-15);
     CHECK(gap_of_poses(arm.pose(theta, 0), dual_quaternion<double>(1)) == 0);
   }
 }
@@ -196,9 +202,9 @@ TEST_CASE("fixed joints are merged; the number of joints may be known at run tim
   const wide_chain chain{std::span<const joint<>>(joints)};
   CHECK(chain.size() == 2);
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(2);
-  CHECK(gap(translation(chain.pose(zero)), Eigen::Vector3d(1, 2, 3)) == 0);
+  CHECK(max_abs_difference(translation(chain.pose(zero)), Eigen::Vector3d(1, 2, 3)) == 0);
   const std::array<double, 2> quarter{pi / 2, 0};
-  CHECK(gap(translation(chain.pose(quarter)), Eigen::Vector3d(-1, 0, 3)) < 1e-15);
+  CHECK(max_abs_difference(translation(chain.pose(quarter)), Eigen::Vector3d(-1, 0, 3)) < 1e-15);
 }
 
 TEST_CASE("a chain whose number of joints is no more in its type is the same chain") {
@@ -265,7 +271,7 @@ TEST_CASE("a tool and fixed joints whose rotations have few digits move nothing 
   const serial_chain<1> chain(std::array{fixed, turning}, {{.707, 0, .707, 0}, {1, 0, 0}});
   const auto a = chain.pose(std::array{0.0});
   CHECK(is_unit(a));
-  CHECK(gap(translation(a), Eigen::Vector3d(1, 0, 1)) < 1e-15);
+  CHECK(max_abs_difference(translation(a), Eigen::Vector3d(1, 0, 1)) < 1e-15);
 }
 
 TEST_CASE("sines of all joints at once: as one after the other, under derivatives of any kind") {
@@ -292,7 +298,7 @@ TEST_CASE("sines of all joints at once: as one after the other, under derivative
     const auto at = [&](const auto& x) { return height(chain, x[0], x[1]); };
     const auto h = hessian(at, Eigen::Vector2d(.5, -.25));
     const auto h_expected = hessian(at, Eigen::Matrix<long double, 2, 1>(.5L, -.25L));
-    CHECK(gap(h.hessian, h_expected.hessian.template cast<double>()) < 2e-12);
+    CHECK(max_abs_difference(h.hessian, h_expected.hessian.template cast<double>()) < 2e-12);
     const auto slope = [&](const auto& t) {
       return derivative<struct inner>([&](const auto& u) { return height(chain, t, u); }, t)
           .derivative;
@@ -308,7 +314,7 @@ TEST_CASE("sines of all joints at once: as one after the other, under derivative
   coordinates<7> broken = coordinates<7>::Constant(.5);
   broken[5] = std::nan("");
   const auto expected = pose_coordinates(panda.pose(coordinates<7>::Constant(.5).eval(), 5));
-  CHECK(gap(pose_coordinates(panda.pose(broken, 5)), expected) < 1e-15);
+  CHECK(max_abs_difference(pose_coordinates(panda.pose(broken, 5)), expected) < 1e-15);
   CHECK(std::isnan(panda.pose(broken).w().value()));
 }
 

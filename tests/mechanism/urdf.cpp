@@ -19,7 +19,7 @@ namespace test_mechanism_urdf {
 namespace {
 
 using namespace duet;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 const std::string path = "test_mechanism_urdf.urdf";
 
@@ -59,8 +59,10 @@ TEST_CASE("origins, axes and limits as the format says") {
   const auto expected =
       pose(from_euler<zyx>(.3, .2, .1), Eigen::Vector3d(.1, .2, .8)) *
       pose(from_axis_angle(Eigen::Vector3d(0, 1, 0), .7), Eigen::Vector3d(0, 0, 0));
-  CHECK(gap(transform_matrix(chain.pose(theta)), transform_matrix(expected)) < 1e-15);
-  CHECK(gap(translation(chain.pose(theta, chain.link("b"))), Eigen::Vector3d(0, 0, .5)) == 0);
+  CHECK(max_abs_difference(transform_matrix(chain.pose(theta)), transform_matrix(expected)) <
+        1e-15);
+  CHECK(max_abs_difference(translation(chain.pose(theta, chain.link("b"))),
+                           Eigen::Vector3d(0, 0, .5)) == 0);
   CHECK_THROWS_WITH_AS((void)chain.link("x"),
                        "duet: no link \"x\" in the chain: there are \"a\", \"b\", \"c\"",
                        invalid_input);
@@ -68,7 +70,8 @@ TEST_CASE("origins, axes and limits as the format says") {
   write(links + first + joint_to_c(""));
   const auto along_x = read_urdf(path, "b", "c");
   const Eigen::Matrix<double, 1, 1> angle(.4);
-  CHECK(gap(rotation_vector(rotation(along_x.pose(angle))), Eigen::Vector3d(.4, 0, 0)) < 1e-15);
+  CHECK(max_abs_difference(rotation_vector(rotation(along_x.pose(angle))),
+                           Eigen::Vector3d(.4, 0, 0)) < 1e-15);
   CHECK(read_urdf(path, "c", "c").size() == 0);
 }
 
@@ -126,9 +129,9 @@ TEST_CASE("what is wrong is said with file, line and element") {
   const auto back = read_urdf(path, "c", "a");
   CHECK(back.joint_names() == std::vector<std::string>{"q", "p"});
   const Eigen::Vector2d theta(.5, .7);
-  CHECK(gap(transform_matrix(back.pose(Eigen::Vector2d(.7, .5)) *
-                             read_urdf(path, "a", "c").pose(theta)),
-            Eigen::Matrix4d::Identity()) < 1e-15);
+  CHECK(max_abs_difference(transform_matrix(back.pose(Eigen::Vector2d(.7, .5)) *
+                                            read_urdf(path, "a", "c").pose(theta)),
+                           Eigen::Matrix4d::Identity()) < 1e-15);
   CHECK_THROWS_WITH_AS(
       (void)read_urdf<1>(path, "a", "c"),
       ("duet: " + path + ": 2 moving joints from \"a\" to \"c\": use read_urdf<2>").c_str(),
@@ -405,10 +408,12 @@ TEST_CASE("real robots") {
     CHECK(panda.limits(i).upper == known.limits(i).upper);
   }
   for (const auto& theta : duet_test::configurations(known.table(), 20)) {
-    CHECK(gap(transform_matrix(panda.pose(theta)), transform_matrix(known.pose(theta))) < 4e-15);
-    CHECK(gap(jacobian(panda, theta, frame::body), jacobian(known, theta, frame::body)) < 4e-15);
-    CHECK(gap(transform_matrix(panda.pose(theta, panda.link("panda_link4"))),
-              transform_matrix(known.pose(theta, 4))) < 4e-15);
+    CHECK(max_abs_difference(transform_matrix(panda.pose(theta)),
+                             transform_matrix(known.pose(theta))) < 4e-15);
+    CHECK(max_abs_difference(jacobian(panda, theta, frame::body),
+                             jacobian(known, theta, frame::body)) < 4e-15);
+    CHECK(max_abs_difference(transform_matrix(panda.pose(theta, panda.link("panda_link4"))),
+                             transform_matrix(known.pose(theta, 4))) < 4e-15);
   }
   // Fingers: the second one follows the first.
   CHECK(read_urdf(folder + "panda.urdf", "panda_link0", "panda_leftfinger").size() == 8);

@@ -22,7 +22,7 @@ namespace test_mechanism_urdf_tree {
 namespace {
 
 using namespace duet;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 const std::string path = "test_mechanism_urdf_tree.urdf";
 
@@ -72,13 +72,16 @@ TEST_CASE("a whole file: kinds, followers, masses, lines") {
   const auto& inertia = *tree.links()[2].inertia;
   CHECK(inertia.mass == 3);
   CHECK(inertia.moments == std::array<double, 6>{1e7, .1, .2, 2e7, .3, 3e9});
-  CHECK(gap(rotation_vector(inertia.frame.rotation), Eigen::Vector3d(.1, 0, 0)) < 1e-16);
+  CHECK(max_abs_difference(rotation_vector(inertia.frame.rotation), Eigen::Vector3d(.1, 0, 0)) <
+        1e-16);
   CHECK(!tree.links()[0].inertia);
   Eigen::VectorXd q(10);
   q << .2, .1, .2, .3, 0, 0, 1.5707963267948966, 4, 5, .6;
-  CHECK(gap(translation(tree.pose(q, tree.link("thumb"))), Eigen::Vector3d(1.4, .2, 1.3)) < 1e-15);
-  CHECK(gap(translation(tree.pose(q, tree.link("cart"))), Eigen::Vector3d(4, 5, 0)) < 2e-15);
-  CHECK(gap(centre_of_mass(tree, q), Eigen::Vector3d(.66, .12, .48)) < 1e-15);
+  CHECK(max_abs_difference(translation(tree.pose(q, tree.link("thumb"))),
+                           Eigen::Vector3d(1.4, .2, 1.3)) < 1e-15);
+  CHECK(max_abs_difference(translation(tree.pose(q, tree.link("cart"))), Eigen::Vector3d(4, 5, 0)) <
+        2e-15);
+  CHECK(max_abs_difference(centre_of_mass(tree, q), Eigen::Vector3d(.66, .12, .48)) < 1e-15);
   // A chain leads past what a chain has not.
   CHECK(tree.chain("arm", "finger").size() == 1);
   CHECK(message().empty());
@@ -163,7 +166,8 @@ TEST_CASE("20000 links in a row are read") {
   CHECK(tree.size() == 200);
   CHECK(tree.coordinate_names()[0] == "20000"); // as in the file
   const Eigen::VectorXd q = Eigen::VectorXd::Constant(200, .01);
-  CHECK(gap(translation(tree.pose(q, tree.link("20000"))), Eigen::Vector3d(0, 0, 10000)) < 1e-9);
+  CHECK(max_abs_difference(translation(tree.pose(q, tree.link("20000"))),
+                           Eigen::Vector3d(0, 0, 10000)) < 1e-9);
   CHECK(tree.chain<200>("0", "20000").size() == 200);
   std::filesystem::remove(path);
 }
@@ -202,12 +206,13 @@ TEST_CASE("every robot file is a tree whose chains are those that are read alone
       for (int k = 0; k < arm.size(); ++k) {
         theta[k] = q[tree.coordinate(arm.joint_names()[std::size_t(k)])];
       }
-      CHECK(gap(transform_matrix(poses[i]), transform_matrix(arm.pose(theta))) < 4e-15);
+      CHECK(max_abs_difference(transform_matrix(poses[i]), transform_matrix(arm.pose(theta))) <
+            4e-15);
       const auto m = jacobian(tree, q, frame::body, int(i));
       const auto columns = jacobian(arm, theta, frame::body);
       for (int k = 0; k < arm.size(); ++k) {
-        CHECK(gap(m.col(tree.coordinate(arm.joint_names()[std::size_t(k)])), columns.col(k)) <
-              4e-15);
+        CHECK(max_abs_difference(m.col(tree.coordinate(arm.joint_names()[std::size_t(k)])),
+                                 columns.col(k)) < 4e-15);
       }
       ++chains;
     }

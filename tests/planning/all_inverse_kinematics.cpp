@@ -276,7 +276,7 @@ TEST_CASE("slides thousands of times as long as the arm") {
       const result found = all_inverse_kinematics(arm, goal);
       CHECK(found.is_complete);
       CHECK(holds(arm, found, theta, 1e-11 * way));
-      const double size = detail::chain_axes(arm, (0 * theta).eval(), -1).size;
+      const double size = detail::chain_screws(arm, (0 * theta).eval(), -1).size;
       for (const auto& s : found.solutions) {
         double longest = size;
         for (const std::size_t i : sliding) {
@@ -477,7 +477,7 @@ TEST_CASE("angles within a turn") {
   for (const double start : {0., .3, -2., pi, 3 * pi, 5 * pi, 1e5}) {
     for (const double x : {start, -start, std::nextafter(start, 0), std::nextafter(start, 1e9)}) {
       const double nearest = std::remainder(x, turn);
-      CHECK(detail::turned_back(x) == (nearest <= -pi ? pi : nearest));
+      CHECK(detail::wrap_angle(x) == (nearest <= -pi ? pi : nearest));
     }
   }
 }

@@ -135,7 +135,7 @@ wide_joints way_to(const dual_quaternion<real_50>& goal, const dual_quaternion<r
 
 /// How far before the tip, along its z axis, that of the sixth joint, the fifth axis goes by.
 double wrist_of(const chain& arm) {
-  const detail::chain_axes axes(arm, joints::Zero().eval(), -1);
+  const detail::chain_screws axes(arm, joints::Zero().eval(), -1);
   const auto to_wrist = axes.size * detail::nearest_point(axes.joints[5], axes.joints[4]) +
                         axes.middle - axes.tip.translation;
   return dot(axes.joints[5].axis, to_wrist);
@@ -358,11 +358,11 @@ TEST_CASE("where a turning vector has a small length") {
   };
   for (int k = 0; k < 20; ++k) {
     const detail::vector3d n = any(), v = any();
-    const detail::turned_vector still(n, v), moved(n, v, -1 * still.at(.4));
+    const detail::rotating_vector still(n, v), moved(n, v, -1 * still.at(.4));
     for (const double length : {1e-2, 1e-5, 1e-8, 1e-11}) {
       // By .6 beside it: .8² + .6² = 1.
-      const detail::turned_vector by(n, v, .6 * length * n - still.at(.4));
-      const auto found = detail::angles_of_length(k % 2 == 0 ? moved : by, length);
+      const detail::rotating_vector by(n, v, .6 * length * n - still.at(.4));
+      const auto found = detail::subproblem3(k % 2 == 0 ? moved : by, length);
       REQUIRE(found.size() == 2);
       for (const auto& [theta, multiplicity] : found) {
         CHECK(multiplicity == 1);
@@ -374,7 +374,7 @@ TEST_CASE("where a turning vector has a small length") {
       CHECK(found[0].theta < .4);
       CHECK(found[1].theta > .4);
     }
-    const auto one = detail::angles_of_length(moved, 0);
+    const auto one = detail::subproblem3(moved, 0);
     REQUIRE(one.size() == 1);
     CHECK(one[0].multiplicity == 2);
     CHECK(one[0].theta == doctest::Approx(.4).epsilon(1e-13));

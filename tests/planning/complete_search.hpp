@@ -85,9 +85,9 @@ private:
 
   /// By Newton's method.
   [[nodiscard]] joints at(double u, joints x) const {
-    const auto here = duet::detail::place_of(path_(u));
+    const auto here = duet::detail::to_tip_pose(path_(u));
     for (int round = 0; round < 5; ++round) {
-      const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(x)), here);
+      const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)), here);
       const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
           duet::jacobian(arm_, x, duet::frame::hybrid), Eigen::ComputeFullU | Eigen::ComputeFullV);
       x += svd.solve(Eigen::Map<const joints>(&e.values[0]));
@@ -271,8 +271,8 @@ private:
             k == 0 ? joints(side * along) : joints(along.dot(direction) < 0 ? -along : along);
         joints y = x + fibre_step * direction;
         for (int round = 0; round < 5; ++round) {
-          const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(y)),
-                                                   duet::detail::place_of(pose));
+          const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(y)),
+                                                   duet::detail::to_tip_pose(pose));
           Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> here(
               duet::jacobian(arm_, y, duet::frame::hybrid),
               Eigen::ComputeFullU | Eigen::ComputeFullV);

@@ -3,7 +3,7 @@
 #include "support/random.hpp"
 
 #include <duet/planning/branches/elimination.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 
 #include <doctest/doctest.h>
 
@@ -18,7 +18,7 @@
 namespace test_planning_elimination {
 namespace {
 
-using duet::detail::joint_loop;
+using duet::detail::loop_equation;
 using duet::detail::six_coordinates;
 
 duet::detail::three_vector<double> random_vector(duet_test::random_source& random) {
@@ -26,9 +26,9 @@ duet::detail::three_vector<double> random_vector(duet_test::random_source& rando
 }
 
 /// A loop of axes in random places that is closed at θ.
-joint_loop closed_at(const six_coordinates& theta, const std::vector<std::size_t>& sliding,
-                     duet_test::random_source& random) {
-  joint_loop loop;
+loop_equation closed_at(const six_coordinates& theta, const std::vector<std::size_t>& sliding,
+                        duet_test::random_source& random) {
+  loop_equation loop;
   for (std::size_t i = 0; i < 6; ++i) {
     const auto n = random.direction<3>();
     loop.joints[i] = {true, {n[0], n[1], n[2]}, random_vector(random)};
@@ -40,7 +40,7 @@ joint_loop closed_at(const six_coordinates& theta, const std::vector<std::size_t
   return loop;
 }
 
-double difference(const joint_loop& loop, const six_coordinates& a, const six_coordinates& b) {
+double difference(const loop_equation& loop, const six_coordinates& a, const six_coordinates& b) {
   double largest = 0;
   for (Eigen::Index i = 0; i < 6; ++i) {
     const double d = a[i] - b[i];
@@ -63,7 +63,7 @@ TEST_CASE(
       for (double& x : theta) {
         x = random.uniform(-1.5, 1.5);
       }
-      const joint_loop loop = closed_at(theta, sliding, random);
+      const loop_equation loop = closed_at(theta, sliding, random);
       const duet::detail::elimination system(loop);
       double nearest = std::numeric_limits<double>::infinity();
       system.solution_at(theta[2], [&](const six_coordinates& x) {

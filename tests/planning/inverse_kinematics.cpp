@@ -35,9 +35,10 @@ std::vector<chain> arms() {
 /// How far the tip is from the goal, by matrices: of a turn by φ, |R − 1| = 2√2 |sin φ/2|.
 pose_error deviation_by_matrices(const chain& arm, const vector& theta,
                                  const dual_quaternion<double>& goal) {
-  const Eigen::Matrix4d gap = transform_matrix(arm.pose(theta)) - transform_matrix(goal);
-  const double chord = gap.topLeftCorner<3, 3>().norm() / std::sqrt(8);
-  return {gap.topRightCorner<3, 1>().norm(), 2 * std::asin(std::min(1.0, chord))};
+  const Eigen::Matrix4d max_abs_difference =
+      transform_matrix(arm.pose(theta)) - transform_matrix(goal);
+  const double chord = max_abs_difference.topLeftCorner<3, 3>().norm() / std::sqrt(8);
+  return {max_abs_difference.topRightCorner<3, 1>().norm(), 2 * std::asin(std::min(1.0, chord))};
 }
 
 /// Is this a solution, and what it says about itself true?
@@ -478,8 +479,8 @@ TEST_CASE("the error of a pose is the twist of the shorter screw motion to anoth
       const auto n = random.direction<3>(), t = random.direction<3>(), u = random.direction<3>();
       const auto turn = exp(vector3<double>(.5 * angle * vector3<double>(n[0], n[1], n[2])));
       const auto rotation = exp(vector3<double>(t[0], t[1], t[2]));
-      const detail::tip_place from{rotation, {u[0], u[1], u[2]}};
-      const detail::tip_place to{sign * (turn * rotation), {t[2], 3 * t[0], t[1]}};
+      const detail::tip_pose from{rotation, {u[0], u[1], u[2]}};
+      const detail::tip_pose to{sign * (turn * rotation), {t[2], 3 * t[0], t[1]}};
       const auto e = detail::error_twist(from, to);
       const vector3<double> omega(e[3], e[4], e[5]), p(u[0], u[1], u[2]);
       CHECK(omega.norm() <= pi * (1 + 1e-15));
@@ -487,8 +488,8 @@ TEST_CASE("the error of a pose is the twist of the shorter screw motion to anoth
       const vector3<double> spatial = vector3<double>(e[0], e[1], e[2]) - omega.cross(p);
       const auto there =
           exp(make_dual_vector(vector3<double>(omega / 2), vector3<double>(spatial / 2))) *
-          detail::pose_at(from);
-      const auto left = pose_error_between(there, detail::pose_at(to));
+          detail::to_dual_quaternion(from);
+      const auto left = pose_error_between(there, detail::to_dual_quaternion(to));
       CHECK(left.translation < 1e-14);
       CHECK(left.rotation < 1e-14);
     }

@@ -166,7 +166,7 @@ TEST_CASE(
     for (int i = random.integer(4, 30); i > 0; --i) {
       places.push_back(places.back() + random.log_uniform(1e-3, 1));
     }
-    const detail::reference_law law(places, {k % 2 == 0, k % 4 < 2});
+    const detail::reference_parametrisation law(places, {k % 2 == 0, k % 4 < 2});
     const std::vector<double> knots{places.front(), places.back()};
     const auto path = law.pieces(knots);
     CHECK((law.first_slope() > 0) == (k % 2 == 1));
@@ -442,9 +442,9 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
       places.push_back(polygon.s.back() * x * x * (3 - 2 * x));
     }
     const detail::ends_at_rest rest{k % 2 == 0, k % 3 == 0};
-    const auto path = detail::reference_law(places, rest).pieces(polygon.s);
+    const auto path = detail::reference_parametrisation(places, rest).pieces(polygon.s);
     const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
-    const detail::pace_bounds bounds(curve, path, n, v, a, j);
+    const detail::path_velocity_constraints bounds(curve, path, n, v, a, j);
     std::vector<double> pace;
     for (std::size_t i = 0; i < n + 2; ++i) {
       pace.push_back(random.uniform(.5, 2));
@@ -506,7 +506,7 @@ TEST_CASE("where a knot is next to a node, the piece between them has the same l
   for (int i = 0; i <= 16; ++i) {
     places.push_back(i * i * (3 - i / 8.0));
   }
-  const detail::reference_law law(places);
+  const detail::reference_parametrisation law(places);
   const auto whole = law.pieces({0, places.back()});
   REQUIRE(whole.size() == 16);
   for (const double off : {-1e-9, -1e-12, -1e-14, 0.0, 1e-14, 1e-12, 1e-9}) {
@@ -521,10 +521,10 @@ TEST_CASE("where a knot is next to a node, the piece between them has the same l
     for (int i = 0; i < 18; ++i) {
       pace.push_back(1 + .1 * std::sin(i));
     }
-    const auto motion = detail::timed_by_pace(
+    const auto motion = detail::trajectory_from_path_velocity(
         std::vector{straight(0, knot), straight(knot, places.back() - knot)}, path, 16, pace);
-    const auto uncut =
-        detail::timed_by_pace(std::vector{straight(0, places.back())}, whole, 16, pace);
+    const auto uncut = detail::trajectory_from_path_velocity(
+        std::vector{straight(0, places.back())}, whole, 16, pace);
     CHECK(motion.duration == doctest::Approx(uncut.duration).epsilon(1e-13));
     double length = 0;
     for (std::size_t i = 0; i < path.size(); ++i) {

@@ -137,10 +137,10 @@ private:
   /// Newton's method by least steps of the joints that limits do not hold; nothing where it leads
   /// far away.
   [[nodiscard]] std::optional<joints> at(double u, const joints& from, bool keeps_limits) const {
-    const auto goal = duet::detail::place_of(path_(u));
+    const auto goal = duet::detail::to_tip_pose(path_(u));
     joints x = from;
     for (int round = 0; round < 8; ++round) {
-      const auto e = duet::detail::error_twist(duet::detail::place_of(arm_.pose(x)), goal);
+      const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)), goal);
       const Eigen::Map<const Eigen::Matrix<double, 6, 1>> error(&e.values[0]);
       if (error.norm() < 1e-9) {
         return x;

@@ -34,11 +34,11 @@ template <int Joints>
 void check_least_solution() {
   using columns = Eigen::Matrix<double, 6, Joints>;
   duet_test::random_source random(4);
-  for (const double gap : {1., 1e-3, 1e-6, 1e-9, 1e-12}) {
-    CAPTURE(gap);
+  for (const double max_abs_difference : {1., 1e-3, 1e-6, 1e-9, 1e-12}) {
+    CAPTURE(max_abs_difference);
     for (int k = 0; k < 20; ++k) {
       columns j = random_matrix<columns>(random, 6, Joints);
-      j.row(5) = j.row(0) + j.row(3) + gap * j.row(5);
+      j.row(5) = j.row(0) + j.row(3) + max_abs_difference * j.row(5);
       const Eigen::Matrix<double, Joints, 1> rates =
           random_matrix<Eigen::Matrix<double, Joints, 1>>(random, Joints, 1);
       const Eigen::Matrix<double, 6, 1> e = j * rates;
@@ -47,7 +47,7 @@ void check_least_solution() {
       // What the rates have beyond it moves nothing, and is at right angles to it.
       const Eigen::Matrix<double, Joints, 1> rest = rates - x;
       CHECK((j * rest).norm() < 1e-14 * (1 + j.norm() * x.norm()));
-      CHECK(std::abs(rest.dot(x)) < 1e-14 / gap * (1 + rates.squaredNorm()) * 100);
+      CHECK(std::abs(rest.dot(x)) < 1e-14 / max_abs_difference * (1 + rates.squaredNorm()) * 100);
     }
   }
 }

@@ -108,9 +108,9 @@ TEST_CASE("centring moves joints away from their limits") {
   const vector lower = lower_limits(arm), upper = upper_limits(arm);
   const vector middle = (lower + upper) / 2;
   const vector theta = middle + .45 * (upper - lower);
-  const vector step = detail::towards_middle(theta, lower, upper, .1);
+  const vector step = detail::joint_centring_step(theta, lower, upper, .1);
   CHECK((step + vector::Constant(.1 * .9 * .9 * .9)).norm() < 1e-14);
-  CHECK(detail::towards_middle(middle, lower, upper, .1).norm() < 1e-14);
+  CHECK(detail::joint_centring_step(middle, lower, upper, .1).norm() < 1e-14);
 }
 
 TEST_CASE("where an arm gets stuck, motions in place go on") {

@@ -12,7 +12,7 @@ namespace test_planning_resolved_motion {
 namespace {
 
 using namespace duet;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 } // namespace
 
@@ -24,12 +24,12 @@ TEST_CASE("N22: B γ̇ moves the tip by γ̇, with the least joint rates") {
     const auto b = resolved_rate_matrix(arm, theta);
     const auto m = jacobian(arm, theta, frame::spatial);
     const auto j2 = pose_rate_matrix(arm.pose(theta));
-    CHECK(gap(m * b, j2) < 1e-10);
+    CHECK(max_abs_difference(m * b, j2) < 1e-10);
     // ∂γ/∂Θ B is the projection onto the rates of unit quaternions.
     const auto by_gamma = pose_coordinates_jacobian(arm, theta);
     const Eigen::Matrix<double, 7, 7> projection = by_gamma * b;
-    CHECK(gap(projection * projection, projection) < 1e-10);
-    CHECK(gap(projection * by_gamma, by_gamma) < 1e-10);
+    CHECK(max_abs_difference(projection * projection, projection) < 1e-10);
+    CHECK(max_abs_difference(projection * by_gamma, by_gamma) < 1e-10);
     // Least: B has nothing of the motion that leaves the tip in place, of which m knows one.
     Eigen::Matrix<double, 7, 1> in_place;
     for (int k = 0; k < 7; ++k) { // minors, with alternating signs
@@ -38,8 +38,9 @@ TEST_CASE("N22: B γ̇ moves the tip by γ̇, with the least joint rates") {
       in_place[k] = (k % 2 == 0 ? 1 : -1) * minor.determinant();
     }
     in_place.normalize();
-    CHECK(gap(m * in_place, vector6<double>::Zero()) < 1e-12);
-    CHECK(gap(in_place.transpose() * b, Eigen::Matrix<double, 1, 7>::Zero()) < 1e-10);
+    CHECK(max_abs_difference(m * in_place, vector6<double>::Zero()) < 1e-12);
+    CHECK(max_abs_difference(in_place.transpose() * b, Eigen::Matrix<double, 1, 7>::Zero()) <
+          1e-10);
   }
 }
 
@@ -52,14 +53,16 @@ TEST_CASE("N23: a step towards a near pose leaves an error of second order; eith
     const vector6<double> small = h * vector6<double>(1, -.5, .3, .8, -.2, .4);
     const auto next = manifold<dual_quaternion<double>>::plus(here, small, frame::body);
     const auto step = resolved_step(arm, theta, next, 1);
-    CHECK(gap(step, resolved_step(arm, theta, dual_quaternion<double>(-next), 1)) == 0);
-    const double error = gap(transform_matrix(arm.pose(step)), transform_matrix(next));
+    CHECK(max_abs_difference(step, resolved_step(arm, theta, dual_quaternion<double>(-next), 1)) ==
+          0);
+    const double error =
+        max_abs_difference(transform_matrix(arm.pose(step)), transform_matrix(next));
     if (before > 0) {
       CHECK(error / before == doctest::Approx(1e-2).epsilon(.1));
     }
     before = error;
     const auto half = resolved_step(arm, theta, next, .5);
-    CHECK(gap(half - theta, (step - theta) / 2) < 1e-15);
+    CHECK(max_abs_difference(half - theta, (step - theta) / 2) < 1e-15);
   }
 }
 

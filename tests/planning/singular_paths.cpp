@@ -162,7 +162,8 @@ TEST_CASE("the way out of a singularity is the one on which it is left fastest")
     theta[2] += 1.5;
     theta[4] = 0;
     const auto at = model.at(model.joints(theta));
-    const vector out = detail::own_joints(puma, detail::singular_point(at.jacobian).way_out());
+    const vector out =
+        detail::to_chain_joints(puma, detail::singular_point(at.jacobian).escape_direction());
     CHECK(out.norm() == doctest::Approx(1));
     CHECK(std::abs(out[4]) == doctest::Approx(1)); // all axes but that of joint 5 go on meeting
     const double h = 1e-3, left = smallest_singular_value(puma, theta + h * out);
@@ -202,7 +203,8 @@ TEST_CASE("the way out of a singularity is the gradient of the determinant, by d
       (determinant(low) * determinant(middle) > 0 ? low : high) = middle;
     }
     const auto at = model.at(model.joints(low));
-    const vector out = detail::own_joints(general, detail::singular_point(at.jacobian).way_out());
+    const vector out =
+        detail::to_chain_joints(general, detail::singular_point(at.jacobian).escape_direction());
     const vector slope = gradient(determinant, low).gradient.normalized();
     CHECK(std::abs(out.dot(slope)) == doctest::Approx(1).epsilon(1e-6));
   }
@@ -304,7 +306,7 @@ TEST_CASE("how far a stretched elbow bends for the tip to go inwards") {
     theta[2] = 0;
     theta[4] = 1 + .3 * theta[4];
     const auto stretched = model.at(model.joints(theta));
-    const auto n = detail::motion_in_place(stretched.jacobian).any_direction();
+    const auto n = detail::self_motion_space(stretched.jacobian).any_direction();
     for (const double bent : {0., .002, -.001}) {
       const auto at = model.at(stretched.theta + bent * n);
       const detail::singular_point here(at.jacobian);
@@ -335,17 +337,17 @@ TEST_CASE("a curve of self-motion keeps its orientation") {
       start[i] = random.uniform(-1, 1) - (i == 3 ? 1.5 : 0);
     }
     auto at = model.at(model.joints(start));
-    auto n = detail::motion_in_place(at.jacobian).any_direction();
+    auto n = detail::self_motion_space(at.jacobian).any_direction();
     const double first = detail::orientation(at.jacobian, n);
     CHECK(detail::orientation(at.jacobian, -1 * n) == -first);
     for (int step = 0; step < 300; ++step) {
       at = model.at(at.theta + .005 * n);
-      n = detail::motion_in_place(at.jacobian).direction(n);
+      n = detail::self_motion_space(at.jacobian).direction(n);
       CHECK(norm(n) == doctest::Approx(1));
       CHECK(detail::orientation(at.jacobian, n) == first);
       Eigen::Matrix<double, 7, 7> square;
-      square << jacobian(arm, seven(detail::own_joints(arm, at.theta)), frame::hybrid),
-          detail::own_joints(arm, n).transpose();
+      square << jacobian(arm, seven(detail::to_chain_joints(arm, at.theta)), frame::hybrid),
+          detail::to_chain_joints(arm, n).transpose();
       CHECK(square.determinant() * first > 0);
     }
   }

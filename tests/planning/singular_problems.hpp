@@ -77,7 +77,7 @@ inline std::vector<arm<6>> six_joints() {
           {"LR Mate 200iD", from_dh(mate)}};
 }
 
-inline std::vector<arm<7>> seven_joints() {
+inline std::vector<arm<7>> redundant_arm() {
   return {{"Panda", robots::panda().table()},
           {"iiwa 14", robots::iiwa14().table()},
           {"Baxter", robots::baxter_left().table()}};

@@ -138,7 +138,7 @@ TEST_CASE("the layered search itself, where the answer is known") {
 }
 
 planned<7> solve_seven(const case_of_bench& which) {
-  return solve(seven_joints()[which.arm], which);
+  return solve(redundant_arm()[which.arm], which);
 }
 constexpr std::size_t panda = 0, iiwa = 1, baxter = 2;
 
@@ -223,7 +223,7 @@ TEST_CASE("limits end a way less than 1e-4 of the path before a singularity woul
 /// Where none of the steps of a search led to its next parameter, what they had reached on the way
 /// counted at positive parameters alone: this plan ended 5e-3 too early.
 TEST_CASE("where a plan ends does not depend on where its parameter begins") {
-  const auto a = seven_joints()[panda];
+  const auto a = redundant_arm()[panda];
   const auto p = make(a, family::from_wrist, 1, 42);
   const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
   const auto plan = follow_path(a.chain, p.start, path, 0, 1);
@@ -235,7 +235,7 @@ TEST_CASE("where a plan ends does not depend on where its parameter begins") {
 
 /// Without limits another way, which parts from it long before, would lead on.
 TEST_CASE("a way of the Baxter ends where no motion in place leads on, limits or not") {
-  const auto a = seven_joints()[2];
+  const auto a = redundant_arm()[2];
   const auto p = make(a, family::from_elbow, 3, 84);
   const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
   const auto plan = plan_screw_motion(a.chain, p.start, path.last);

@@ -182,7 +182,7 @@ TEST_CASE("the largest and the least speed of two unknowns: none of a grid is be
     CHECK(least_x <= smallest + 1e-12);
     // With the next speed that goes with it, all bounds are kept.
     for (const double x : {least_x, most_x}) {
-      CHECK(is_allowed(x, detail::next_speeds(bounds, x, least, .7).most.value, 1e-9));
+      CHECK(is_allowed(x, detail::feasible_path_velocities(bounds, x, least, .7).most.value, 1e-9));
     }
   }
 }
@@ -511,7 +511,7 @@ TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
     }
     const detail::joint_polygon<vector> polygon(waypoints);
     const auto smooth = detail::smooth_slopes(polygon);
-    const detail::timing_problem<3> problem{
+    const detail::time_parametrisation_input<3> problem{
         polygon, waypoints.size(), none, one, none, 0, 0, 1, -one, one};
     const auto largest = [&](const std::vector<vector>& slopes) {
       double result = 0;

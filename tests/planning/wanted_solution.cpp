@@ -57,7 +57,7 @@ double distance(const chain& arm, const vector& theta, const vector3<double>& p)
 
 /// Of a slope what the tip, held at a position, and joints at limits leave: zero where nothing
 /// nearby is lower. (The sign of what limits hold is looked at, too.)
-double free_slope(const chain& arm, const vector& theta, vector slope) {
+double projected_gradient(const chain& arm, const vector& theta, vector slope) {
   std::vector<vector> held;
   const auto j = jacobian(arm, theta, frame::hybrid);
   const auto hold = [&](vector row) {
@@ -125,7 +125,7 @@ TEST_CASE("a preferred posture: no known solution is nearer to it, nor any nearb
       CHECK(is_within_limits(arm, found.joints));
       solved += found.reason == stop_reason::reached && distance(arm, found.joints, p) < 1e-6 &&
                 wish(found.joints) <= wish(known);
-      flat += free_slope(arm, found.joints, wish.gradient(found.joints)) < 1e-6;
+      flat += projected_gradient(arm, found.joints, wish.gradient(found.joints)) < 1e-6;
     }
     CHECK(solved == 10);
     CHECK(flat == 10);

@@ -22,7 +22,7 @@ using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
@@ -162,8 +162,8 @@ TEST_CASE("N1: the product, against 100 digits") {
     };
     const auto p = random_quaternion();
     const auto q = random_quaternion();
-    const auto exact = truth::product(truth::wide(p), truth::wide(q));
-    worst.add(truth::ulps(p * q, exact, truth::length(exact)), p, q);
+    const auto exact = reference::product(reference::wide(p), reference::wide(q));
+    worst.add(reference::ulps(p * q, exact, reference::length(exact)), p, q);
   }
   CHECK_MESSAGE(worst <= 4, worst);
 }

@@ -23,7 +23,7 @@ namespace test_quaternion_distance {
 
 using duet::distance;
 using duet::squared_distance;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using std::numbers::pi;
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
@@ -96,27 +96,30 @@ TEST_CASE("derivatives, also at and near zero") {
   for (const double theta : {1e-150, 1e-30, 1e-8, 1e-3, 0.4, 2.0, 3.1}) {
     CAPTURE(theta);
     const quaternion b = duet::from_rotation_vector(vector(theta * axis)) * start;
-    CHECK(gap(duet::gradient<duet_test::shared_tag>(square, b, frame::spatial).gradient,
+    CHECK(max_abs_difference(
+              duet::gradient<duet_test::shared_tag>(square, b, frame::spatial).gradient,
               vector(2 * theta * axis)) < 4e-15);
     const matrix across = theta / 2 / std::tan(theta / 2) * (matrix::Identity() - along);
-    CHECK(gap(duet::hessian(square, b, frame::spatial).hessian, matrix(2 * (across + along))) <
-          1e-13);
+    CHECK(max_abs_difference(duet::hessian(square, b, frame::spatial).hessian,
+                             matrix(2 * (across + along))) < 1e-13);
     if (theta > 1e-4) {
-      CHECK(gap(duet::gradient<duet_test::shared_tag>(angle, b, frame::spatial).gradient, axis) <
+      CHECK(max_abs_difference(
+                duet::gradient<duet_test::shared_tag>(angle, b, frame::spatial).gradient, axis) <
             1e-15 / theta);
-      CHECK(gap(duet::hessian(angle, b, frame::spatial).hessian, matrix(across / theta)) <
-            1e-14 / (theta * theta));
+      CHECK(max_abs_difference(duet::hessian(angle, b, frame::spatial).hessian,
+                               matrix(across / theta)) < 1e-14 / (theta * theta));
     }
   }
   const auto [value, slope, curvature] = duet::hessian(square, start, frame::body);
   CHECK(value == 0);
   CHECK(slope.norm() == 0);
-  CHECK(gap(curvature, matrix(2 * matrix::Identity())) < 1e-15);
+  CHECK(max_abs_difference(curvature, matrix(2 * matrix::Identity())) < 1e-15);
   // From the identity nothing is rounded, however small the angle.
   const auto from_one = [](const auto& b) { return distance(quaternion(1), b); };
   for (const double theta : {1e-300, 1e-150, 1e-8}) {
     const quaternion b = duet::from_rotation_vector(vector(theta * axis));
-    CHECK(gap(duet::gradient<duet_test::shared_tag>(from_one, b, frame::spatial).gradient, axis) <
+    CHECK(max_abs_difference(
+              duet::gradient<duet_test::shared_tag>(from_one, b, frame::spatial).gradient, axis) <
           1e-15);
   }
   // By both ends.
@@ -124,8 +127,8 @@ TEST_CASE("derivatives, also at and near zero") {
   const quaternion end = duet::from_rotation_vector(vector(0.8 * axis)) * start;
   const auto g =
       duet::gradient<duet_test::shared_tag>(both, std::tuple(start, end), frame::spatial).gradient;
-  CHECK(gap(g.head<3>(), vector(-1.6 * axis)) < 4e-15);
-  CHECK(gap(g.tail<3>(), vector(1.6 * axis)) < 4e-15);
+  CHECK(max_abs_difference(g.head<3>(), vector(-1.6 * axis)) < 4e-15);
+  CHECK(max_abs_difference(g.tail<3>(), vector(1.6 * axis)) < 4e-15);
 }
 
 TEST_CASE("half a turn apart the derivative is that of the sign as given") {
@@ -135,8 +138,8 @@ TEST_CASE("half a turn apart the derivative is that of the sign as given") {
     return vector(duet::gradient<duet_test::shared_tag>(square, b, frame::spatial).gradient);
   };
   CHECK(square(half_turn) == doctest::Approx(pi * pi).epsilon(1e-15));
-  CHECK(gap(way(half_turn), vector(2 * pi, 0, 0)) < 4e-15);
-  CHECK(gap(way(-half_turn), vector(-2 * pi, 0, 0)) < 4e-15);
+  CHECK(max_abs_difference(way(half_turn), vector(2 * pi, 0, 0)) < 4e-15);
+  CHECK(max_abs_difference(way(-half_turn), vector(-2 * pi, 0, 0)) < 4e-15);
 }
 
 TEST_CASE("over batches") {

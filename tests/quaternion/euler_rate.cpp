@@ -93,9 +93,9 @@ TEST_CASE("P5: as printed, element (3, 1) is -sin psi, and the angular velocity 
 
   const double psi = 0.1, theta = -0.7, phi = 0.3;
   const duet::vector3<double> rates(1, 2, 3); // φ′, θ′, ψ′
-  const auto truth = automatic(psi, theta, phi, rates[2], rates[1], rates[0]);
+  const auto reference = automatic(psi, theta, phi, rates[2], rates[1], rates[0]);
   const duet::vector3<double> printed = duet::printed_euler_rate_matrix(psi, theta) * rates;
-  CHECK((printed - truth).norm() ==
+  CHECK((printed - reference).norm() ==
         doctest::Approx(std::abs(std::sin(theta) - std::sin(psi)) * rates[0]));
 }
 

@@ -21,7 +21,7 @@ namespace test_quaternion_exponential {
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
@@ -65,24 +65,26 @@ TEST_CASE("N4: exp, value and first derivative") {
   worst_error slope("exp, derivative by AD");
   worst_error closed("exp, derivative in closed form");
   for (const auto& q : inputs()) {
-    const truth::four x = truth::wide(q);
-    const truth::four exact = truth::exp(x);
-    value.add(
-        truth::ulps(exp(q), exact, truth::length(exact) + truth::change_of_value(truth::exp, x, 1)),
-        q);
+    const reference::four x = reference::wide(q);
+    const reference::four exact = reference::exp(x);
+    value.add(reference::ulps(exp(q), exact,
+                              reference::length(exact) +
+                                  reference::change_of_value(reference::exp, x, 1)),
+              q);
 
     const auto d = random.direction<4>();
     const quaternion<double> q_dot(d[0], d[1], d[2], d[3]);
-    const truth::four dx = truth::wide(q_dot);
-    const truth::four exact_slope = truth::difference(
-        [&](const truth::real& t) { return truth::exp(truth::sum(x, dx, t)); }, 1);
-    const truth::real scale =
-        truth::length(exact_slope) + truth::change_of_derivative(truth::exp, x, dx, 1);
+    const reference::four dx = reference::wide(q_dot);
+    const reference::four exact_slope = reference::difference(
+        [&](const reference::real& t) { return reference::exp(reference::sum(x, dx, t)); }, 1);
+    const reference::real scale =
+        reference::length(exact_slope) + reference::change_of_derivative(reference::exp, x, dx, 1);
     const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) { return exp(q + t * q_dot); }, 0.0);
-    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
-    closed.add(truth::ulps(duet_test::closed_form::exp_derivative(q, q_dot), exact_slope, scale), q,
-               q_dot);
+    slope.add(reference::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
+    closed.add(
+        reference::ulps(duet_test::closed_form::exp_derivative(q, q_dot), exact_slope, scale), q,
+        q_dot);
   }
   CHECK_MESSAGE(value <= 16, value);
   CHECK_MESSAGE(slope <= 16, slope);

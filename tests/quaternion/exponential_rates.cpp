@@ -59,7 +59,7 @@ std::array<vector3<R>, order> closed_form(double size) {
 }
 
 /// vec(Q* Q′) of the Taylor series of Q.
-std::array<vector3<real_50>, order> truth(double size) {
+std::array<vector3<real_50>, order> reference(double size) {
   using series = taylor<real_50, order>;
   const quaternion<series> q = duet::exp(path<real_50>(size));
   const auto rate = [](const series& x) {
@@ -83,7 +83,7 @@ TEST_CASE("rates of the exponential along a curve, from the identity to a full t
   for (const double size :
        {0.0, 1e-300, 1e-9, 1e-3, 0.5, 0.9999, 1.0001, 1.5, 2.0, 3.0, 3.141592653589793, 3.2, 6.0}) {
     CAPTURE(size);
-    const auto exact = truth(size);
+    const auto exact = reference(size);
     const auto computed = closed_form<double>(size);
     const auto precise = closed_form<real_50>(size);
     for (std::size_t k = 0; k < order; ++k) {

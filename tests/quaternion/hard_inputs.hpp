@@ -56,9 +56,9 @@ namespace duet_test {
 }
 
 /// How far from q its logarithm is smooth: the distance to zero, or to the full turns.
-[[nodiscard]] inline truth::real smooth_length(const truth::four& q) {
-  const truth::real vector_part = truth::length({0, q[1], q[2], q[3]});
-  return q[0] < 0 ? vector_part : truth::length(q);
+[[nodiscard]] inline reference::real smooth_length(const reference::four& q) {
+  const reference::real vector_part = reference::length({0, q[1], q[2], q[3]});
+  return q[0] < 0 ? vector_part : reference::length(q);
 }
 
 } // namespace duet_test

@@ -25,7 +25,7 @@ using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
@@ -86,24 +86,26 @@ struct computed {
 /// `reach` is how far it is smooth, `moved` how much the rounding of q
 /// moves it, in units: |q|, or the distance to a singularity where that is less.
 void measure(errors& e, const computed& both,
-             const std::function<truth::four(truth::four)>& exact_f, const quaternion<double>& q,
-             const quaternion<double>& d, const truth::real& reach, const truth::real& moved) {
+             const std::function<reference::four(reference::four)>& exact_f,
+             const quaternion<double>& q, const quaternion<double>& d, const reference::real& reach,
+             const reference::real& moved) {
   const auto& [by_taylor, by_nesting] = both;
-  const truth::four x = truth::wide(q);
-  const truth::four dx = truth::wide(d);
-  std::array<truth::four, 6> exact;
+  const reference::four x = reference::wide(q);
+  const reference::four dx = reference::wide(d);
+  std::array<reference::four, 6> exact;
   for (int k = 0; k <= 5; ++k) {
-    exact[std::size_t(k)] = truth::difference(
-        [&](const truth::real& t) { return exact_f(truth::sum(x, dx, t)); }, k, reach);
+    exact[std::size_t(k)] = reference::difference(
+        [&](const reference::real& t) { return exact_f(reference::sum(x, dx, t)); }, k, reach);
   }
   for (std::size_t k = 0; k <= 4; ++k) {
-    const truth::real scale = truth::length(exact[k]) + moved * truth::length(exact[k + 1]);
-    e.by_taylor[k].add(truth::ulps(by_taylor[k], exact[k], scale), q, d);
+    const reference::real scale =
+        reference::length(exact[k]) + moved * reference::length(exact[k + 1]);
+    e.by_taylor[k].add(reference::ulps(by_taylor[k], exact[k], scale), q, d);
     const int order = int(k);
     const quaternion<double> nested_result(
         nested_derivative(by_nesting.w(), order), nested_derivative(by_nesting.x(), order),
         nested_derivative(by_nesting.y(), order), nested_derivative(by_nesting.z(), order));
-    e.by_nesting[k].add(truth::ulps(nested_result, exact[k], scale), q, d);
+    e.by_nesting[k].add(reference::ulps(nested_result, exact[k], scale), q, d);
   }
 }
 
@@ -137,7 +139,7 @@ TEST_CASE("derivatives of exp to fourth order") {
       const quaternion<double> at(0, angle * a[0], angle * a[1], angle * a[2]);
       const quaternion<double> along(scalar, d[0], d[1], d[2]);
       const computed both([](const auto& q) { return exp(q); }, at, along);
-      measure(e, both, truth::exp, at, along, 1, angle);
+      measure(e, both, reference::exp, at, along, 1, angle);
     }
   }
   e.check({16, 16, 16, 16, 16});
@@ -151,11 +153,11 @@ TEST_CASE("derivatives of log to fourth order") {
       const auto a = random.direction<3>();
       const auto d = random.direction<4>();
       const double s = std::sin(angle);
-      const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
+      const reference::real reach = angle > 1.6 ? reference::real(s) : reference::real(1);
       const quaternion<double> at(std::cos(angle), s * a[0], s * a[1], s * a[2]);
       const quaternion<double> along(d[0], d[1], d[2], d[3]);
       const computed both([](const auto& q) { return log(q); }, at, along);
-      measure(e, both, truth::log, at, along, reach, reach);
+      measure(e, both, reference::log, at, along, reach, reach);
     }
   }
   e.check({16, 16, 16, 16, 16});
@@ -168,14 +170,14 @@ TEST_CASE("derivatives of pow to fourth order") {
     const auto a = random.direction<3>();
     const auto d = random.direction<4>();
     const double s = std::sin(angle);
-    const truth::real reach = angle > 1.6 ? truth::real(s) : truth::real(1);
+    const reference::real reach = angle > 1.6 ? reference::real(s) : reference::real(1);
     for (const double rho : {0.5, -1.3}) {
       const quaternion<double> at(std::cos(angle), s * a[0], s * a[1], s * a[2]);
       const quaternion<double> along(d[0], d[1], d[2], d[3]);
       const computed both([=](const auto& q) { return pow(q, rho); }, at, along);
       measure(
-          e, both, [=](const truth::four& q) { return truth::pow(q, rho); }, at, along, reach,
-          reach);
+          e, both, [=](const reference::four& q) { return reference::pow(q, rho); }, at, along,
+          reach, reach);
     }
   }
   e.check({16, 16, 16, 16, 16});

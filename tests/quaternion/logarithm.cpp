@@ -20,7 +20,7 @@ namespace test_quaternion_logarithm {
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 TEST_CASE("N4: log, value and first derivative") {
   random_source random(3);
@@ -28,27 +28,30 @@ TEST_CASE("N4: log, value and first derivative") {
   worst_error slope("log, derivative by AD");
   worst_error closed("log, derivative in closed form");
   for (const auto& q : duet_test::hard_quaternions()) {
-    const truth::four x = truth::wide(q);
-    const truth::real smooth = duet_test::smooth_length(x);
-    const truth::four exact = truth::log(x);
-    value.add(truth::ulps(log(q), exact,
-                          truth::length(exact) + truth::change_of_value(truth::log, x, smooth)),
+    const reference::four x = reference::wide(q);
+    const reference::real smooth = duet_test::smooth_length(x);
+    const reference::four exact = reference::log(x);
+    value.add(reference::ulps(log(q), exact,
+                              reference::length(exact) +
+                                  reference::change_of_value(reference::log, x, smooth)),
               q);
 
     const auto d = random.direction<4>();
     const quaternion<double> q_dot(d[0], d[1], d[2], d[3]);
-    const truth::four dx = truth::wide(q_dot);
-    const truth::four exact_slope = truth::difference(
-        [&](const truth::real& t) { return truth::log(truth::sum(x, dx, t)); }, 1, smooth);
-    const truth::real scale =
-        truth::length(exact_slope) + truth::change_of_derivative(truth::log, x, dx, smooth);
+    const reference::four dx = reference::wide(q_dot);
+    const reference::four exact_slope = reference::difference(
+        [&](const reference::real& t) { return reference::log(reference::sum(x, dx, t)); }, 1,
+        smooth);
+    const reference::real scale = reference::length(exact_slope) +
+                                  reference::change_of_derivative(reference::log, x, dx, smooth);
     const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) { return log(q + t * q_dot); }, 0.0);
-    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
+    slope.add(reference::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
     // The closed form has φ in it and loses digits near a full turn, where AD does not.
-    if (q.w() > 0 || smooth > truth::length(x) / 10) {
-      closed.add(truth::ulps(duet_test::closed_form::log_derivative(q, q_dot), exact_slope, scale),
-                 q, q_dot);
+    if (q.w() > 0 || smooth > reference::length(x) / 10) {
+      closed.add(
+          reference::ulps(duet_test::closed_form::log_derivative(q, q_dot), exact_slope, scale), q,
+          q_dot);
     }
   }
   CHECK_MESSAGE(value <= 16, value);

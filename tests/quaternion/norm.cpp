@@ -23,17 +23,19 @@ namespace test_quaternion_norm {
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
-truth::four exact_norm(const truth::four& q) { return {truth::length(q), 0, 0, 0}; }
-truth::four exact_direction(const truth::four& q) { return truth::times(q, 1 / truth::length(q)); }
-truth::four exact_inverse(const truth::four& q) {
-  return truth::times(truth::conj(q), 1 / (truth::length(q) * truth::length(q)));
+reference::four exact_norm(const reference::four& q) { return {reference::length(q), 0, 0, 0}; }
+reference::four exact_direction(const reference::four& q) {
+  return reference::times(q, 1 / reference::length(q));
+}
+reference::four exact_inverse(const reference::four& q) {
+  return reference::times(reference::conj(q), 1 / (reference::length(q) * reference::length(q)));
 }
 
-bool overflows(const truth::four& x) { return truth::length(x) > 1e308; }
+bool overflows(const reference::four& x) { return reference::length(x) > 1e308; }
 
 /// The value and two derivatives along a direction of unit length. The function is homogeneous of
 /// this degree: its k-th derivatives are about k! |q|^(degree − k).
@@ -47,18 +49,19 @@ void check(const char* name, int degree, const F& f, const G& exact_f) {
     const auto d = random.direction<4>();
     const quaternion<double> q_dot(d[0], d[1], d[2], d[3]);
     const auto y = duet::derivatives<2>([&](const auto& t) { return f(q + t * q_dot); }, 0.0);
-    const truth::four x = truth::wide(q);
-    const truth::four dx = truth::wide(q_dot);
-    const truth::real size = truth::length(x);
-    std::array<truth::four, 3> exact;
+    const reference::four x = reference::wide(q);
+    const reference::four dx = reference::wide(q_dot);
+    const reference::real size = reference::length(x);
+    std::array<reference::four, 3> exact;
     for (int k = 0; k <= 2; ++k) {
-      exact[std::size_t(k)] = truth::difference(
-          [&](const truth::real& t) { return exact_f(truth::sum(x, dx, t)); }, k, size);
+      exact[std::size_t(k)] = reference::difference(
+          [&](const reference::real& t) { return exact_f(reference::sum(x, dx, t)); }, k, size);
     }
     for (std::size_t k = 0; k <= 2; ++k) {
       if (!overflows(exact[k])) {
-        worst[k].add(truth::ulps(y[k], exact[k], next_factorial[k] * pow(size, degree - int(k))), q,
-                     q_dot);
+        worst[k].add(
+            reference::ulps(y[k], exact[k], next_factorial[k] * pow(size, degree - int(k))), q,
+            q_dot);
       }
     }
   }

@@ -20,7 +20,7 @@ namespace test_quaternion_power {
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 TEST_CASE("N5: pow, value and first derivative by base and exponent") {
   random_source random(11);
@@ -31,44 +31,45 @@ TEST_CASE("N5: pow, value and first derivative by base and exponent") {
   int i = 0;
   for (const auto& q : duet_test::hard_quaternions()) {
     const double rho = exponents[++i % 9];
-    const truth::four x = truth::wide(q);
+    const reference::four x = reference::wide(q);
     // A whole power is smooth near a full turn, as long as the exponent does not move.
     const bool is_smooth = rho == std::round(rho) && duet_test::smooth_length(x) < 1e-9 * norm(q);
-    const truth::real smooth = is_smooth ? truth::length(x) : duet_test::smooth_length(x);
-    const auto power = [&](const truth::four& y) { return truth::pow(y, rho); };
-    const truth::four exact = power(x);
-    const truth::four by_rho = truth::difference(
-        [&](const truth::real& t) { return truth::pow(x, truth::real(rho + t)); }, 1);
-    value.add(truth::ulps(pow(q, rho), exact,
-                          truth::length(exact) + truth::change_of_value(power, x, smooth)),
-              q, rho);
+    const reference::real smooth = is_smooth ? reference::length(x) : duet_test::smooth_length(x);
+    const auto power = [&](const reference::four& y) { return reference::pow(y, rho); };
+    const reference::four exact = power(x);
+    const reference::four by_rho = reference::difference(
+        [&](const reference::real& t) { return reference::pow(x, reference::real(rho + t)); }, 1);
+    value.add(
+        reference::ulps(pow(q, rho), exact,
+                        reference::length(exact) + reference::change_of_value(power, x, smooth)),
+        q, rho);
 
     // Both change: q by q_dot, of the size of q, and rho by rho_dot.
     const double size = norm(q);
     const auto d = random.direction<4>();
     const quaternion<double> q_dot(size * d[0], size * d[1], size * d[2], size * d[3]);
     const double rho_dot = is_smooth ? 0 : random.uniform(-1, 1);
-    const truth::four dx = truth::wide(q_dot);
-    const truth::real reach = smooth / truth::length(x);
-    const truth::four exact_slope = truth::difference(
-        [&](const truth::real& t) {
-          return truth::pow(truth::sum(x, dx, t), truth::real(rho + rho_dot * t));
+    const reference::four dx = reference::wide(q_dot);
+    const reference::real reach = smooth / reference::length(x);
+    const reference::four exact_slope = reference::difference(
+        [&](const reference::real& t) {
+          return reference::pow(reference::sum(x, dx, t), reference::real(rho + rho_dot * t));
         },
         1, reach);
-    if (truth::length(exact_slope) > 1e300) {
+    if (reference::length(exact_slope) > 1e300) {
       continue; // near a full turn, and large
     }
-    const truth::real scale =
-        truth::length(exact_slope) + truth::length(by_rho) +
-        truth::change_of_derivative(power, x, dx, smooth) +
-        std::abs(rho_dot) * truth::length(exact) *
-            truth::change_of_value(truth::log, x, duet_test::smooth_length(x));
+    const reference::real scale =
+        reference::length(exact_slope) + reference::length(by_rho) +
+        reference::change_of_derivative(power, x, dx, smooth) +
+        std::abs(rho_dot) * reference::length(exact) *
+            reference::change_of_value(reference::log, x, duet_test::smooth_length(x));
     const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) { return pow(q + t * q_dot, rho + t * rho_dot); }, 0.0);
-    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), q, rho, q_dot, rho_dot);
-    if (duet_test::smooth_length(x) > truth::length(x) / 10) {
-      closed.add(truth::ulps(duet_test::closed_form::pow_derivative(q, q_dot, rho, rho_dot),
-                             exact_slope, scale),
+    slope.add(reference::ulps(automatic.derivative, exact_slope, scale), q, rho, q_dot, rho_dot);
+    if (duet_test::smooth_length(x) > reference::length(x) / 10) {
+      closed.add(reference::ulps(duet_test::closed_form::pow_derivative(q, q_dot, rho, rho_dot),
+                                 exact_slope, scale),
                  q, rho, q_dot, rho_dot);
     }
   }
@@ -142,23 +143,26 @@ TEST_CASE("N5: higher derivatives of pow near whole exponents, where they vanish
     const auto a = random.direction<4>(), b = random.direction<4>();
     const quaternion<double> q(std::abs(a[0]), a[1], a[2], a[3]), rate(b[0], b[1], b[2], b[3]);
     const double rho = 1 + i % 3 + random.uniform(-0.04, 0.04);
-    const truth::four x = truth::wide(q), dx = truth::wide(rate);
-    const auto derivative = [&](int k, const truth::real& exponent) {
-      return truth::difference(
-          [&](const truth::real& t) { return truth::pow(truth::sum(x, dx, t), exponent); }, k,
-          truth::real(0.1));
+    const reference::four x = reference::wide(q), dx = reference::wide(rate);
+    const auto derivative = [&](int k, const reference::real& exponent) {
+      return reference::difference(
+          [&](const reference::real& t) {
+            return reference::pow(reference::sum(x, dx, t), exponent);
+          },
+          k, reference::real(0.1));
     };
     const auto series =
         pow(q + duet::taylor<double, 4>::variable(0) * rate, duet::taylor<double, 4>(rho));
     for (int k = 3; k <= 4; ++k) {
-      const auto exact = derivative(k, truth::real(rho));
-      const auto beside = derivative(k, truth::real(rho * (1 + 1e-8)));
-      const truth::real scale =
-          truth::length(exact) + 1e8 * truth::length(truth::sum(beside, exact, -1));
-      worst.add(truth::ulps(quaternion<double>(series.w().derivative(k), series.x().derivative(k),
-                                               series.y().derivative(k), series.z().derivative(k)),
-                            exact, scale),
-                k, q, rate, rho);
+      const auto exact = derivative(k, reference::real(rho));
+      const auto beside = derivative(k, reference::real(rho * (1 + 1e-8)));
+      const reference::real scale =
+          reference::length(exact) + 1e8 * reference::length(reference::sum(beside, exact, -1));
+      worst.add(
+          reference::ulps(quaternion<double>(series.w().derivative(k), series.x().derivative(k),
+                                             series.y().derivative(k), series.z().derivative(k)),
+                          exact, scale),
+          k, q, rate, rho);
     }
   }
   CHECK_MESSAGE(worst <= 32, worst);

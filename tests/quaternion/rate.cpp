@@ -23,7 +23,7 @@ using duet::vector3;
 using duet_test::random_source;
 using duet_test::worst_error;
 namespace frame = duet::frame;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
@@ -103,29 +103,30 @@ TEST_CASE("N7: against 100 digits") {
   for (int i = 0; i < 200; ++i) {
     const auto q = random_rotation(random);
     const auto q_dot = random_rotation(random) * random.log_uniform(1e-8, 1e8);
-    const auto wide_q = truth::wide(q);
-    const auto wide_rate = truth::wide(q_dot);
-    auto exact_s = truth::times(truth::product(wide_rate, truth::conj(wide_q)), 2);
-    auto exact_b = truth::times(truth::product(truth::conj(wide_q), wide_rate), 2);
+    const auto wide_q = reference::wide(q);
+    const auto wide_rate = reference::wide(q_dot);
+    auto exact_s = reference::times(reference::product(wide_rate, reference::conj(wide_q)), 2);
+    auto exact_b = reference::times(reference::product(reference::conj(wide_q), wide_rate), 2);
     exact_s[0] = 0;
     exact_b[0] = 0;
-    const truth::real scale = 2 * truth::length(wide_rate);
-    spatial.add(truth::ulps(quaternion<double>(0, angular_velocity(q, q_dot, frame::spatial)),
-                            exact_s, scale),
+    const reference::real scale = 2 * reference::length(wide_rate);
+    spatial.add(reference::ulps(quaternion<double>(0, angular_velocity(q, q_dot, frame::spatial)),
+                                exact_s, scale),
                 q, q_dot);
-    body.add(
-        truth::ulps(quaternion<double>(0, angular_velocity(q, q_dot, frame::body)), exact_b, scale),
-        q, q_dot);
+    body.add(reference::ulps(quaternion<double>(0, angular_velocity(q, q_dot, frame::body)),
+                             exact_b, scale),
+             q, q_dot);
 
     const vector3<double> omega = random_vector(random);
-    const truth::four wide_omega = truth::wide(quaternion<double>(0, omega));
-    const auto back_s = truth::times(truth::product(wide_omega, wide_q), 0.5);
-    const auto back_b = truth::times(truth::product(wide_q, wide_omega), 0.5);
-    rate_s.add(
-        truth::ulps(quaternion_rate(q, omega, frame::spatial), back_s, truth::length(back_s)), q,
-        omega.transpose());
-    rate_b.add(truth::ulps(quaternion_rate(q, omega, frame::body), back_b, truth::length(back_b)),
+    const reference::four wide_omega = reference::wide(quaternion<double>(0, omega));
+    const auto back_s = reference::times(reference::product(wide_omega, wide_q), 0.5);
+    const auto back_b = reference::times(reference::product(wide_q, wide_omega), 0.5);
+    rate_s.add(reference::ulps(quaternion_rate(q, omega, frame::spatial), back_s,
+                               reference::length(back_s)),
                q, omega.transpose());
+    rate_b.add(
+        reference::ulps(quaternion_rate(q, omega, frame::body), back_b, reference::length(back_b)),
+        q, omega.transpose());
   }
   for (const auto& w : {spatial, body, rate_s, rate_b}) {
     CHECK_MESSAGE(w <= 4, w);

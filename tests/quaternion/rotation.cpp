@@ -22,7 +22,7 @@ using duet::quaternion;
 using duet::vector3;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
@@ -51,15 +51,16 @@ TEST_CASE("rotate is v -> q v q*, active") {
   for (int i = 0; i < 200; ++i) {
     const auto q = random_rotation(random);
     const vector3<double> v = random.log_uniform(1e-100, 1e100) * direction(random);
-    const auto wide_q = truth::wide(q);
+    const auto wide_q = reference::wide(q);
     // Made a unit in wide arithmetic: a norm that is off by a rounding scales q v q*.
-    const auto unit = truth::times(wide_q, 1 / truth::length(wide_q));
-    const auto exact =
-        truth::product(truth::product(unit, truth::wide(pure(v))), truth::conj(unit));
-    by_quaternion.add(truth::ulps(pure(rotate(q, v)), exact, 4 * truth::length(exact)), q,
+    const auto unit = reference::times(wide_q, 1 / reference::length(wide_q));
+    const auto exact = reference::product(reference::product(unit, reference::wide(pure(v))),
+                                          reference::conj(unit));
+    by_quaternion.add(reference::ulps(pure(rotate(q, v)), exact, 4 * reference::length(exact)), q,
                       v.transpose());
-    by_matrix.add(truth::ulps(pure(rotation_matrix(q) * v), exact, 4 * truth::length(exact)), q,
-                  v.transpose());
+    by_matrix.add(
+        reference::ulps(pure(rotation_matrix(q) * v), exact, 4 * reference::length(exact)), q,
+        v.transpose());
     const auto p = random_rotation(random);
     CHECK((rotate(p * q, v) - rotate(p, rotate(q, v))).norm() <= 2e-15 * v.norm());
     CHECK((rotation_matrix(p * q) - rotation_matrix(p) * rotation_matrix(q)).norm() <= 3e-15);

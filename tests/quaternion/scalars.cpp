@@ -20,7 +20,7 @@ using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::real_50;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
@@ -36,9 +36,10 @@ quaternion<real_100> widened(const quaternion<T>& q) {
 
 /// Distance of the values from the truth, in units of the type's own epsilon.
 template <class T>
-double distance(const quaternion<T>& q, const truth::four& exact) {
+double distance(const quaternion<T>& q, const reference::four& exact) {
   const real_100 epsilon(std::numeric_limits<duet::real_type_t<T>>::epsilon());
-  return double(real_100(truth::length(truth::sum(truth::wide(widened(q)), exact, -1)) / epsilon));
+  return double(real_100(reference::length(reference::sum(reference::wide(widened(q)), exact, -1)) /
+                         epsilon));
 }
 
 } // namespace
@@ -51,26 +52,26 @@ TEST_CASE_TEMPLATE("values do not depend on the scalar", T, float, double, long 
   for (const double size : sizes) {
     const auto d = random.direction<3>();
     const quaternion<T> v(T(0), T(real(size * d[0])), T(real(size * d[1])), T(real(size * d[2])));
-    const auto x = truth::wide(widened(v));
+    const auto x = reference::wide(widened(v));
     const auto e = duet::exp(v);
-    CHECK(distance(e, truth::exp(x)) <= 2);
-    const auto y = truth::wide(widened(e));
+    CHECK(distance(e, reference::exp(x)) <= 2);
+    const auto y = reference::wide(widened(e));
     if (size < 3) {
-      CHECK(distance(log(e), truth::log(y)) <= 8);
+      CHECK(distance(log(e), reference::log(y)) <= 8);
     }
-    CHECK(distance(pow(e, real(0.3F)), truth::pow(y, real_100(0.3F))) <= 8);
-    CHECK(distance(pow(e, T(2)), truth::product(y, y)) <= 8);
+    CHECK(distance(pow(e, real(0.3F)), reference::pow(y, real_100(0.3F))) <= 8);
+    CHECK(distance(pow(e, T(2)), reference::product(y, y)) <= 8);
     const quaternion<T> a = normalized(quaternion<T>(T(1), T(real(d[1])), T(real(d[2])), T(2)));
     const auto b = size < 1.5 ? a * e : a * -e;
-    CHECK(distance(slerp(a, b, real(0.25F)),
-                   truth::slerp(truth::wide(widened(a)), truth::wide(widened(b)), 0.25)) <=
+    CHECK(distance(slerp(a, b, real(0.25F)), reference::slerp(reference::wide(widened(a)),
+                                                              reference::wide(widened(b)), 0.25)) <=
           (size < 1.5 || size > 1.7 ? 8 : 1e3));
     CHECK(distance(inverse(e) * e, {1, 0, 0, 0}) <= 4);
-    CHECK(distance(quaternion<T>(norm(e)), {truth::length(y), 0, 0, 0}) <= 2);
+    CHECK(distance(quaternion<T>(norm(e)), {reference::length(y), 0, 0, 0}) <= 2);
     const auto matrix = rotation_matrix(e);
     CHECK(distance(duet::from_rotation_matrix(matrix),
                    duet::innermost(dot(e, duet::from_rotation_matrix(matrix))) < 0
-                       ? truth::times(y, -1)
+                       ? reference::times(y, -1)
                        : y) <= 8);
   }
 }
@@ -99,7 +100,7 @@ TEST_CASE("mixed scalars") {
     return std::pair(widened(q), quaternion<double>(q.w().epsilon(), q.x().epsilon(),
                                                     q.y().epsilon(), q.z().epsilon()));
   }();
-  CHECK(distance(slerp(a, b, 0.3), truth::wide(value)) <= duet_test::if_fused(1));
+  CHECK(distance(slerp(a, b, 0.3), reference::wide(value)) <= duet_test::if_fused(1));
   CHECK(norm(rate - slerp(a, b, 0.3) * quaternion<double>(0, log(conj(a) * b).vec())) <= 1e-15);
   CHECK(pow(a, tau) == pow(a, 0.3));
   CHECK(norm(widened(slerp(a, quaternion<D>(b), 0.3)) - slerp(a, b, 0.3)) <=

@@ -24,7 +24,7 @@ namespace test_quaternion_slerp {
 using duet::quaternion;
 using duet_test::random_source;
 using duet_test::worst_error;
-namespace truth = duet_test::truth;
+namespace reference = duet_test::reference;
 
 namespace {
 
@@ -60,23 +60,26 @@ TEST_CASE("N9: slerp, value and derivative by the parameter") {
   worst_error closed("slerp, derivative in closed form");
   for (const auto& [a, b] : pairs()) {
     const double tau = random.uniform(0, 1);
-    const truth::four wide_a = truth::wide(a);
-    const truth::four near_b = truth::wide(dot(a, b) < 0 ? -b : b);
-    value.add(truth::ulps(slerp(a, b, tau), truth::slerp(wide_a, near_b, tau), 1), a, b, tau);
+    const reference::four wide_a = reference::wide(a);
+    const reference::four near_b = reference::wide(dot(a, b) < 0 ? -b : b);
+    value.add(reference::ulps(slerp(a, b, tau), reference::slerp(wide_a, near_b, tau), 1), a, b,
+              tau);
 
-    const truth::four exact_slope = truth::difference(
-        [&](const truth::real& t) { return truth::slerp(wide_a, near_b, truth::real(tau + t)); },
+    const reference::four exact_slope = reference::difference(
+        [&](const reference::real& t) {
+          return reference::slerp(wide_a, near_b, reference::real(tau + t));
+        },
         1);
     const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&, p = a, q = b](const auto& t) { return slerp(p, q, t); }, tau);
     // A small rotation has a small rate, with all its digits.
-    const truth::real scale = truth::length(exact_slope);
-    slope.add(truth::ulps(automatic.derivative, exact_slope, scale), a, b, tau);
+    const reference::real scale = reference::length(exact_slope);
+    slope.add(reference::ulps(automatic.derivative, exact_slope, scale), a, b, tau);
 
     // A′ = A v, v = log(a* b): ω in body axes is 2 v, whatever τ.
     const auto relative = conj(a) * (dot(a, b) < 0 ? -b : b);
     const quaternion<double> rate(0, log(relative).vec());
-    closed.add(truth::ulps(slerp(a, b, tau) * rate, exact_slope, 1), a, b, tau);
+    closed.add(reference::ulps(slerp(a, b, tau) * rate, exact_slope, 1), a, b, tau);
   }
   CHECK_MESSAGE(value <= 16, value);
   CHECK_MESSAGE(slope <= 16, slope);
@@ -94,17 +97,18 @@ TEST_CASE("N9: slerp, derivative by its ends") {
     const auto db = random.direction<3>();
     const quaternion<double> a_dot = a * quaternion<double>(0, da[0], da[1], da[2]);
     const quaternion<double> b_dot = b * quaternion<double>(0, db[0], db[1], db[2]);
-    const truth::real sign = dot(a, b) < 0 ? -1 : 1;
-    const truth::four exact = truth::difference(
-        [&](const truth::real& t) {
-          const auto moved_a = truth::sum(truth::wide(a), truth::wide(a_dot), t);
-          const auto moved_b = truth::sum(truth::wide(b), truth::wide(b_dot), t);
-          return truth::slerp(moved_a, truth::times(moved_b, sign), tau);
+    const reference::real sign = dot(a, b) < 0 ? -1 : 1;
+    const reference::four exact = reference::difference(
+        [&](const reference::real& t) {
+          const auto moved_a = reference::sum(reference::wide(a), reference::wide(a_dot), t);
+          const auto moved_b = reference::sum(reference::wide(b), reference::wide(b_dot), t);
+          return reference::slerp(moved_a, reference::times(moved_b, sign), tau);
         },
         1);
     const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&, p = a, q = b](const auto& t) { return slerp(p + t * a_dot, q + t * b_dot, tau); }, 0.0);
-    slope.add(truth::ulps(automatic.derivative, exact, 1 + truth::length(exact)), a, b, tau);
+    slope.add(reference::ulps(automatic.derivative, exact, 1 + reference::length(exact)), a, b,
+              tau);
   }
   CHECK_MESSAGE(slope <= 16, slope);
 }

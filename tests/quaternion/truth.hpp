@@ -13,7 +13,7 @@
 /// Quaternion functions in 100 digits by sine, cosine and arctangent, and their derivatives by
 /// differences: nothing here shares code or formulas with the library.
 
-namespace duet_test::truth {
+namespace duet_test::reference {
 
 using real = real_100;
 /// w, x, y, z
@@ -143,4 +143,4 @@ template <class T>
   return ulps_of_error<T>(length(sum(c, exact, -1)), scale);
 }
 
-} // namespace duet_test::truth
+} // namespace duet_test::reference

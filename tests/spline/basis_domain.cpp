@@ -53,7 +53,7 @@ double sum_of_all(const numbers& t, int order, F&& value) {
 }
 
 template <int Order>
-std::string complaint(const numbers& t) {
+std::string error_message(const numbers& t) {
   return message_of([&] { static_cast<void>(bspline_basis<Order>(t)); });
 }
 
@@ -136,18 +136,19 @@ TEST_CASE("where the knots go on beyond a full knot, the domain is still closed"
 }
 
 TEST_CASE("bad knots") {
-  CHECK(complaint<4>({0, 1, 2, 3, 4, 5, 6}) == "duet: knots: order 4 needs at least 8 of them, got "
-                                               "7: clamped_knots(parameters, 4) makes enough");
-  CHECK(complaint<4>({}).starts_with("duet: knots: order 4 needs at least 8 of them, got 0"));
-  CHECK(complaint<2>({0, 1, 0.5, 2}) == "duet: knots: knot 2 = 0.5 is less than knot 1 = 1");
-  CHECK(complaint<2>({0, 1, not_a_number, 2}) == "duet: knots: knot 2 is nan");
-  CHECK(complaint<2>({0, 1, 2, infinity}) == "duet: knots: knot 3 is inf");
-  CHECK(complaint<2>({0, 1, 1, 1, 2, 3}) ==
+  CHECK(error_message<4>({0, 1, 2, 3, 4, 5, 6}) ==
+        "duet: knots: order 4 needs at least 8 of them, got "
+        "7: clamped_knots(parameters, 4) makes enough");
+  CHECK(error_message<4>({}).starts_with("duet: knots: order 4 needs at least 8 of them, got 0"));
+  CHECK(error_message<2>({0, 1, 0.5, 2}) == "duet: knots: knot 2 = 0.5 is less than knot 1 = 1");
+  CHECK(error_message<2>({0, 1, not_a_number, 2}) == "duet: knots: knot 2 is nan");
+  CHECK(error_message<2>({0, 1, 2, infinity}) == "duet: knots: knot 3 is inf");
+  CHECK(error_message<2>({0, 1, 1, 1, 2, 3}) ==
         "duet: knots: knot 3 = 1 is repeated more than 2 times");
-  CHECK(complaint<3>({0, 0, 1, 1, 2, 2}) == "duet: knots: the domain is empty");
-  CHECK(complaint<2>({0, 0, 5e-324, 5e-324}) ==
+  CHECK(error_message<3>({0, 0, 1, 1, 2, 2}) == "duet: knots: the domain is empty");
+  CHECK(error_message<2>({0, 0, 5e-324, 5e-324}) ==
         "duet: knots: knot 1 = 0 and knot 2 = 4.94066e-324 are too close: a derivative overflows");
-  CHECK(complaint<2>({-1.7e308, -1.7e308, 1.7e308, 1.7e308}) ==
+  CHECK(error_message<2>({-1.7e308, -1.7e308, 1.7e308, 1.7e308}) ==
         "duet: knots: the distance from -1.7e+308 to 1.7e+308 overflows");
 }
 

@@ -16,7 +16,7 @@
 namespace test_spline_continuity {
 
 using duet::cumulative_bspline;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::random_orientations;
 
 namespace {
@@ -53,7 +53,7 @@ void check_order() {
       const auto k = std::size_t(d);
       const double size =
           std::max(std::sqrt(squared_norm(left[k])), std::sqrt(squared_norm(right[k])));
-      const double jump = gap(left[k], right[k]) / size;
+      const double jump = max_abs_difference(left[k], right[k]) / size;
       if (d <= Order - 1 - times) {
         CHECK(jump < 1e-11);
       } else {
@@ -80,7 +80,7 @@ TEST_CASE("P3, P4: what the cubic's rates do at a knot") {
       const auto s = curve_with<4>(times);
       const auto left = s.motion(just_before, frame);
       const auto right = s.motion(knot, frame);
-      CHECK(gap(left.value, right.value) < 1e-14);
+      CHECK(max_abs_difference(left.value, right.value) < 1e-14);
       const double velocity = (left.velocity - right.velocity).norm() / left.velocity.norm();
       const double acceleration =
           (left.acceleration - right.acceleration).norm() / left.acceleration.norm();

@@ -134,7 +134,8 @@ turned_by(double angle, std::size_t count, std::uint64_t seed) {
 
 /// The largest difference of components.
 template <class A, class B>
-[[nodiscard]] double gap(const duet::quaternion<A>& p, const duet::quaternion<B>& q) {
+[[nodiscard]] double max_abs_difference(const duet::quaternion<A>& p,
+                                        const duet::quaternion<B>& q) {
   using std::abs;
   return double(std::max(std::max(abs(p.w() - q.w()), abs(p.x() - q.x())),
                          std::max(abs(p.y() - q.y()), abs(p.z() - q.z()))));

@@ -95,40 +95,41 @@ double largest_distance(const Curve& a, const Curve& b) {
 } // namespace
 
 TEST_CASE_TEMPLATE("a curve is found again from its points", Q, rotation, pose_type) {
-  const auto truth = some_curve<Q>();
+  const auto reference = some_curve<Q>();
   const auto u = steps(8, 60);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   for (std::size_t i = 0; i < rows.size(); i += 3) {
     rows[i] = -rows[i]; // the same rotation
   }
-  const auto result = duet::fit<curve<Q>>(u, rows, truth.basis().knots());
-  CHECK(largest_distance(result.curve, truth) <= 1e-13);
+  const auto result = duet::fit<curve<Q>>(u, rows, reference.basis().knots());
+  CHECK(largest_distance(result.curve, reference) <= 1e-13);
   CHECK(result.rms <= 1e-14);
   CHECK(result.iterations <= 8);
   CHECK(result.residuals.size() == rows.size());
 }
 
 TEST_CASE("as many rows as controls are interpolated") {
-  const auto truth = some_curve<rotation>();
+  const auto reference = some_curve<rotation>();
   std::vector<double> u = steps(8, 8);
   u.insert(u.begin() + 1, 0.4);
   u.insert(u.end() - 1, 7.7);
-  const auto result = duet::fit<curve<rotation>>(u, rows_of(truth, u), truth.basis().knots());
+  const auto result =
+      duet::fit<curve<rotation>>(u, rows_of(reference, u), reference.basis().knots());
   CHECK(result.rms <= 1e-13);
 }
 
 TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotation, pose_type) {
   constexpr double noise = 0.01;
-  const auto truth = some_curve<Q>();
+  const auto reference = some_curve<Q>();
   const auto u = steps(8, 400);
   random_source random(7);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   for (Q& row : rows) {
     row = moved(row, random, noise);
   }
-  const auto result = duet::fit<curve<Q>>(u, rows, truth.basis().knots());
+  const auto result = duet::fit<curve<Q>>(u, rows, reference.basis().knots());
   // 401 rows, 11 controls: the curve should be about √(11/401) = 0.17 of the noise away.
-  CHECK(largest_distance(result.curve, truth) <=
+  CHECK(largest_distance(result.curve, reference) <=
         0.5 * noise * (std::is_same_v<Q, rotation> ? 1 : 2));
   const double expected = noise * (std::is_same_v<Q, rotation> ? 1 : std::sqrt(2.0));
   CHECK(result.rms == doctest::Approx(expected).epsilon(0.05));
@@ -149,7 +150,7 @@ TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotati
           auto controls = result.curve.control_points();
           controls[k] = controls[k] * duet::from_rotation_vector(
                                           vector3<double>(vector3<double>::Unit(axis) * size));
-          CHECK(sum_of_squares({truth.basis(), controls}) > least);
+          CHECK(sum_of_squares({reference.basis(), controls}) > least);
         }
       }
     }
@@ -158,18 +159,18 @@ TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotati
 
 TEST_CASE_TEMPLATE("outliers pull with a bounded force", Q, rotation, pose_type) {
   constexpr double noise = 0.001;
-  const auto truth = some_curve<Q>();
+  const auto reference = some_curve<Q>();
   const auto u = steps(8, 100);
   random_source random(11);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i] = moved(rows[i], random, i % 20 == 10 ? 1.5 : noise);
   }
-  const auto plain = duet::fit<curve<Q>>(u, rows, truth.basis().knots());
-  const auto robust = duet::fit<curve<Q>>(u, rows, truth.basis().knots(),
+  const auto plain = duet::fit<curve<Q>>(u, rows, reference.basis().knots());
+  const auto robust = duet::fit<curve<Q>>(u, rows, reference.basis().knots(),
                                           {.length = 1, .outlier_threshold = 3 * noise});
-  CHECK(largest_distance(plain.curve, truth) > 0.1);
-  CHECK(largest_distance(robust.curve, truth) < 2 * noise);
+  CHECK(largest_distance(plain.curve, reference) > 0.1);
+  CHECK(largest_distance(robust.curve, reference) < 2 * noise);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     CHECK((robust.residuals[i] > 0.1) == (i % 20 == 10));
   }
@@ -192,14 +193,14 @@ rotation thrown(const rotation& a, random_source& random, double) {
 
 TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotation, pose_type) {
   constexpr double noise = 0.001, limit = 3 * noise;
-  const auto truth = some_curve<Q>();
+  const auto reference = some_curve<Q>();
   const auto u = steps(8, 80);
-  const auto& knots = truth.basis().knots();
+  const auto& knots = reference.basis().knots();
   const auto check = [&](double share, double size, bool all_alike, double outlier, double most) {
     CAPTURE(share);
     CAPTURE(size);
     random_source random(17);
-    auto rows = rows_of(truth, u);
+    auto rows = rows_of(reference, u);
     std::vector<double> good_u;
     std::vector<Q> good;
     const Q common = thrown(Q(1.0), random, size);
@@ -231,23 +232,23 @@ TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotati
 }
 
 TEST_CASE("where a residual is beyond the range of numbers, so is their mean") {
-  const auto truth = some_curve<pose_type>();
+  const auto reference = some_curve<pose_type>();
   const auto u = steps(8, 100);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   rows[40] = duet::pose(rotation(1.0), vector3<double>(1.2e308, 1.2e308, 1.2e308));
   const auto found =
-      duet::fit<curve<pose_type>>(u, rows, truth.basis().knots(), {.outlier_threshold = 0.01});
+      duet::fit<curve<pose_type>>(u, rows, reference.basis().knots(), {.outlier_threshold = 0.01});
   CHECK(std::isinf(found.residuals[40]));
   CHECK(std::isinf(found.rms));
 }
 
 TEST_CASE("least squares name the row that is too far to be squared") {
-  const auto truth = some_curve<pose_type>();
+  const auto reference = some_curve<pose_type>();
   const auto u = steps(8, 100);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   rows[40] = duet::pose(rotation(1.0), vector3<double>(1e160, 0, 0));
   const auto message = duet_test::message_of<duet::invalid_sample>(
-      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, truth.basis().knots())); });
+      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, reference.basis().knots())); });
   CHECK(message.rfind("duet: row 40: is 1", 0) == 0);
   CHECK(message.find("e+160 from the rows around it, too far for least squares: "
                      "fit_options::outlier_threshold "
@@ -268,22 +269,22 @@ TEST_CASE("rows that are all the same, and two kinds of them") {
 }
 
 TEST_CASE("messages give the last step") {
-  const auto truth = some_curve<rotation>();
+  const auto reference = some_curve<rotation>();
   const auto u = steps(8, 100);
   const auto message = duet_test::message_of<duet::no_convergence>([&] {
-    static_cast<void>(duet::fit<curve<rotation>>(u, rows_of(truth, u), truth.basis().knots(),
-                                                 {.max_iterations = 1}));
+    static_cast<void>(duet::fit<curve<rotation>>(u, rows_of(reference, u),
+                                                 reference.basis().knots(), {.max_iterations = 1}));
   });
   CHECK(message.rfind("duet: fit: the iteration does not converge after 1 steps, the last one 0.",
                       0) == 0);
   // Of robust fits all steps, those before the last stage included.
   random_source random(17);
-  auto noisy = rows_of(truth, u);
+  auto noisy = rows_of(reference, u);
   for (rotation& q : noisy) {
     q = moved(q, random, 0.1);
   }
   const auto robust = duet_test::message_of<duet::no_convergence>([&] {
-    static_cast<void>(duet::fit<curve<rotation>>(u, noisy, truth.basis().knots(),
+    static_cast<void>(duet::fit<curve<rotation>>(u, noisy, reference.basis().knots(),
                                                  {.outlier_threshold = 0.02, .max_iterations = 1}));
   });
   CHECK(robust.rfind("duet: fit: the iteration does not converge after ", 0) == 0);
@@ -291,10 +292,10 @@ TEST_CASE("messages give the last step") {
 }
 
 TEST_CASE("the length weighs shifts against turns") {
-  const auto truth = some_curve<pose_type>();
+  const auto reference = some_curve<pose_type>();
   const auto u = steps(8, 40);
   random_source random(13);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   for (auto& row : rows) { // no noise in the turns, shifts along
     row = row * duet::pose(rotation(1.0), random_vector(random, 0.1));
   }
@@ -303,8 +304,8 @@ TEST_CASE("the length weighs shifts against turns") {
     const auto s = duet::fit<curve<pose_type>>(u, rows, knots, {.length = length}).curve;
     double worst = 0;
     for (std::size_t i = 0; i < u.size(); ++i) {
-      worst = std::max(
-          worst, between(rotation(duet::rotation(s(u[i]))), rotation(duet::rotation(truth(u[i])))));
+      worst = std::max(worst, between(rotation(duet::rotation(s(u[i]))),
+                                      rotation(duet::rotation(reference(u[i])))));
     }
     return worst;
   };
@@ -333,11 +334,11 @@ Eigen::MatrixXd random_covariance(random_source& random, Eigen::Index n) {
 }
 
 TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
-  const auto truth = some_curve<Q>();
-  const auto knots = truth.basis().knots();
+  const auto reference = some_curve<Q>();
+  const auto knots = reference.basis().knots();
   const auto u = steps(8, 100);
   random_source random(17);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   const Eigen::Index n = std::is_same_v<Q, rotation> ? 3 : 6;
   duet::fit_options options;
   for (Q& row : rows) {
@@ -372,7 +373,7 @@ TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
             controls[k] = controls[k] * (axis < 3 ? duet::pose(rotation(1.0), step)
                                                   : pose_type(duet::from_rotation_vector(step)));
           }
-          CHECK(cost({truth.basis(), controls}) > least);
+          CHECK(cost({reference.basis(), controls}) > least);
         }
       }
     }
@@ -390,11 +391,11 @@ TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
 }
 
 TEST_CASE("covariances of one size are a length, weights all alike are none") {
-  const auto truth = some_curve<pose_type>();
-  const auto knots = truth.basis().knots();
+  const auto reference = some_curve<pose_type>();
+  const auto knots = reference.basis().knots();
   const auto u = steps(8, 60);
   random_source random(19);
-  auto rows = rows_of(truth, u);
+  auto rows = rows_of(reference, u);
   for (auto& row : rows) {
     row = moved(row, random, 0.02);
   }
@@ -409,8 +410,8 @@ TEST_CASE("covariances of one size are a length, weights all alike are none") {
 
 TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
   using wide = long double;
-  const auto truth = some_curve<rotation>();
-  const auto knots = truth.basis().knots();
+  const auto reference = some_curve<rotation>();
+  const auto knots = reference.basis().knots();
   const auto u = steps(8, 60);
   const auto check = [&](double noise, double outlier) {
     CAPTURE(noise);
@@ -419,7 +420,7 @@ TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
     std::vector<rotation> rows;
     std::vector<duet::quaternion<wide>> wide_rows;
     for (const double x : u) {
-      rows.push_back(moved(truth(x), random, noise));
+      rows.push_back(moved(reference(x), random, noise));
       const rotation& q = rows.back();
       wide_rows.push_back(normalized(duet::quaternion<wide>(q.w(), q.x(), q.y(), q.z())));
     }
@@ -458,7 +459,7 @@ TEST_CASE_TEMPLATE("fit: small steps far from the identity keep their digits", Q
     std::vector<Q> rows, seen;
     for (const double x : u) {
       rows.push_back(origin * along(step * (x + .1 * std::sin(x))));
-      seen.push_back(duet::detail::turn_between(rows[0], rows.back()));
+      seen.push_back(duet::detail::relative_rotation(rows[0], rows.back()));
     }
     const auto knots = duet::clamped_knots(steps(8, 8), 4);
     const auto fitted = duet::fit<curve<Q>>(u, rows, knots).curve;
@@ -466,8 +467,8 @@ TEST_CASE_TEMPLATE("fit: small steps far from the identity keep their digits", Q
     double largest = 0;
     for (const double x : steps(8, 40)) {
       const auto rate = fitted.motion(x, duet::frame::body).velocity;
-      const auto truth = expected.motion(x, duet::frame::body).velocity;
-      largest = std::max(largest, (rate - truth).norm() / truth.norm());
+      const auto reference = expected.motion(x, duet::frame::body).velocity;
+      largest = std::max(largest, (rate - reference).norm() / reference.norm());
     }
     CHECK_LT(largest, 1e-12);
   }
@@ -519,39 +520,41 @@ TEST_CASE("a knot at every n-th row") {
   for (const std::size_t many : {6UL, 7UL, std::size_t(-1)}) {
     CHECK(duet::knots_every(u, many, 2) == knots{0, 0, 10, 10});
   }
-  const auto complaint = [](const knots& parameters, std::size_t n) {
+  const auto error_message = [](const knots& parameters, std::size_t n) {
     return duet_test::message_of([&] { static_cast<void>(duet::knots_every(parameters, n)); });
   };
-  CHECK(complaint(u, 0) == "duet: knots_every: n = 0 and 7 rows: n must be positive, and at least "
-                           "two rows there");
-  CHECK(complaint({1}, 3) == "duet: knots_every: n = 3 and 1 rows: n must be positive, and at "
-                             "least two rows there");
-  CHECK(!complaint({}, 3).empty());
+  CHECK(error_message(u, 0) ==
+        "duet: knots_every: n = 0 and 7 rows: n must be positive, and at least "
+        "two rows there");
+  CHECK(error_message({1}, 3) == "duet: knots_every: n = 3 and 1 rows: n must be positive, and at "
+                                 "least two rows there");
+  CHECK(!error_message({}, 3).empty());
 
   // Rows of any number and spacing can be fitted by them.
-  const auto truth = some_curve<rotation>();
+  const auto reference = some_curve<rotation>();
   for (const int count : {8, 9, 60, 61, 63}) {
     auto t = steps(8, count);
     for (double& x : t) {
       x = x * x / 8;
     }
     for (const std::size_t n : {2UL, 3UL, 7UL}) {
-      const auto result = duet::fit<curve<rotation>>(t, rows_of(truth, t), duet::knots_every(t, n));
+      const auto result =
+          duet::fit<curve<rotation>>(t, rows_of(reference, t), duet::knots_every(t, n));
       CHECK(result.residuals.size() == t.size());
     }
   }
 }
 
 TEST_CASE("bad input is named") {
-  const auto truth = some_curve<rotation>();
-  const auto knots = truth.basis().knots();
+  const auto reference = some_curve<rotation>();
+  const auto knots = reference.basis().knots();
   const auto message = [&](std::vector<double> u, std::vector<rotation> rows,
                            const duet::fit_options& options = {}) {
     return duet_test::message_of(
         [&] { static_cast<void>(duet::fit<curve<rotation>>(u, rows, knots, options)); });
   };
   const auto u = steps(8, 40);
-  const auto rows = rows_of(truth, u);
+  const auto rows = rows_of(reference, u);
   CHECK(message(steps(8, 39), rows) == "duet: fit: 40 parameters, but 41 rows");
   CHECK(message(steps(9, 40), rows) ==
         "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8: clamped_knots of "

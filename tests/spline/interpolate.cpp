@@ -17,7 +17,7 @@ namespace test_spline_interpolate {
 using duet::clamped;
 using duet::interpolate;
 using duet::natural;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using duet_test::random_orientations;
 
 using spline = duet::cumulative_bspline<double>;
@@ -49,7 +49,7 @@ double worst_miss(const spline& s, const parameters& u, const table& q) {
   double worst = 0;
   for (std::size_t i = 0; i < u.size(); ++i) {
     const quaternion at = s(u[i]);
-    worst = std::max(worst, std::min(gap(at, q[i]), gap(at, -q[i])));
+    worst = std::max(worst, std::min(max_abs_difference(at, q[i]), max_abs_difference(at, -q[i])));
   }
   return worst;
 }
@@ -132,7 +132,7 @@ TEST_CASE("a curve is copied by its knots, control quaternions and increments") 
   }
   CHECK(beyond_half_a_turn); // so that aligning signs would make it another curve
   for (double u = s.basis().front(); u <= s.basis().back(); u += 0.07) {
-    CHECK(gap(copy(u), s(u)) < 1e-14);
+    CHECK(max_abs_difference(copy(u), s(u)) < 1e-14);
   }
 }
 
@@ -140,7 +140,7 @@ TEST_CASE("two rows and natural ends: the shortest turn at constant rate") {
   const table q = random_orientations(2, 1.4);
   const spline s = interpolate<spline>(parameters{1, 3}, q);
   for (const double u : {1.0, 1.3, 2.0, 2.9, 3.0}) {
-    CHECK(gap(s(u), slerp(q[0], q[1], (u - 1) / 2)) < 1e-14);
+    CHECK(max_abs_difference(s(u), slerp(q[0], q[1], (u - 1) / 2)) < 1e-14);
     CHECK(s.motion(u, duet::frame::body).acceleration.norm() < 1e-13);
   }
 }
@@ -158,7 +158,7 @@ TEST_CASE("about one axis the curve is the scalar cubic spline") {
   const spline s = interpolate<spline>(
       u, q, clamped{vector(axis * slope(u.front())), vector(axis * slope(u.back()))});
   for (double x = 0; x <= 2; x += 0.07) {
-    CHECK(gap(s(x), duet::from_axis_angle(axis, angle(x))) < 1e-14);
+    CHECK(max_abs_difference(s(x), duet::from_axis_angle(axis, angle(x))) < 1e-14);
     CHECK((s.motion(x, duet::frame::body).velocity - axis * slope(x)).norm() < 1e-13);
   }
 }
@@ -174,7 +174,7 @@ TEST_CASE("at an inner knot of uniform ones: Q_i = q_i exp(−ω_i/6) exp(ω_{i+
   for (std::size_t row = 3; row + 3 < rows; ++row) { // where repeated end knots do not reach
     const std::size_t i = row + 1;                   // the control quaternion of that knot
     const quaternion expected = s.control_points()[i] * sixth(i, -1) * sixth(i + 1, 1);
-    CHECK(gap(s(uniform(rows)[row]), expected) < 1e-14);
+    CHECK(max_abs_difference(s(uniform(rows)[row]), expected) < 1e-14);
     ++count;
   }
   CHECK(count == 6);
@@ -195,7 +195,7 @@ TEST_CASE("signs and norms of the data do not matter") {
   const spline r = interpolate<spline>(uneven(15), rounded);
   for (double u = s.basis().front(); u < s.basis().back(); u += 0.1) {
     CHECK(s(u) == t(u));
-    CHECK(gap(s(u), r(u)) < 1e-14);
+    CHECK(max_abs_difference(s(u), r(u)) < 1e-14);
   }
 }
 

@@ -20,7 +20,7 @@
 
 namespace test_spline_interpolate_convergence {
 
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 using spline = duet::cumulative_bspline<double>;
 using quaternion = duet::quaternion<double>;
@@ -50,9 +50,9 @@ struct returning {
 };
 
 /// Such a motion and its derivatives.
-struct truth {
+struct reference {
   template <class Path = passing>
-  explicit truth(double u, const Path& path = {}) {
+  explicit reference(double u, const Path& path = {}) {
     const auto q = duet::derivatives<2>([&](const auto& x) { return path(x); }, u);
     value = q[0];
     second = q[2];
@@ -82,14 +82,14 @@ errors measure(int steps, Place place, const Ends& ends, double a, double b,
   constexpr int samples = 4001;
   for (int i = 0; i < samples; ++i) {
     const double at = a + (b - a) * i / (samples - 1);
-    const truth exact(at, path);
+    const reference exact(at, path);
     const auto m = s.motion(at, duet::frame::spatial);
     const double sign = dot(exact.value, m.value) < 0 ? -1 : 1;
     const errors here = {
-        gap(exact.value, sign * m.value), (exact.velocity - m.velocity).norm(),
+        max_abs_difference(exact.value, sign * m.value), (exact.velocity - m.velocity).norm(),
         (exact.acceleration - m.acceleration).norm(),
-        gap(exact.second, sign * s.derivatives(at)[2]),
-        gap(exact.second, sign * duet::printed_derivative(s, at).commuting_second)};
+        max_abs_difference(exact.second, sign * s.derivatives(at)[2]),
+        max_abs_difference(exact.second, sign * duet::printed_derivative(s, at).commuting_second)};
     for (std::size_t k = 0; k < worst.size(); ++k) {
       worst[k] = std::max(worst[k], here[k]);
     }
@@ -113,7 +113,7 @@ double uniform(double u) { return u; }
 /// From 0 to 2 with steps that change smoothly, by a factor of 3.
 double graded(double u) { return u + 0.25 * (1 - std::cos(std::acos(-1.0) * u)) * u * (2 - u); }
 
-duet::clamped<> exact_rates() { return {truth(0).velocity, truth(2).velocity}; }
+duet::clamped<> exact_rates() { return {reference(0).velocity, reference(2).velocity}; }
 
 } // namespace
 
@@ -127,7 +127,7 @@ TEST_CASE("exact end rates: value h³, ω h², angular acceleration h") {
 }
 
 TEST_CASE("exact end accelerations, and not-a-knot ends: the same orders, up to the ends") {
-  const duet::end_acceleration<> exact = {truth(0).acceleration, truth(2).acceleration};
+  const duet::end_acceleration<> exact = {reference(0).acceleration, reference(2).acceleration};
   for (const auto place : {uniform, graded}) {
     const auto check = [](const errors& order) {
       CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
@@ -158,7 +158,7 @@ TEST_CASE("natural ends: as good inside, but the wrong acceleration at the ends"
   CHECK(at_ends[0] == doctest::Approx(2).epsilon(0.1));
   CHECK(at_ends[1] == doctest::Approx(1).epsilon(0.1));
   CHECK(std::abs(at_ends[2]) < 0.1);
-  const double wrong = std::max(truth(0).acceleration.norm(), truth(2).acceleration.norm());
+  const double wrong = std::max(reference(0).acceleration.norm(), reference(2).acceleration.norm());
   CHECK(measure(160, uniform, duet::natural{}, 0, 2)[2] == doctest::Approx(wrong).epsilon(0.01));
 }
 

@@ -76,8 +76,9 @@ template <class T, class Part>
 void check(const curve<T>& s, const std::vector<quaternion<real_50>>& expected, Part part) {
   for (std::size_t i = 0; i < between.size(); ++i) {
     const quaternion<T> q = s(between[i]);
-    CHECK(duet_test::gap(quaternion<double>(part(q.w()), part(q.x()), part(q.y()), part(q.z())),
-                         expected[i]) < 1e-14);
+    CHECK(duet_test::max_abs_difference(
+              quaternion<double>(part(q.w()), part(q.x()), part(q.y()), part(q.z())), expected[i]) <
+          1e-14);
   }
 }
 

@@ -14,7 +14,7 @@
 namespace test_spline_interpolate_ends {
 namespace {
 
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using spline = duet::cumulative_bspline<double>;
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
@@ -32,13 +32,13 @@ template <class Ends>
 spline checked(const parameters& u, const table& q, const Ends& ends) {
   const spline s = duet::interpolate<spline>(u, q, ends);
   for (std::size_t i = 0; i < u.size(); ++i) {
-    CHECK(std::min(gap(s(u[i]), q[i]), gap(s(u[i]), -q[i])) < 1e-14);
+    CHECK(std::min(max_abs_difference(s(u[i]), q[i]), max_abs_difference(s(u[i]), -q[i])) < 1e-14);
   }
   const auto& breaks = s.basis().breaks();
   for (std::size_t i = 1; i + 1 < breaks.size(); ++i) {
     const auto left = s.motion(std::nextafter(breaks[i], -1e9), duet::frame::spatial);
     const auto right = s.motion(breaks[i], duet::frame::spatial);
-    CHECK(gap(left.value, right.value) < 1e-14);
+    CHECK(max_abs_difference(left.value, right.value) < 1e-14);
     CHECK((left.velocity - right.velocity).norm() < 1e-12 * (1 + right.velocity.norm()));
     CHECK((left.acceleration - right.acceleration).norm() <
           1e-12 * (1 + right.acceleration.norm() + right.jerk.norm()));
@@ -103,7 +103,7 @@ TEST_CASE("not-a-knot about one axis: a cubic is met exactly") {
     }
     const spline s = duet::interpolate<spline>(u, q, duet::not_a_knot{});
     for (double x = 0; x <= 2; x += 0.07) {
-      CHECK(gap(s(x), duet::from_axis_angle(axis, angle(x))) < 1e-14);
+      CHECK(max_abs_difference(s(x), duet::from_axis_angle(axis, angle(x))) < 1e-14);
     }
   }
 }
@@ -117,7 +117,8 @@ TEST_CASE("periodic: the end goes on as the start, with all rates but the jerk")
       const spline s = checked(u, closed_table(rows, step), duet::periodic{});
       const auto start = s.motion(u.front(), duet::frame::spatial);
       const auto end = s.motion(u.back(), duet::frame::spatial);
-      CHECK(std::min(gap(start.value, end.value), gap(start.value, -end.value)) < 1e-14);
+      CHECK(std::min(max_abs_difference(start.value, end.value),
+                     max_abs_difference(start.value, -end.value)) < 1e-14);
       CHECK((start.velocity - end.velocity).norm() < 1e-12 * (1 + start.velocity.norm()));
       CHECK((start.acceleration - end.acceleration).norm() <
             1e-12 * (1 + start.acceleration.norm() + start.jerk.norm()));
@@ -141,7 +142,7 @@ TEST_CASE("periodic: it does not matter where the round begins") {
   const spline t = duet::interpolate<spline>(v, p, duet::periodic{});
   for (double x = v.front(); x <= v.back(); x += 0.13) {
     const double same = x <= u.back() ? x : x - period;
-    CHECK(std::min(gap(s(same), t(x)), gap(s(same), -t(x))) < 1e-13);
+    CHECK(std::min(max_abs_difference(s(same), t(x)), max_abs_difference(s(same), -t(x))) < 1e-13);
   }
 }
 

@@ -33,9 +33,9 @@ std::vector<quaternion> rotations_of(const std::vector<pose>& poses) {
   return result;
 }
 
-double gap(const pose& a, const pose& b) {
-  return std::max(duet_test::gap(real_part(a), real_part(b)),
-                  duet_test::gap(dual_part(a), dual_part(b)));
+double max_abs_difference(const pose& a, const pose& b) {
+  return std::max(duet_test::max_abs_difference(real_part(a), real_part(b)),
+                  duet_test::max_abs_difference(dual_part(a), dual_part(b)));
 }
 double size_of(const twist& v) { return 1 + v.norm(); }
 
@@ -50,9 +50,10 @@ curve checked(const parameters& u, const std::vector<pose>& poses, const Ends& e
   const curve s = duet::interpolate<curve>(u, poses, ends);
   const rotation_curve r = duet::interpolate<rotation_curve>(u, rotations_of(poses), rotation_ends);
   for (std::size_t i = 0; i < u.size(); ++i) {
-    CHECK(std::min(gap(s(u[i]), poses[i]), gap(s(u[i]), -poses[i])) < 1e-13);
+    CHECK(std::min(max_abs_difference(s(u[i]), poses[i]), max_abs_difference(s(u[i]), -poses[i])) <
+          1e-13);
     CHECK(is_unit(s(u[i]), 1e-14));
-    CHECK(duet_test::gap(rotation(s(u[i])), r(u[i])) < 1e-14);
+    CHECK(duet_test::max_abs_difference(rotation(s(u[i])), r(u[i])) < 1e-14);
   }
   for (std::size_t i = 0; i < r.increments().size(); ++i) {
     CHECK((real_part(s.increments()[i]) - r.increments()[i]).norm() < 1e-14);
@@ -61,7 +62,7 @@ curve checked(const parameters& u, const std::vector<pose>& poses, const Ends& e
   for (std::size_t i = 1; i + 1 < breaks.size(); ++i) {
     const auto left = s.motion(std::nextafter(breaks[i], -1e9), duet::frame::spatial);
     const auto right = s.motion(breaks[i], duet::frame::spatial);
-    CHECK(gap(left.value, right.value) < 1e-13);
+    CHECK(max_abs_difference(left.value, right.value) < 1e-13);
     CHECK((left.velocity - right.velocity).norm() < 1e-11 * size_of(right.velocity));
     CHECK((left.acceleration - right.acceleration).norm() <
           1e-11 * (size_of(right.acceleration) + right.jerk.norm()));
@@ -145,7 +146,7 @@ TEST_CASE("poses: moving the data moves the curve, and so does another body fram
     const curve s = duet::interpolate<curve>(u, poses, ends);
     const curve t = duet::interpolate<curve>(u, moved, ends);
     for (double x = u.front(); x <= u.back(); x += 0.17) {
-      CHECK(gap(t(x), left * s(x) * right) < 1e-12);
+      CHECK(max_abs_difference(t(x), left * s(x) * right) < 1e-12);
     }
   };
   check(duet::natural{});
@@ -165,7 +166,8 @@ TEST_CASE("poses far apart: 2.8 rad and 3 units of length a step, on random axes
     }
     const curve s = duet::interpolate<curve>(u, poses);
     for (std::size_t i = 0; i < u.size(); ++i) {
-      CHECK(std::min(gap(s(u[i]), poses[i]), gap(s(u[i]), -poses[i])) < 1e-12);
+      CHECK(std::min(max_abs_difference(s(u[i]), poses[i]),
+                     max_abs_difference(s(u[i]), -poses[i])) < 1e-12);
     }
   }
 }

@@ -12,7 +12,7 @@
 namespace test_spline_interpolate_scalars {
 
 using duet_test::cast;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 TEST_CASE("interpolation in single and extended precision") {
   const auto q = duet_test::random_orientations(10, 0.7);
@@ -26,13 +26,13 @@ TEST_CASE("interpolation in single and extended precision") {
   const auto in_long_double = duet::interpolate<duet::cumulative_bspline<long double>>(
       cast<long double>(u), cast<long double>(q));
   for (double x = u.front(); x <= u.back(); x += 0.0625) {
-    CHECK(gap(in_float(float(x)), s(x)) < 2e-6);
-    CHECK(gap(in_long_double(x), s(x)) < 1e-14);
+    CHECK(max_abs_difference(in_float(float(x)), s(x)) < 2e-6);
+    CHECK(max_abs_difference(in_long_double(x), s(x)) < 1e-14);
   }
   for (std::size_t i = 0; i < u.size(); ++i) {
-    CHECK(gap(in_float(float(u[i])), q[i]) < 1e-6);
+    CHECK(max_abs_difference(in_float(float(u[i])), q[i]) < 1e-6);
     const auto exact = normalized(cast<long double>(q)[i]);
-    CHECK(gap(in_long_double(u[i]), exact) < 1e-18);
+    CHECK(max_abs_difference(in_long_double(u[i]), exact) < 1e-18);
   }
 }
 

@@ -24,7 +24,7 @@ const std::string and_clamp =
     "; set_out_of_domain(out_of_domain::clamp) makes a curve stay at its end";
 
 using duet::out_of_domain;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 using spline = duet::cumulative_bspline<double>;
 
 const std::vector<double> knots = duet_test::knot_vectors(4)[2].knots; // very uneven
@@ -115,7 +115,7 @@ TEST_CASE("extrapolate: the last piece goes on, and so do its derivatives") {
                             (u - end) * (u - end) / 2 * at_end.jerk;
       const double size = 1 + at_end.jerk.norm();
       CHECK((m.velocity - expected).norm() < 200 * size * far * far * far);
-      CHECK(gap(m.value, t(u)) == 0);
+      CHECK(max_abs_difference(m.value, t(u)) == 0);
       const auto moving = t(duet::taylor<double, 1>::variable(u));
       CHECK(std::abs(moving.y().derivative(1) - t.derivatives(u)[1].y()) < 1e-13 * size);
     }

@@ -87,9 +87,9 @@ TEST_CASE("the error of a table is estimated from the table alone") {
     const auto s =
         duet::interpolate<rotation_curve>(table.parameters, table.elements, duet::not_a_knot{});
     const double estimate = *std::max_element(errors.begin(), errors.end());
-    const double truth = largest_error(s, turning);
-    CHECK(estimate > truth / 3);
-    CHECK(estimate < truth * 3);
+    const double reference = largest_error(s, turning);
+    CHECK(estimate > reference / 3);
+    CHECK(estimate < reference * 3);
     // Largest where the motion is fast.
     const auto worst = std::max_element(errors.begin(), errors.end()) - errors.begin() + 1;
     CHECK(std::abs(table.parameters[std::size_t(worst)] - 1) < 0.15);
@@ -125,17 +125,17 @@ TEST_CASE_TEMPLATE("estimated_errors: never below the error, with steps of every
         const auto errors = duet::estimated_errors<Spline>(table);
         const auto s =
             duet::interpolate<Spline>(table.parameters, table.elements, duet::not_a_knot{});
-        double truth = 0;
+        double reference = 0;
         for (int i = 0; i <= 1000; ++i) {
           const double u = table.parameters.back() * i / 1000;
-          truth = std::max(truth, duet::detail::miss(s(u), motion(kind, u), 1.0));
+          reference = std::max(reference, duet::detail::miss(s(u), motion(kind, u), 1.0));
         }
         CAPTURE(rows);
         CAPTURE(steps);
         CAPTURE(kind);
         const double estimate = *std::max_element(errors.begin(), errors.end());
-        CHECK_GE(estimate, truth);
-        CHECK_LE(estimate, (steps == 2 ? 18 : 6) * truth);
+        CHECK_GE(estimate, reference);
+        CHECK_LE(estimate, (steps == 2 ? 18 : 6) * reference);
       }
     }
   }

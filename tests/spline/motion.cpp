@@ -20,8 +20,8 @@
 namespace test_spline_motion {
 
 using duet::cumulative_bspline;
-using duet_test::gap;
 using duet_test::knot_vectors;
+using duet_test::max_abs_difference;
 using duet_test::parameters_on;
 using duet_test::random_orientations;
 
@@ -63,7 +63,7 @@ double difference(const vector& a, const vector& b) {
   return (a - b).norm() / std::max(1e-3, a.norm());
 }
 double difference(const quaternion& a, const quaternion& b) {
-  return gap(a, b) / std::max(1e-3, std::sqrt(squared_norm(a)));
+  return max_abs_difference(a, b) / std::max(1e-3, std::sqrt(squared_norm(a)));
 }
 
 template <class Spline, class Frame>
@@ -73,7 +73,7 @@ double against_taylor(const Spline& s, const std::vector<double>& parameters, Fr
     const auto m = s.motion(u, frame);
     const auto q = duet::derivatives<3>([&](const auto& x) { return s(x); }, u);
     const auto expected = rates(q, frame);
-    worst = std::max(worst, gap(m.value, s(u)));
+    worst = std::max(worst, max_abs_difference(m.value, s(u)));
     worst = std::max(worst, difference(expected[0], m.velocity));
     worst = std::max(worst, difference(duet::angular_velocity(q[0], q[1], frame), m.velocity));
     worst = std::max(worst, difference(expected[1], m.acceleration));

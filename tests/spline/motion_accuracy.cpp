@@ -83,9 +83,9 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
     }
     size[3] += 3 * size[1] * size[2];
     size[2] += size[1] * size[1];
-    const auto measure = [&](worst_error& w, const auto& computed, const auto& truth, std::size_t d,
-                             const real_100& next) {
-      w.add(ulps_of_range<double>(computed, truth, real_100(size[d] + abs(next * u))), name, u);
+    const auto measure = [&](worst_error& w, const auto& computed, const auto& reference,
+                             std::size_t d, const real_100& next) {
+      w.add(ulps_of_range<double>(computed, reference, real_100(size[d] + abs(next * u))), name, u);
     };
     const auto of_quaternion = [&](worst_error& w, const duet::quaternion<double>& computed,
                                    std::size_t d, const real_100& next) {

@@ -10,7 +10,7 @@
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/newton.hpp>
-#include <duet/spline/equations/small_turns.hpp>
+#include <duet/spline/equations/small_angles.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
@@ -175,7 +175,7 @@ TEST_CASE("no step is small where one is not a number") {
   const rows data = small_steps();
   const duet::detail::equations_of_t<cumulative> f(
       data.parameters, data.orientations,
-      duet::curve_ends<double>(duet::detail::end_kind::natural));
+      duet::curve_ends<double>(duet::detail::end_condition_kind::natural));
   auto change = f.start();
   change[change.size() / 2][0] = nan;
   CHECK(std::isnan(f.relative_step(f.start(), change)));

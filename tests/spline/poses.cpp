@@ -30,9 +30,9 @@ const std::vector<double> parameters = duet_test::parameters_on(knots, 4, 1);
 
 const curve s(knots, duet_test::random_poses(knots.size() - 4, 1.2));
 
-double gap(const pose& a, const pose& b) {
-  return std::max(duet_test::gap(real_part(a), real_part(b)),
-                  duet_test::gap(dual_part(a), dual_part(b)));
+double max_abs_difference(const pose& a, const pose& b) {
+  return std::max(duet_test::max_abs_difference(real_part(a), real_part(b)),
+                  duet_test::max_abs_difference(dual_part(a), dual_part(b)));
 }
 /// From Q and Q′ by N18, over any scalar of the parameter.
 template <class S, class Frame>
@@ -52,7 +52,7 @@ TEST_CASE("the rotation of a pose curve is the curve of the rotations; all are u
   }
   const duet::cumulative_bspline<double> r(knots, rotations);
   for (const double u : parameters) {
-    CHECK(duet_test::gap(rotation(s(u)), r(u)) < 1e-15);
+    CHECK(duet_test::max_abs_difference(rotation(s(u)), r(u)) < 1e-15);
     CHECK(is_unit(s(u), 1e-14));
   }
 }
@@ -72,7 +72,7 @@ TEST_CASE("P1: of pure translations it is the B-spline of their vectors") {
       sum += points[i] * duet::basis_function(knots, i, 4, u);
     }
     CHECK((translation(t(u)) - sum).norm() < 1e-14);
-    CHECK(duet_test::gap(rotation(t(u)), duet::quaternion<double>(1)) == 0);
+    CHECK(duet_test::max_abs_difference(rotation(t(u)), duet::quaternion<double>(1)) == 0);
   }
 }
 
@@ -80,7 +80,8 @@ TEST_CASE("order 2 is the screw motion between neighbours") {
   const std::vector<double> uneven = {0, 0, 1, 3, 3.5, 3.5};
   const duet::cumulative_bspline<number, 2> t(uneven, duet_test::random_poses(4, 2));
   for (const double x : {0.0, 0.2, 0.7, 0.99}) {
-    CHECK(gap(t(1 + 2 * x), duet::sclerp(t.control_points()[1], t.control_points()[2], x)) < 1e-14);
+    CHECK(max_abs_difference(
+              t(1 + 2 * x), duet::sclerp(t.control_points()[1], t.control_points()[2], x)) < 1e-14);
   }
 }
 
@@ -92,7 +93,7 @@ TEST_CASE("moving all control poses moves the curve, and leaves body twists alon
   }
   const curve t(knots, moved);
   for (const double u : parameters) {
-    CHECK(gap(t(u), p * s(u)) < 1e-13);
+    CHECK(max_abs_difference(t(u), p * s(u)) < 1e-13);
     const auto a = s.motion(u, duet::frame::body), b = t.motion(u, duet::frame::body);
     CHECK(difference(a.velocity, b.velocity) < 1e-13);
     CHECK(difference(a.jerk, b.jerk) < 1e-13);
@@ -105,7 +106,7 @@ TEST_CASE("P3, P4 over poses: Q′, Q″, Q‴ against Taylor numbers") {
     const auto taylor = duet::derivatives<3>([](const auto& x) { return s(x); }, u);
     for (std::size_t d = 0; d <= 3; ++d) {
       const double size = 1 + norm(real_part(taylor[d])) + norm(dual_part(taylor[d]));
-      CHECK(gap(closed[d], taylor[d]) < 1e-13 * size);
+      CHECK(max_abs_difference(closed[d], taylor[d]) < 1e-13 * size);
     }
   }
 }

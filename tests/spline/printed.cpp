@@ -20,8 +20,8 @@ namespace test_spline_printed {
 using duet::cumulative_bspline;
 using duet::printed_derivative;
 using duet_test::b_definition;
-using duet_test::gap;
 using duet_test::knot_vectors;
+using duet_test::max_abs_difference;
 using duet_test::parameters_on;
 
 using quaternion = duet::quaternion<double>;
@@ -30,8 +30,8 @@ using vector = duet::vector3<double>;
 namespace {
 
 double size(const quaternion& q) { return std::sqrt(squared_norm(q)); }
-double relative(const quaternion& truth, const quaternion& q) {
-  return size(truth - q) / size(truth);
+double relative(const quaternion& reference, const quaternion& q) {
+  return size(reference - q) / size(reference);
 }
 
 /// Control quaternions about one axis: all ω_i are parallel.
@@ -87,8 +87,8 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
         const quaternion q = s(u);
         const auto printed = printed_derivative(s, u);
         const quaternion literal_second = q * first * first_in_p4 + q * second;
-        CHECK(gap(printed.literal_first, q * first) <= 1e-13 * (1 + size(first)));
-        CHECK(gap(printed.literal_second, literal_second) <=
+        CHECK(max_abs_difference(printed.literal_first, q * first) <= 1e-13 * (1 + size(first)));
+        CHECK(max_abs_difference(printed.literal_second, literal_second) <=
               1e-13 * (1 + size(first) * size(first_in_p4) + size(second)));
         // With functions from B_0 the curve's first control is q_0: sums over all that follow, and
         // B̃′_0 = B̃″_0 = 0 on the domain.
@@ -97,10 +97,11 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
         CHECK(zero[1] == 0);
         const quaternion all(0, sum + s.increments()[1] * lone[0]);
         const quaternion all_of_second(0, sum_of_second + s.increments()[1] * lone[1]);
-        CHECK(gap(printed.from_zero_first, q * all) <= 1e-13 * (1 + size(all)));
-        CHECK(gap(printed.from_zero_second, q * all * all + q * all_of_second) <=
+        CHECK(max_abs_difference(printed.from_zero_first, q * all) <= 1e-13 * (1 + size(all)));
+        CHECK(max_abs_difference(printed.from_zero_second, q * all * all + q * all_of_second) <=
               1e-13 * (1 + size(all) * size(all) + size(all_of_second)));
-        CHECK(gap(printed.from_zero_first, printed.commuting_first) <= 1e-13 * (1 + size(all)));
+        CHECK(max_abs_difference(printed.from_zero_first, printed.commuting_first) <=
+              1e-13 * (1 + size(all)));
       }
     }
   };
@@ -117,10 +118,12 @@ TEST_CASE("where the ω_i are parallel the commuting sums are the derivatives, i
     const cumulative_bspline<double> s(knots, about_one_axis(knots.size() - 4));
     double worst = 0;
     for (const double u : parameters_on(knots, 4)) {
-      const auto truth = s.derivatives(u);
+      const auto reference = s.derivatives(u);
       const auto printed = printed_derivative(s, u);
-      worst = std::max(worst, gap(printed.commuting_first, truth[1]) / (1 + size(truth[1])));
-      worst = std::max(worst, gap(printed.commuting_second, truth[2]) / (1 + size(truth[2])));
+      worst = std::max(worst, max_abs_difference(printed.commuting_first, reference[1]) /
+                                  (1 + size(reference[1])));
+      worst = std::max(worst, max_abs_difference(printed.commuting_second, reference[2]) /
+                                  (1 + size(reference[2])));
     }
     CHECK(worst < 1e-13);
   }
@@ -175,7 +178,7 @@ TEST_CASE("P2 with functions from B_0: q_{-1} cancels") {
       for (std::size_t i = 1; i < count; ++i) {
         q = q * duet::exp(vector(s.increments()[i] * cumulative(i)));
       }
-      CHECK(gap(q, s(u)) < 1e-14);
+      CHECK(max_abs_difference(q, s(u)) < 1e-14);
     }
   }
 }
@@ -186,10 +189,10 @@ TEST_CASE("P4: Q″ = Q (a + w²), and w² = −|w|²") {
   for (const double u : parameters_on(knots, 4)) {
     const auto m = s.motion(u, duet::frame::body);
     const quaternion w(0, m.velocity / 2), a(0, m.acceleration / 2);
-    const auto truth = s.derivatives(u)[2];
-    CHECK(gap(truth, m.value * (a + w * w)) <= 1e-13 * (1 + size(truth)));
-    CHECK(gap(w * w, quaternion(-squared_norm(w))) <= 1e-14 * (1 + squared_norm(w)));
-    CHECK(relative(truth, m.value * (a - w * w)) > 1e-3);
+    const auto reference = s.derivatives(u)[2];
+    CHECK(max_abs_difference(reference, m.value * (a + w * w)) <= 1e-13 * (1 + size(reference)));
+    CHECK(max_abs_difference(w * w, quaternion(-squared_norm(w))) <= 1e-14 * (1 + squared_norm(w)));
+    CHECK(relative(reference, m.value * (a - w * w)) > 1e-3);
   }
 }
 
@@ -211,11 +214,11 @@ TEST_CASE("P3, P4: in general the commuting sums are not the derivatives") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, duet_test::random_orientations(knots.size() - 4, 1));
   for (const double u : parameters_on(knots, 4)) {
-    const auto truth = s.derivatives(u);
+    const auto reference = s.derivatives(u);
     const auto printed = printed_derivative(s, u);
-    CHECK(relative(truth[1], printed.commuting_first) > 1e-3);
-    CHECK(relative(truth[2], printed.commuting_second) > 1e-3);
-    CHECK(relative(truth[2], printed.from_zero_second) > 1e-3);
+    CHECK(relative(reference[1], printed.commuting_first) > 1e-3);
+    CHECK(relative(reference[2], printed.commuting_second) > 1e-3);
+    CHECK(relative(reference[2], printed.from_zero_second) > 1e-3);
   }
 }
 

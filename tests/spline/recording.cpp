@@ -167,18 +167,18 @@ TEST_CASE("of KITTI's rows that are left out the numbers and times stay") {
 }
 
 TEST_CASE("what is no recording says why") {
-  const auto complaint = [](const std::string& text) {
+  const auto error_message = [](const std::string& text) {
     write(text);
     return duet_test::message_of<duet::file_error>(
         [] { static_cast<void>(duet::load_recording<screw>(path)); });
   };
-  CHECK(complaint("") == "duet: " + path + ": holds no usable rows");
-  CHECK(complaint("0 1 2 3 0 0 0 0\n") == "duet: " + path + ": holds no usable rows");
-  CHECK(complaint("0 1 2 3 0 0 0 1\n1 one 2 3 0 0 0 1\n") ==
+  CHECK(error_message("") == "duet: " + path + ": holds no usable rows");
+  CHECK(error_message("0 1 2 3 0 0 0 0\n") == "duet: " + path + ": holds no usable rows");
+  CHECK(error_message("0 1 2 3 0 0 0 1\n1 one 2 3 0 0 0 1\n") ==
         "duet: " + path + ":2: tx is not a number: 'one'");
-  CHECK(complaint("0 1 2 3 0 0 0 1\n1 2 3 0 0 0 1\n") ==
+  CHECK(error_message("0 1 2 3 0 0 0 1\n1 2 3 0 0 0 1\n") ==
         "duet: " + path + ":2: 8 columns expected, got 7");
-  CHECK(complaint("t [s],x,y,z,qw,qx,qy,qz\n1e308,1,2,3,1,0,0,0\n-1e308,1,2,3,1,0,0,0\n") ==
+  CHECK(error_message("t [s],x,y,z,qw,qx,qy,qz\n1e308,1,2,3,1,0,0,0\n-1e308,1,2,3,1,0,0,0\n") ==
         "duet: " + path + ":2: timestamp 1e+308, and line 3 has -1e+308: too far apart");
   std::remove(path.c_str());
 }

@@ -28,14 +28,14 @@ using spline = duet::rotation_vector_spline<double, Order>;
 
 namespace {
 
-struct truth {
+struct reference {
   quaternion value;
   vector velocity, acceleration;
 };
 
 /// The motion of `smooth_motion`, or one that closes on itself after u = 2.
 template <bool Periodic>
-truth at(double u) {
+reference at(double u) {
   const auto q = duet::derivatives<2>(
       [](const auto& x) {
         using std::cos;
@@ -75,10 +75,10 @@ errors measure(int steps, double (*place)(double), const Ends& ends, double a = 
   constexpr int samples = 1001;
   for (int i = 0; i < samples; ++i) {
     const double x = a + (b - a) * i / (samples - 1);
-    const truth exact = at<is_periodic>(x);
+    const reference exact = at<is_periodic>(x);
     const auto m = s.motion(x, duet::frame::spatial);
     const double sign = dot(exact.value, m.value) < 0 ? -1 : 1;
-    const errors here = {duet_test::gap(exact.value, sign * m.value),
+    const errors here = {duet_test::max_abs_difference(exact.value, sign * m.value),
                          (exact.velocity - m.velocity).norm(),
                          (exact.acceleration - m.acceleration).norm()};
     for (std::size_t k = 0; k < worst.size(); ++k) {

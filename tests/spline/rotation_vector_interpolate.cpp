@@ -20,7 +20,7 @@
 namespace test_spline_rotation_vector_interpolate {
 
 using duet::interpolate;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
@@ -84,7 +84,8 @@ void check_curve(const spline<Order>& s, const parameters& u, const table& q, in
   }
   for (std::size_t i = 0; i < u.size(); ++i) {
     const quaternion at = s(u[i]);
-    CHECK(std::min(gap(at, q[i]), gap(at, -q[i])) < 1e-15 * (1 + fastest));
+    CHECK(std::min(max_abs_difference(at, q[i]), max_abs_difference(at, -q[i])) <
+          1e-15 * (1 + fastest));
     if (i > 0 && i + 1 < u.size()) {
       sides.push_back(both_sides(s, i));
       for (std::size_t k = 0; k < 5; ++k) {
@@ -179,7 +180,7 @@ TEST_CASE("no motion at all") {
   const table q(7, quaternion(0.6, 0, 0.8, 0));
   const auto s = interpolate<spline<6>>(uneven(7), q, duet::not_a_knot{});
   CHECK(s.motion(0.5, duet::frame::body).velocity.norm() == 0);
-  CHECK(gap(s(0.5), q[0]) < 1e-15);
+  CHECK(max_abs_difference(s(0.5), q[0]) < 1e-15);
 }
 
 TEST_CASE("about one axis polynomials of the spline's degree come back") {
@@ -195,7 +196,7 @@ TEST_CASE("about one axis polynomials of the spline's degree come back") {
     }
     const auto check = [&](const auto& s) {
       for (double x = 0; x <= 2; x += 0.07) {
-        CHECK(gap(s(x), duet::from_axis_angle(axis, angle(x, degree))) < 1e-13);
+        CHECK(max_abs_difference(s(x), duet::from_axis_angle(axis, angle(x, degree))) < 1e-13);
       }
     };
     if (degree == 3) {

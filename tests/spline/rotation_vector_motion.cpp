@@ -58,7 +58,7 @@ void check_motion(const spline<Order>& s) {
     const auto body = s.motion(u, duet::frame::body);
     const auto spatial = s.motion(u, duet::frame::spatial);
     const auto check = [&](const auto& m, const auto& w) {
-      CHECK(duet_test::gap(m.value, d[0]) < 1e-15);
+      CHECK(duet_test::max_abs_difference(m.value, d[0]) < 1e-15);
       CHECK((m.velocity - rate(w, 0)).norm() < 1e-13 * (1 + m.velocity.norm()));
       CHECK((m.acceleration - rate(w, 1)).norm() < 1e-13 * (1 + m.acceleration.norm()));
       CHECK((m.jerk - rate(w, 2)).norm() < 1e-13 * (1 + m.jerk.norm()));
@@ -131,7 +131,7 @@ TEST_CASE("hints change nothing; outside its domain the curve does as told") {
   const double h = 1e-3;
   const quaternion expected =
       series[0] + series[1] * h + series[2] * (h * h / 2) + series[3] * (h * h * h / 6);
-  CHECK(duet_test::gap(s(2.9 + h), expected) < 1e-9);
+  CHECK(duet_test::max_abs_difference(s(2.9 + h), expected) < 1e-9);
 }
 
 TEST_CASE("what no curve goes through") {

@@ -22,7 +22,7 @@ using duet::dual;
 using duet::quaternion;
 using duet::taylor;
 using duet_test::cast;
-using duet_test::gap;
+using duet_test::max_abs_difference;
 
 namespace {
 
@@ -43,12 +43,12 @@ void check_real(double tolerance) {
     }
     const auto expected = reference.motion(u, duet::frame::spatial);
     const auto m = s.motion(T(u), duet::frame::spatial);
-    CHECK(gap(m.value, expected.value) < tolerance);
+    CHECK(max_abs_difference(m.value, expected.value) < tolerance);
     for (int j = 0; j < 3; ++j) {
       CHECK(std::abs(double(m.velocity[j]) - expected.velocity[j]) < 50 * tolerance);
       CHECK(std::abs(double(m.acceleration[j]) - expected.acceleration[j]) < 1000 * tolerance);
     }
-    CHECK(gap(s.derivatives(T(u))[1], reference.derivatives(u)[1]) < 50 * tolerance);
+    CHECK(max_abs_difference(s.derivatives(T(u))[1], reference.derivatives(u)[1]) < 50 * tolerance);
   }
 }
 

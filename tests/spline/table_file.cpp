@@ -176,29 +176,29 @@ TEST_CASE("what files hold, to the letter") {
 
 TEST_CASE("what cannot be saved says why, and nothing is written") {
   const scratch_file file("unsaved.txt");
-  const auto complaint = [&](const auto& table, table_format format, const char* times = "") {
+  const auto error_message = [&](const auto& table, table_format format, const char* times = "") {
     return duet_test::message_of([&] { duet::save_table(file.path, table, format, times); });
   };
   poses table = random_poses(3, 0, 1);
-  CHECK(complaint(rotations{{0}, {rotation(1)}}, table_format::tum) ==
+  CHECK(error_message(rotations{{0}, {rotation(1)}}, table_format::tum) ==
         "duet: save_table: TUM, EuRoC and KITTI files hold poses, not rotations alone");
-  CHECK(complaint(table, table_format::kitti, "no/times.txt") ==
+  CHECK(error_message(table, table_format::kitti, "no/times.txt") ==
         "duet: no/times.txt: cannot be written: No such file or directory");
-  CHECK(complaint(table, table_format::kitti, file.path.c_str()) ==
+  CHECK(error_message(table, table_format::kitti, file.path.c_str()) ==
         "duet: " + file.path + ": is the same file as " + file.path);
-  CHECK(complaint(table, table_format::tum, "times.txt") ==
+  CHECK(error_message(table, table_format::tum, "times.txt") ==
         "duet: save_table: only KITTI files have times in a file of their own");
   table.parameters = {0, 1e-3, 1.0000002e-3};
-  CHECK(complaint(table, table_format::euroc) ==
+  CHECK(error_message(table, table_format::euroc) ==
         "duet: save_table: row 2 at 0.0010000002 s is not a nanosecond after the row before");
   table.parameters[2] = 1e10;
-  CHECK(complaint(table, table_format::euroc) ==
+  CHECK(error_message(table, table_format::euroc) ==
         "duet: save_table: 1e+10 s are beyond 9.2e18 nanoseconds");
   table.parameters[2] = std::nan("");
-  CHECK(complaint(table, table_format::euroc) ==
+  CHECK(error_message(table, table_format::euroc) ==
         "duet: save_table: nan s are beyond 9.2e18 nanoseconds");
   table.parameters.pop_back();
-  CHECK(complaint(table, table_format::csv) == "duet: save_table: 2 parameters for 3 elements");
+  CHECK(error_message(table, table_format::csv) == "duet: save_table: 2 parameters for 3 elements");
   CHECK(file.text().empty());
 }
 
@@ -285,7 +285,7 @@ TEST_CASE("Euler angles, where the caller says which") {
     return duet::load_table<double>(file.path, angles);
   };
   const euler_columns aircraft(duet::zyx, {"yaw", "pitch", "roll"}, angle_unit::degree);
-  const auto gap = [](const rotation& a, const rotation& b) { return norm(a - b); };
+  const auto max_abs_difference = [](const rotation& a, const rotation& b) { return norm(a - b); };
   const rotation turned = duet::from_euler<duet::zyx>(30 * degree, -20 * degree, 10 * degree);
   for (const char* text : {"t,roll,pitch,yaw\n0.5,10,-20,30\n",
                            "Yaw [deg];Roll [degrees];Pitch [\u00b0];t\n30;10;-20;0.5\n",
@@ -294,46 +294,47 @@ TEST_CASE("Euler angles, where the caller says which") {
                            "t,qw,qx,qy,qz,roll,pitch,yaw\n0.5,1,0,0,0,10,-20,30\n"}) {
     const rotations table = read(text, aircraft);
     CHECK(table.parameters == std::vector<double>{0.5});
-    CHECK(gap(table.elements[0], turned) < 4e-16);
+    CHECK(max_abs_difference(table.elements[0], turned) < 4e-16);
   }
   // Every sequence, in radians; whole turns are kept: the sign of the quaternion is theirs.
   const std::string text = "t,a,b,c\n0,0.3,-1.2,7\n";
   const auto of = [&](duet::euler_sequence s) {
     return read(text, euler_columns(s, {"a", "b", "c"}, angle_unit::radian)).elements[0];
   };
-  CHECK(gap(of(duet::xyz), duet::from_euler<duet::xyz>(0.3, -1.2, 7.0)) < 4e-16);
-  CHECK(gap(of(duet::zxz), duet::from_euler<duet::zxz>(0.3, -1.2, 7.0)) < 4e-16);
-  CHECK(gap(of(duet::yzx), duet::from_euler<duet::yzx>(0.3, -1.2, 7.0)) < 4e-16);
+  CHECK(max_abs_difference(of(duet::xyz), duet::from_euler<duet::xyz>(0.3, -1.2, 7.0)) < 4e-16);
+  CHECK(max_abs_difference(of(duet::zxz), duet::from_euler<duet::zxz>(0.3, -1.2, 7.0)) < 4e-16);
+  CHECK(max_abs_difference(of(duet::yzx), duet::from_euler<duet::yzx>(0.3, -1.2, 7.0)) < 4e-16);
   // Poses, and recordings with a row that is left out.
   file.write("time [ms],x,y,z,roll,pitch,yaw\n0,1,2,3,0,0,90\n5,1,2,3,0,nan,90\n");
   const auto recorded = duet::load_recording<screw>(file.path, aircraft);
   CHECK(recorded.left_out == 1);
   CHECK(recorded.faults.at(0).reason == "pitch is nan: left out");
   const auto& pose = recorded.table.elements.at(0);
-  CHECK(gap(duet::rotation(pose), duet::from_euler<duet::zyx>(90 * degree, 0.0, 0.0)) < 4e-16);
+  CHECK(max_abs_difference(duet::rotation(pose),
+                           duet::from_euler<duet::zyx>(90 * degree, 0.0, 0.0)) < 4e-16);
   CHECK((duet::translation(pose) - vector3<double>(1, 2, 3)).norm() < 1e-15);
 
-  const auto complaint = [&](const std::string& content, const euler_columns& angles) {
+  const auto error_message = [&](const std::string& content, const euler_columns& angles) {
     const std::string message =
         duet_test::message_of<duet::file_error>([&] { static_cast<void>(read(content, angles)); });
     const std::string begin = "duet: " + file.path + ":";
     REQUIRE(message.starts_with(begin));
     return message.substr(begin.size());
   };
-  CHECK(complaint("t,roll,pitch\n0,1,2\n", aircraft) ==
+  CHECK(error_message("t,roll,pitch\n0,1,2\n", aircraft) ==
         std::string("1: the header names no column yaw: ") + duet::detail::known_columns);
-  CHECK(complaint("t,roll,pitch,yaw [rad]\n0,1,2,3\n", aircraft) ==
+  CHECK(error_message("t,roll,pitch,yaw [rad]\n0,1,2,3\n", aircraft) ==
         "1: the header has yaw [rad], euler_columns other angles: degrees");
-  CHECK(complaint("t,a,b [deg],c\n0,1,2,3\n",
-                  euler_columns(duet::zyx, {"a", "b", "c"}, angle_unit::radian)) ==
+  CHECK(error_message("t,a,b [deg],c\n0,1,2,3\n",
+                      euler_columns(duet::zyx, {"a", "b", "c"}, angle_unit::radian)) ==
         "1: the header has b [deg], euler_columns other angles: radians");
-  CHECK(complaint("t,roll,pitch,yaw,Yaw\n0,1,2,3,3\n", aircraft) ==
+  CHECK(error_message("t,roll,pitch,yaw,Yaw\n0,1,2,3,3\n", aircraft) ==
         "1: the header has both 'yaw' and 'Yaw'");
-  CHECK(complaint("0 1 2 3 0 0 0 1\n", aircraft) ==
+  CHECK(error_message("0 1 2 3 0 0 0 1\n", aircraft) ==
         "1: no header before the first row names the columns of angles");
-  CHECK(complaint("1 0 0 0 0 1 0 0 0 0 1 0\n", aircraft) ==
+  CHECK(error_message("1 0 0 0 0 1 0 0 0 0 1 0\n", aircraft) ==
         "1: no header before the first row names the columns of angles");
-  CHECK(complaint("t,roll,pitch,yaw\n0,1,2,north\n", aircraft) ==
+  CHECK(error_message("t,roll,pitch,yaw\n0,1,2,north\n", aircraft) ==
         "2: yaw is not a number: 'north'");
   // Without the caller's word they are refused.
   file.write("t,roll,pitch,yaw\n0,1,2,3\n");
@@ -392,16 +393,16 @@ TEST_CASE("what rostopic echo -p writes") {
             .parameters == std::vector<double>{1});
   const scratch_file file("ros.csv", header + "5,1,5,world,1,2,3,0,0,0.8,0.6\n"
                                               "6,1,0.5,world,1,2,3,0,0,0.8,0.6\n");
-  const auto complaint = [&] {
+  const auto error_message = [&] {
     return duet_test::message_of<duet::file_error>(
         [&] { static_cast<void>(duet::load_table<screw>(file.path)); });
   };
-  CHECK(complaint().find(":3: field.header.stamp 0.5 is no whole number of nanoseconds") !=
+  CHECK(error_message().find(":3: field.header.stamp 0.5 is no whole number of nanoseconds") !=
         std::string::npos);
   file.write("%time,stamp," + pose);
-  CHECK(complaint().ends_with(":1: the header has both '%time' and 'stamp'"));
+  CHECK(error_message().ends_with(":1: the header has both '%time' and 'stamp'"));
   file.write("time,field.header.stamp," + pose);
-  CHECK(complaint().ends_with(":1: the header has both 'time' and 'field.header.stamp'"));
+  CHECK(error_message().ends_with(":1: the header has both 'time' and 'field.header.stamp'"));
 }
 
 TEST_CASE("of a matrix of few digits, the nearest rotation") {
@@ -514,7 +515,7 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
   write("\"t\",\"tx\",\"ty\",\"tz\",\"qw\",\"qx\",\"qy\",\"qz\"\n0,1,2,3,.1,.3,.9,.3\n");
   CHECK(duet::load_table<screw>(path).elements.at(0) == a);
 
-  const auto complaint = [&](const std::string& text) {
+  const auto error_message = [&](const std::string& text) {
     write(text);
     return duet_test::message_of<duet::file_error>(
         [&] { static_cast<void>(duet::load_table<double>(path)); });
@@ -526,20 +527,20 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
   for (const char* unnamed :
        {"0,.3,.9,.3,.1\n", "1305031098.6659,1.3563,0.6305,1.6380,0.6132,0.5962,"
                            "-0.3311,-0.3986\n"}) {
-    const std::string message = complaint(unnamed);
+    const std::string message = error_message(unnamed);
     CHECK(message.find(" columns, and no header before the first row says which is which") !=
           message.npos);
     CHECK(is_told(message));
   }
-  CHECK(complaint("t,q0,q1,q2,q3\n0,.1,.3,.9,.3\n")
+  CHECK(error_message("t,q0,q1,q2,q3\n0,.1,.3,.9,.3\n")
             .starts_with("duet: " + path + ":1: the header names no column qw: known are u "));
-  CHECK(is_told(complaint("u,w,x,y,z\n0,.1,.3,.9,.3\n")));
-  CHECK(is_told(complaint("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
-  CHECK(complaint("qw,qx,qy,qz\n.1,.3,.9,.3\n")
+  CHECK(is_told(error_message("u,w,x,y,z\n0,.1,.3,.9,.3\n")));
+  CHECK(is_told(error_message("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
+  CHECK(error_message("qw,qx,qy,qz\n.1,.3,.9,.3\n")
             .starts_with("duet: " + path + ":1: the header names no column u"));
-  CHECK(complaint("t,u,qw,qx,qy,qz\n0,0,.1,.3,.9,.3\n") ==
+  CHECK(error_message("t,u,qw,qx,qy,qz\n0,0,.1,.3,.9,.3\n") ==
         "duet: " + path + ":1: the header has both 't' and 'u'");
-  CHECK(complaint("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
+  CHECK(error_message("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
         "duet: " + path + ":1: the comment names 6 columns, the rows have 5");
   // A comment whose names fit nothing is none that TUM's rows need.
   for (const char* comment :
@@ -554,17 +555,17 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
         "# time a b c x y z d\n", "# timestamp qw qx qy qz tx ty tz norm\n",
         "# timestamp tx ty tz qw qx qy qz norm\n"}) {
     CAPTURE(comment);
-    CHECK(complaint(std::string(comment) + "0 1 2 3 .3 .9 .3 .1\n")
+    CHECK(error_message(std::string(comment) + "0 1 2 3 .3 .9 .3 .1\n")
               .starts_with("duet: " + path + ":1: the "));
   }
-  CHECK(complaint("# t qx qy qz qw\n1 0 0 0 0 1 0 0 0 0 1 0\n") ==
+  CHECK(error_message("# t qx qy qz qw\n1 0 0 0 0 1 0 0 0 0 1 0\n") ==
         "duet: " + path + ":1: the comment names 5 columns, the rows have 12");
   std::remove(path.c_str());
 }
 
 TEST_CASE("bad files are named, with line, column and value") {
   const scratch_file file("bad.txt");
-  const auto complaint = [&](const std::string& text) {
+  const auto error_message = [&](const std::string& text) {
     file.write(text);
     const std::string message = duet_test::message_of<duet::invalid_input>(
         [&] { static_cast<void>(duet::load_table<screw>(file.path)); });
@@ -573,56 +574,57 @@ TEST_CASE("bad files are named, with line, column and value") {
     return message.substr(begin.size());
   };
   const std::string row = "0 1 2 3 0 0 0 1\n";
-  CHECK(complaint("") == " holds no rows");
-  CHECK(complaint("# nothing\n\n") == " holds no rows");
-  CHECK(complaint("u,x,y,z,qw,qx,qy,qz\n") == " holds no rows");
-  CHECK(complaint("\xff\xfeu") == " is UTF-16: UTF-8 expected");
-  CHECK(complaint(row + "1 nan 2 3 0 0 0 1\n") == "2: tx is nan");
-  CHECK(complaint(row + "1 1 2 inf 0 0 0 1\n") == "2: tz is inf");
-  CHECK(complaint(row + "1 1 2 3 0 0 1e-400 1\n") ==
+  CHECK(error_message("") == " holds no rows");
+  CHECK(error_message("# nothing\n\n") == " holds no rows");
+  CHECK(error_message("u,x,y,z,qw,qx,qy,qz\n") == " holds no rows");
+  CHECK(error_message("\xff\xfeu") == " is UTF-16: UTF-8 expected");
+  CHECK(error_message(row + "1 nan 2 3 0 0 0 1\n") == "2: tx is nan");
+  CHECK(error_message(row + "1 1 2 inf 0 0 0 1\n") == "2: tz is inf");
+  CHECK(error_message(row + "1 1 2 3 0 0 1e-400 1\n") ==
         "2: qz is 1e-400, beyond the range of a double");
-  CHECK(complaint(row + "1e400 1 2 3 0 0 0 1\n") ==
+  CHECK(error_message(row + "1e400 1 2 3 0 0 0 1\n") ==
         "2: timestamp is 1e400, beyond the range of a double");
-  CHECK(complaint(row + "1 one 2 3 0 0 0 1\n") == "2: tx is not a number: 'one'");
-  CHECK(complaint(row + "1 1 2 3 0 0 0\n") == "2: 8 columns expected, got 7");
-  CHECK(complaint(row + "1 1 2 3 0 0 0 0.9\n") ==
+  CHECK(error_message(row + "1 one 2 3 0 0 0 1\n") == "2: tx is not a number: 'one'");
+  CHECK(error_message(row + "1 1 2 3 0 0 0\n") == "2: 8 columns expected, got 7");
+  CHECK(error_message(row + "1 1 2 3 0 0 0 0.9\n") ==
         "2: the quaternion of qw, qx, qy, qz has norm 0.9, not 1");
-  CHECK(complaint(row + "0 1 2 3 0 0 0 1\n") ==
+  CHECK(error_message(row + "0 1 2 3 0 0 0 1\n") ==
         "2: parameter 0 does not increase, the row before has 0");
-  CHECK(complaint(row + "-1 1 2 3 0 0 0 1\n") ==
+  CHECK(error_message(row + "-1 1 2 3 0 0 0 1\n") ==
         "2: parameter -1 does not increase, the row before has 0");
-  CHECK(complaint("u,x,y,z,qw,qx,qy,qz\n0,1,,3,1,0,0,0\n") == "2: y is not a number: ''");
-  CHECK(complaint("u,x,y,z,qw,qx,qy\n0,1,2,3,1,0,0\n") ==
+  CHECK(error_message("u,x,y,z,qw,qx,qy,qz\n0,1,,3,1,0,0,0\n") == "2: y is not a number: ''");
+  CHECK(error_message("u,x,y,z,qw,qx,qy\n0,1,2,3,1,0,0\n") ==
         std::string("1: the header names no column qz: ") + duet::detail::known_columns);
-  CHECK(complaint("u,x,y,qw,qx,qy,qz\n0,1,2,1,0,0,0\n") ==
+  CHECK(error_message("u,x,y,qw,qx,qy,qz\n0,1,2,1,0,0,0\n") ==
         std::string("1: the header names no column z: ") + duet::detail::known_columns);
-  CHECK(complaint("t [h],x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
+  CHECK(error_message("t [h],x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
         "2: timestamps in 'h': s, ms, us or ns expected");
-  CHECK(complaint("t,x [m],y [m],z [mm],qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
+  CHECK(error_message("t,x [m],y [m],z [mm],qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
         "2: positions in 'mm': m expected");
-  CHECK(complaint(header_of_euroc + "0.5,0,0,0,1,0,0,0\n") ==
+  CHECK(error_message(header_of_euroc + "0.5,0,0,0,1,0,0,0\n") ==
         "2: timestamp 0.5 is no whole number of nanoseconds: a header with its unit, as in "
         "`timestamp [s]`, is needed");
   // Decimal commas.
-  CHECK(complaint("0,5 1,0 2 3 0 0 0 1\n").starts_with("1: 3 columns, and no header before the "));
-  CHECK(complaint(header_of_euroc + "1,1,2,3,0,5,0,0,1\n") ==
+  CHECK(error_message("0,5 1,0 2 3 0 0 0 1\n")
+            .starts_with("1: 3 columns, and no header before the "));
+  CHECK(error_message(header_of_euroc + "1,1,2,3,0,5,0,0,1\n") ==
         "1: the comment names 8 columns, the rows have 9");
-  CHECK(complaint("u;x;y;z;qw;qx;qy;qz\n0;1;2,5;3;1;0;0;0\n") ==
+  CHECK(error_message("u;x;y;z;qw;qx;qy;qz\n0;1;2,5;3;1;0;0;0\n") ==
         "2: y is not a number: '2,5': decimals come after a point");
-  CHECK(complaint("0,5;1,0;2,5;3,5;1,0;0,0;0,0;0,0\n").find(" 8 columns, and no header") !=
+  CHECK(error_message("0,5;1,0;2,5;3,5;1,0;0,0;0,0;0,0\n").find(" 8 columns, and no header") !=
         std::string::npos);
 
   const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
-  CHECK(complaint(identity + "1 0 0 0 0 1 0 0 0 0 -1 0\n") ==
+  CHECK(error_message(identity + "1 0 0 0 0 1 0 0 0 0 -1 0\n") ==
         "2: the matrix is a reflection: det R = -1");
-  CHECK(complaint(identity + "1 0 0 0 0 1.5 0 0 0 0 1 0\n") ==
+  CHECK(error_message(identity + "1 0 0 0 0 1.5 0 0 0 0 1 0\n") ==
         "2: the matrix is no rotation: |R R^T - 1| = 1.25");
-  CHECK(complaint(identity + "0 0 0 0 0 0 0 0 0 0 0 0\n") ==
+  CHECK(error_message(identity + "0 0 0 0 0 0 0 0 0 0 0 0\n") ==
         "2: the matrix is no rotation: |R R^T - 1| = 1");
-  CHECK(complaint(identity + "1e200 1e200 0 0 1e200 -1e200 0 0 0 0 1 0\n") ==
+  CHECK(error_message(identity + "1e200 1e200 0 0 1e200 -1e200 0 0 0 0 1 0\n") ==
         "2: the matrix is no rotation: |R R^T - 1| = inf");
-  CHECK(complaint(identity + "1 0 0 nan 0 1 0 0 0 0 1 0\n") == "2: column 4 is nan");
-  CHECK(complaint(identity + "1 0 0 0 0 1 0 0 0 0 1 0,\n") == "2: 12 columns expected, got 1");
+  CHECK(error_message(identity + "1 0 0 nan 0 1 0 0 0 0 1 0\n") == "2: column 4 is nan");
+  CHECK(error_message(identity + "1 0 0 0 0 1 0 0 0 0 1 0,\n") == "2: 12 columns expected, got 1");
 
   CHECK(duet_test::message_of([] { static_cast<void>(duet::load_table<screw>(".")); }) ==
         "duet: .: is a folder, not a file");
@@ -633,29 +635,30 @@ TEST_CASE("bad files are named, with line, column and value") {
 TEST_CASE("times and rows of different numbers") {
   const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   const scratch_file file("rows.txt", "# poses\n" + identity + identity), times("rows_times.txt");
-  const auto complaint = [&](const std::string& text) {
+  const auto error_message = [&](const std::string& text) {
     times.write(text);
     return duet_test::message_of<duet::file_error>(
         [&] { static_cast<void>(duet::load_table<screw>(file.path, times.path)); });
   };
-  CHECK(complaint("0\n") == "duet: " + file.path + ":3: a row beyond the 1 times of " + times.path);
-  CHECK(complaint("0\n1\n\n2\n") ==
+  CHECK(error_message("0\n") ==
+        "duet: " + file.path + ":3: a row beyond the 1 times of " + times.path);
+  CHECK(error_message("0\n1\n\n2\n") ==
         "duet: " + times.path + ":4: a time beyond the 2 rows of " + file.path);
-  CHECK(complaint("0\n0\n") ==
+  CHECK(error_message("0\n0\n") ==
         "duet: " + file.path + ":3: parameter 0 does not increase, the row before has 0");
-  CHECK(complaint("0 1\n") == "duet: " + times.path + ":1: 1 numbers expected, got 2");
-  CHECK(complaint("0\nnan\n") == "duet: " + times.path + ":2: column 1 is nan");
-  CHECK(complaint("1403636580838\n1403636580838.5\n") ==
+  CHECK(error_message("0 1\n") == "duet: " + times.path + ":1: 1 numbers expected, got 2");
+  CHECK(error_message("0\nnan\n") == "duet: " + times.path + ":2: column 1 is nan");
+  CHECK(error_message("1403636580838\n1403636580838.5\n") ==
         "duet: " + times.path +
             ":2: time 1403636580838.5 is no whole number of milliseconds: a header with its unit, "
             "as in `timestamp [s]`, is needed");
-  CHECK(complaint("t [h]\n0\n1\n") ==
+  CHECK(error_message("t [h]\n0\n1\n") ==
         "duet: " + times.path + ":1: timestamps in 'h': s, ms, us or ns expected");
   times.write("t [ms]\n1500\n2500.5\n");
   CHECK(duet::load_table<screw>(file.path, times.path).parameters == std::vector{1.5, 2.5005});
-  CHECK(complaint("") == "duet: " + times.path + ": holds no rows");
+  CHECK(error_message("") == "duet: " + times.path + ": holds no rows");
   file.write("0 1 2 3 0 0 0 1\n");
-  CHECK(complaint("0\n") ==
+  CHECK(error_message("0\n") ==
         "duet: " + file.path + ":1: has times of its own besides those of " + times.path);
 }
 

@@ -14,7 +14,7 @@ namespace duet_test {
 
 /// The largest difference of two entries.
 template <class A, class B>
-double gap(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
+double max_abs_difference(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   const auto& x = a.eval();
   const auto& y = b.eval();
   double largest = 0;

@@ -11,21 +11,21 @@
 namespace duet::detail {
 
 template <int N>
-struct known_number {
+struct static_number {
   static_assert(-1 <= N && N <= 1);
 };
-using known_zero = known_number<0>;
-using known_one = known_number<1>;
+using known_zero = static_number<0>;
+using known_one = static_number<1>;
 
 template <class X>
 concept Number = Scalar<X> || Arithmetic<X>;
 
 template <int N, int M>
-[[nodiscard]] constexpr auto operator*(known_number<N>, known_number<M>) {
-  return known_number<N * M>{};
+[[nodiscard]] constexpr auto operator*(static_number<N>, static_number<M>) {
+  return static_number<N * M>{};
 }
 template <int N, Number B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(known_number<N> zero, const B& b) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(static_number<N> zero, const B& b) {
   if constexpr (N == 0) {
     return zero;
   } else if constexpr (N > 0) {
@@ -35,21 +35,21 @@ template <int N, Number B>
   }
 }
 template <Number A, int N>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, known_number<N> n) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, static_number<N> n) {
   return n * a;
 }
 
 template <int N>
-[[nodiscard]] constexpr auto operator-(known_number<N>) {
-  return known_number<-N>{};
+[[nodiscard]] constexpr auto operator-(static_number<N>) {
+  return static_number<-N>{};
 }
 
 template <int N, int M>
-[[nodiscard]] constexpr auto operator+(known_number<N>, known_number<M>) {
-  return known_number<N + M>{};
+[[nodiscard]] constexpr auto operator+(static_number<N>, static_number<M>) {
+  return static_number<N + M>{};
 }
 template <Number A, int N>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, known_number<N>) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, static_number<N>) {
   if constexpr (N == 0) {
     return a;
   } else {
@@ -57,16 +57,16 @@ template <Number A, int N>
   }
 }
 template <int N, Number B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(known_number<N> n, const B& b) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(static_number<N> n, const B& b) {
   return b + n;
 }
 
 template <class A, int N>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, known_number<N> n) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, static_number<N> n) {
   return a + -n;
 }
 template <int N, Number B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(known_number<N>, const B& b) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(static_number<N>, const B& b) {
   if constexpr (N == 0) {
     return B(-b);
   } else {
@@ -79,7 +79,7 @@ template <class Get>
 [[nodiscard]] constexpr auto known(Get get) {
   constexpr auto value = Get{}();
   if constexpr (value == 0 || value == 1 || value == -1) {
-    return known_number<int(value)>{};
+    return static_number<int(value)>{};
   } else {
     return get();
   }
@@ -91,7 +91,7 @@ template <class S, class X>
   return S(x);
 }
 template <class S, int N>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr S number(known_number<N>) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr S number(static_number<N>) {
   return S(N);
 }
 

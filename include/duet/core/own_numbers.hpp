@@ -60,7 +60,7 @@ inline constexpr bool refers_elsewhere<std::pair<A, B>> =
 
 /// Rejects result types that a function called by duet must not return.
 template <class X>
-constexpr void require_own_numbers() {
+constexpr void require_owning_result() {
   static_assert(!refers_elsewhere<X>,
                 "duet: a function returns an expression of Eigen, which refers to variables that "
                 "are gone by then: return (...).eval(), or say what it returns: "

@@ -19,7 +19,7 @@ template <Real R>
 
 /// u, or the end of [low, high] that it exceeds by at most 8 ulp of the end of larger magnitude.
 template <Real R>
-[[nodiscard]] DUET_COLD R rounded_into(const R& u, const R& low, const R& high) {
+[[nodiscard]] DUET_COLD R clamp_rounding(const R& u, const R& low, const R& high) {
   using std::frexp;
   using std::ldexp;
   const R size = -low < high ? high : R(-low);

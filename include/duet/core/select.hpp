@@ -20,7 +20,7 @@ namespace duet {
 template <std::same_as<bool> Condition, std::invocable F, std::invocable G>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto select(Condition condition, F&& f, G&& g) {
   using result = std::common_type_t<std::invoke_result_t<F>, std::invoke_result_t<G>>;
-  detail::require_own_numbers<result>();
+  detail::require_owning_result<result>();
   if (condition) {
     return static_cast<result>(f());
   }

@@ -72,7 +72,7 @@ concept FunctionOfAny = !FunctionOfReals<F> && !is_symbolic<std::remove_cvref_t<
 template <class X>
 [[nodiscard]] constexpr auto result_of_call(X&& x) {
   using result = std::remove_cvref_t<X>;
-  require_own_numbers<result>();
+  require_owning_result<result>();
   static_assert(
       refers_elsewhere<result> || requires { sizeof(structure<result>); },
       "duet: a function must return a scalar, an Eigen vector or matrix, a rotation, a "

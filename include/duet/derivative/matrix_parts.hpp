@@ -80,7 +80,7 @@ using part_columns =
 
 /// Gives every entry of either matrix the parts that any entry has, if their number varies.
 template <class X, class Residual>
-void even_out_parts(X& x, Residual& r) {
+void equalise_parts(X& x, Residual& r) {
   using S = typename X::Scalar;
   if constexpr (varies_in_parts<S>) {
     const auto zero = [](const S& entry) {
@@ -103,7 +103,7 @@ void even_out_parts(X& x, Residual& r) {
 template <class X, class Map, class Residual>
 void correct_infinitesimals(X& x, const Map& map, Residual r) {
   using R = real_type_t<typename X::Scalar>;
-  even_out_parts(x, r);
+  equalise_parts(x, r);
   constexpr int count = infinitesimal_count<typename X::Scalar>;
   constexpr int rows = Residual::RowsAtCompileTime;
   part_columns<R, rows, count> parts(r.rows(), count);

@@ -122,7 +122,7 @@ public:
     return result;
   }
   /// slope · x, where zero parts stay zero even if slopes are not finite.
-  [[nodiscard]] static constexpr dual surviving_product(const dual& slope, const dual& x) {
+  [[nodiscard]] static constexpr dual zero_preserving_product(const dual& slope, const dual& x) {
     return {detail::guarded_product(slope.value_, x.value_),
             partials_type::map_elements(
                 [&](const T& s, const T& p) {
@@ -160,8 +160,8 @@ public:
     if constexpr (std::floating_point<T>) {
       // Both are finite or neither; testing their sum lets clang compute both at once.
       const bool is_finite = detail::is_all_finite(T(y.sine + y.cosine));
-      return {{y.sine, combined(detail::chain_of_one<T>{y.cosine}, is_finite, x.partials_)},
-              {y.cosine, combined(detail::chain_of_one<T>{minus}, is_finite, x.partials_)}};
+      return {{y.sine, combined(detail::unary_chain<T>{y.cosine}, is_finite, x.partials_)},
+              {y.cosine, combined(detail::unary_chain<T>{minus}, is_finite, x.partials_)}};
     } else {
       return {x.composed(y.sine, y.cosine), x.composed(y.cosine, minus)};
     }
@@ -267,10 +267,10 @@ public:
     const T inverse = T(1) / b.value_;
     if constexpr (Infinitesimal<T>) { // zero partials of T survive in quotients only
       const T value = a.value_ / b.value_;
-      const detail::chain_of_quotient<T> kernel{value, inverse};
+      const detail::quotient_chain<T> kernel{value, inverse};
       return {value, detail::combined(kernel, kernel.is_finite(), a.partials_, b.partials_)};
     } else {
-      const detail::chain_of_quotient<T> kernel{T(a.value_ * inverse), inverse};
+      const detail::quotient_chain<T> kernel{T(a.value_ * inverse), inverse};
       return {T(a.value_ / b.value_),
               detail::combined(kernel, kernel.is_finite(), a.partials_, b.partials_)};
     }

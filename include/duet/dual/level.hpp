@@ -66,7 +66,7 @@ concept Level = Infinitesimal<D> &&
   /// true if the predicate holds for the value and for all other parts
   x.all_of(detail::some_predicate{});
   /// slope · x, where zero parts stay zero even if slopes are infinite
-  { D::surviving_product(x, x) } -> std::same_as<D>;
+  { D::zero_preserving_product(x, x) } -> std::same_as<D>;
   /// the function of a rule, of one argument or more (with `slopes`)
   { D::lift(detail::some_rule{}, x) } -> std::same_as<D>;
   /// sine and cosine of x from those of its value; with 1 the hyperbolic ones

@@ -105,8 +105,8 @@ public:
     return second_order_dual<U, N, Tag>(value, gradient, hessian);
   }
   /// slope · x. (Slopes that are not finite do not occur here: see `composed`.)
-  [[nodiscard]] static second_order_dual surviving_product(const second_order_dual& slope,
-                                                           const second_order_dual& x) {
+  [[nodiscard]] static second_order_dual zero_preserving_product(const second_order_dual& slope,
+                                                                 const second_order_dual& x) {
     return product(slope, x);
   }
   /// The function of a rule, see rules/elementary.hpp. Its second derivatives are those of the

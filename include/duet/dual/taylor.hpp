@@ -107,7 +107,8 @@ public:
     return result;
   }
   /// slope · x, where zero parts stay zero even if slopes are not finite.
-  [[nodiscard]] static constexpr taylor surviving_product(const taylor& slope, const taylor& x) {
+  [[nodiscard]] static constexpr taylor zero_preserving_product(const taylor& slope,
+                                                                const taylor& x) {
     taylor result;
     for (int k = 0; k <= K; ++k) {
       T sum = detail::guarded_product(slope.value(), x.coefficient(k));
@@ -192,7 +193,7 @@ public:
     }
     const T inverse = T(1) / c;
     taylor result = each([&](int k) DUET_INLINE_LAMBDA {
-      return detail::surviving_product(inverse, coefficient(k));
+      return detail::zero_preserving_product(inverse, coefficient(k));
     });
     result.coefficients_[0] = coefficients_[0] / c;
     return result;

@@ -14,7 +14,7 @@ namespace duet::detail {
 
 /// A quaternion whose components are numbers or known constants.
 template <class W, class X, class Y, class Z>
-struct partly_known_quaternion {
+struct partially_constant_quaternion {
   W w_;
   X x_;
   Y y_;
@@ -31,12 +31,12 @@ struct partly_known_quaternion {
   }
 };
 template <class W, class X, class Y, class Z>
-partly_known_quaternion(W, X, Y, Z) -> partly_known_quaternion<W, X, Y, Z>;
+partially_constant_quaternion(W, X, Y, Z) -> partially_constant_quaternion<W, X, Y, Z>;
 
 /// Quaternion returned by a stateless callable, with types for 0 and ±1.
 template <class Get>
 [[nodiscard]] constexpr auto known_quaternion(Get) {
-  return partly_known_quaternion{
+  return partially_constant_quaternion{
       known([] { return Get{}().w(); }), known([] { return Get{}().x(); }),
       known([] { return Get{}().y(); }), known([] { return Get{}().z(); })};
 }
@@ -48,24 +48,25 @@ template <class Get>
 
 template <Number S, class W, class X, class Y, class Z>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto
-operator*(const S& s, const partly_known_quaternion<W, X, Y, Z>& q) {
-  return partly_known_quaternion{s * q.w(), s * q.x(), s * q.y(), s * q.z()};
+operator*(const S& s, const partially_constant_quaternion<W, X, Y, Z>& q) {
+  return partially_constant_quaternion{s * q.w(), s * q.x(), s * q.y(), s * q.z()};
 }
 template <class A, class B, class C, class D, class W, class X, class Y, class Z>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto
-operator+(const partly_known_quaternion<A, B, C, D>& p,
-          const partly_known_quaternion<W, X, Y, Z>& q) {
-  return partly_known_quaternion{p.w() + q.w(), p.x() + q.x(), p.y() + q.y(), p.z() + q.z()};
+operator+(const partially_constant_quaternion<A, B, C, D>& p,
+          const partially_constant_quaternion<W, X, Y, Z>& q) {
+  return partially_constant_quaternion{p.w() + q.w(), p.x() + q.x(), p.y() + q.y(), p.z() + q.z()};
 }
 /// N1
 template <class A, class B, class C, class D, class W, class X, class Y, class Z>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto
-operator*(const partly_known_quaternion<A, B, C, D>& p,
-          const partly_known_quaternion<W, X, Y, Z>& q) {
-  return partly_known_quaternion{p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
-                                 p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
-                                 p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),
-                                 p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
+operator*(const partially_constant_quaternion<A, B, C, D>& p,
+          const partially_constant_quaternion<W, X, Y, Z>& q) {
+  return partially_constant_quaternion{
+      p.w() * q.w() - p.x() * q.x() - p.y() * q.y() - p.z() * q.z(),
+      p.w() * q.x() + p.x() * q.w() + p.y() * q.z() - p.z() * q.y(),
+      p.w() * q.y() - p.x() * q.z() + p.y() * q.w() + p.z() * q.x(),
+      p.w() * q.z() + p.x() * q.y() - p.y() * q.x() + p.z() * q.w()};
 }
 
 /// Displacement x ↦ R x + t: axes and origin of one frame in another.

@@ -28,7 +28,7 @@ namespace detail {
 
 /// Mass and first moment, Σ mass × centre, of all that a node carries, in the frame of the root.
 template <class S>
-struct carried_mass {
+struct subtree_mass {
   double mass = 0;
   three_vector<S> moment{S(0), S(0), S(0)};
   three_vector<S> rate{S(0), S(0), S(0)}; ///< time derivative of the moment
@@ -39,13 +39,13 @@ struct carried_mass {
 /// \param rates  velocities of the nodes; if empty all are zero
 /// \throws invalid_input if the total mass is zero
 template <class S>
-[[nodiscard]] std::vector<carried_mass<S>> carried_masses(const tree_table& table,
+[[nodiscard]] std::vector<subtree_mass<S>> carried_masses(const tree_table& table,
                                                           const tree_motion<S>& motion,
                                                           const tree_rates<S>& rates = {}) {
-  std::vector<carried_mass<S>> result(table.masses.size());
+  std::vector<subtree_mass<S>> result(table.masses.size());
   for (std::size_t i = table.masses.size(); i-- > 0;) { // children first
     const mass_on_node& own = table.masses[i];
-    carried_mass<S>& sum = result[i];
+    subtree_mass<S>& sum = result[i];
     const link_displacement<S> frame = motion.frame(int(i) - 1);
     const three_vector<S> moment =
         S(own.mass) * frame.translation + rotated(frame.rotation, own.moment);
@@ -56,7 +56,7 @@ template <class S>
         const twist_column<S>& twist = rates.nodes[i - 1];
         sum.rate = sum.rate + S(own.mass) * twist.v + cross(twist.omega, moment);
       }
-      carried_mass<S>& parent = result[std::size_t(table.nodes[i - 1].parent + 1)];
+      subtree_mass<S>& parent = result[std::size_t(table.nodes[i - 1].parent + 1)];
       parent.mass += sum.mass;
       parent.moment = parent.moment + sum.moment;
       parent.rate = parent.rate + sum.rate;
@@ -82,7 +82,7 @@ template <class S>
   tree_columns<S, 3> result(3, Eigen::Index(table.names.size()));
   result.setConstant(S(0));
   for (const tree_screw<S>& screw : motion.screws) {
-    const carried_mass<S>& carried = masses[std::size_t(screw.at) + 1];
+    const subtree_mass<S>& carried = masses[std::size_t(screw.at) + 1];
     add_to_column(result, table.sources[std::size_t(screw.coordinate)], 1 / masses[0].mass,
                   S(carried.mass) * screw.twist.v + cross(screw.twist.omega, carried.moment));
   }
@@ -100,7 +100,7 @@ template <class S, class X, class V>
   result.setConstant(S(0));
   for (std::size_t i = 0; i < motion.screws.size(); ++i) {
     const tree_screw<S>& screw = motion.screws[i];
-    const carried_mass<S>& carried = masses[std::size_t(screw.at) + 1];
+    const subtree_mass<S>& carried = masses[std::size_t(screw.at) + 1];
     add_to_column(result, table.sources[std::size_t(screw.coordinate)], 1 / masses[0].mass,
                   S(carried.mass) * rates.screws[i].v +
                       cross(rates.screws[i].omega, carried.moment) +

@@ -67,7 +67,7 @@ void require_size(const C& chain, const X& theta) {
 /// \tparam N  number of joints; negative: up to −N
 /// \tparam X  type of the configuration θ
 template <class S, int N, class X>
-class half_turns {
+class half_angle_sincos {
   static constexpr int most = N > 0 ? N : -N;
   static constexpr bool at_once = most > 1 && std::same_as<real_type_t<S>, double>;
   // Eight lanes are not faster.
@@ -78,7 +78,7 @@ class half_turns {
 public:
   /// \param size   number of joints
   /// \param count  number of joints from the base on whose sines are required
-  DUET_ALWAYS_INLINE half_turns(const X& theta, int size, int count) : theta_(theta) {
+  DUET_ALWAYS_INLINE half_angle_sincos(const X& theta, int size, int count) : theta_(theta) {
     if constexpr (at_once) {
       const auto take = [&](int v) DUET_INLINE_LAMBDA {
         const auto at = [&](int k) DUET_INLINE_LAMBDA {
@@ -128,7 +128,8 @@ using link_displacement = displacement<quaternion<S>, three_vector<S>>;
 /// Traversal from the I-th joint on of a table known to the compiler.
 template <bool WithRotation, class C, int I, class S, class Link, class X, class Turns, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
-walk_known(const Link& link, const X& theta, const Turns& turns_of, int links, const Visit& visit) {
+traverse_static(const Link& link, const X& theta, const Turns& periodicity_of, int links,
+                const Visit& visit) {
   if constexpr (I == C::joints) {
     return link;
   } else {
@@ -139,11 +140,12 @@ walk_known(const Link& link, const X& theta, const Turns& turns_of, int links, c
     const S x(vector_argument<X>::get(theta, I));
     if constexpr (!WithRotation) {
       if (I + 1 == links) {
-        return after_joint<false>(link, step, I, x, turns_of, visit);
+        return after_joint<false>(link, step, I, x, periodicity_of, visit);
       }
     }
-    return walk_known<WithRotation, C, I + 1, S>(
-        after_joint<true>(link, step, I, x, turns_of, visit), theta, turns_of, links, visit);
+    return traverse_static<WithRotation, C, I + 1, S>(
+        after_joint<true>(link, step, I, x, periodicity_of, visit), theta, periodicity_of, links,
+        visit);
   }
 }
 
@@ -153,23 +155,23 @@ template <bool WithRotation, class S, class C, class X, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> walk(const C& chain, const X& theta,
                                                            int links, const Visit& visit) {
   require_size(chain, theta);
-  const half_turns<S, C::joints, X> turns_of(theta, chain.size(), links);
+  const half_angle_sincos<S, C::joints, X> periodicity_of(theta, chain.size(), links);
   if constexpr (requires { typename C::arm; }) {
     const known_one one;
     const known_zero zero;
-    return walk_known<WithRotation, C, 0, S>(
-        displacement{partly_known_quaternion{one, zero, zero, zero},
+    return traverse_static<WithRotation, C, 0, S>(
+        displacement{partially_constant_quaternion{one, zero, zero, zero},
                      three_vector{zero, zero, zero}},
-        theta, turns_of, links, visit);
+        theta, periodicity_of, links, visit);
   } else {
     link_displacement<S> link{quaternion<S>(S(1)), {S(0), S(0), S(0)}};
     for (int i = 0; i < links; ++i) {
       const step_in_memory<typename C::scalar_type> step{chain.steps()[std::size_t(i)]};
       const S x(vector_argument<X>::get(theta, i));
       if (!WithRotation && i + 1 == links) {
-        return after_joint<false>(link, step, i, x, turns_of, visit);
+        return after_joint<false>(link, step, i, x, periodicity_of, visit);
       }
-      link = after_joint<true>(link, step, i, x, turns_of, visit);
+      link = after_joint<true>(link, step, i, x, periodicity_of, visit);
     }
     return link;
   }

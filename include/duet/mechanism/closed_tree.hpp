@@ -137,5 +137,5 @@ private:
 } // namespace duet
 
 #ifndef DUET_COMPILED
-#include <duet/mechanism/loops/tree_closing.hpp>
+#include <duet/mechanism/loops/tree_closure_solver.hpp>
 #endif

@@ -38,12 +38,12 @@ struct step_in_memory {
   [[nodiscard]] bool is_rotational() const { return s.turns; }
   [[nodiscard]] bool is_translational() const { return s.slides; }
   template <class S, class Turns>
-  [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const Turns& turns_of,
+  [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const Turns& periodicity_of,
                                                           Eigen::Index i) const {
     if (!s.turns) {
       return quaternion<S>(s.a);
     }
-    const sine_cosine<S> half = turns_of[int(i)];
+    const sine_cosine<S> half = periodicity_of[int(i)];
     const S &c = half.cosine, &sine = half.sine; // no intermediate quaternions of duals
     return {c * s.a.w() + sine * s.an.w(), c * s.a.x() + sine * s.an.x(),
             c * s.a.y() + sine * s.an.y(), c * s.a.z() + sine * s.an.z()};
@@ -61,12 +61,13 @@ struct known_step {
   [[nodiscard]] static constexpr bool is_rotational() { return s().turns; }
   [[nodiscard]] static constexpr bool is_translational() { return s().slides; }
   template <class S, class Turns>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const Turns& turns_of, Eigen::Index i) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const Turns& periodicity_of,
+                                                        Eigen::Index i) {
     constexpr auto a = known_quaternion([] { return s().a; });
     if constexpr (!is_rotational()) {
       return a;
     } else {
-      const sine_cosine<S> half = turns_of[int(i)];
+      const sine_cosine<S> half = periodicity_of[int(i)];
       return half.cosine * a + half.sine * known_quaternion([] { return s().an; });
     }
   }
@@ -86,7 +87,7 @@ struct known_step {
 template <bool WithRotation, class Link, class Step, class S, class Turns, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE auto after_joint(const Link& link, const Step& step,
                                                   Eigen::Index i, const S& theta,
-                                                  const Turns& turns_of, const Visit& visit) {
+                                                  const Turns& periodicity_of, const Visit& visit) {
   three_vector<S> p = link.point(step.offset());
   const three_vector<S> axis = rotated(link.rotation, step.axis());
   if (step.is_translational()) {
@@ -94,7 +95,7 @@ template <bool WithRotation, class Link, class Step, class S, class Turns, class
   }
   visit(i, step, axis, p);
   if constexpr (WithRotation) {
-    return displacement{link.rotation * step.template rotation<S>(turns_of, i), p};
+    return displacement{link.rotation * step.template rotation<S>(periodicity_of, i), p};
   } else {
     return displacement{link.rotation, p};
   }

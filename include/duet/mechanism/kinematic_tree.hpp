@@ -3,7 +3,7 @@
 
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
@@ -52,8 +52,8 @@ namespace detail {
 
 /// Frames of interest of a function of a tree, and the node above both; −1 is the root.
 struct tree_view {
-  place_on_node frame;
-  place_on_node observer;
+  frame_on_node frame;
+  frame_on_node observer;
   int top = -1;
   bool is_from_above = true; ///< true if the observer is the frame of the node above
 };
@@ -145,7 +145,7 @@ public:
     using S = detail::tree_scalar<X>;
     const detail::tree_view view = this->view(at);
     const detail::joint_coordinates<S, X> x(table_, q);
-    const auto stands_at = [&](const detail::place_on_node& place) {
+    const auto stands_at = [&](const detail::frame_on_node& place) {
       const detail::node_path path(table_, place.node, view.top);
       return detail::attached(detail::walk_down<S>(table_, x, path, detail::visit_nothing),
                               place.offset);
@@ -173,7 +173,7 @@ public:
     const auto frames = detail::frames_of_all<S>(table_, x);
     std::vector<dual_quaternion<S>> result;
     result.reserve(table_.links.size());
-    for (const detail::place_on_node& link : table_.links) {
+    for (const detail::frame_on_node& link : table_.links) {
       const auto& node = link.node < 0 ? root : frames[std::size_t(link.node)];
       const auto at = detail::is_identity(link.offset) ? node : detail::attached(node, link.offset);
       result.push_back(detail::pose_of_unit(at.rotation, at.translation.eigen()));
@@ -218,8 +218,8 @@ public:
     }
   }
   /// The node and offset of a frame.
-  [[nodiscard]] detail::place_on_node place(const attached_frame<double>& at) const {
-    detail::place_on_node result = table_.links[std::size_t(link(at.link).link)];
+  [[nodiscard]] detail::frame_on_node place(const attached_frame<double>& at) const {
+    detail::frame_on_node result = table_.links[std::size_t(link(at.link).link)];
     if (!detail::is_identity(at.offset)) {
       result.offset = result.offset * at.offset;
     }
@@ -249,7 +249,7 @@ private:
                                 const std::vector<std::string>& names) {
     detail::raise(
         invalid_input(printable("duet: kinematic_tree: no " + std::string(what) + " \"" +
-                                std::string(name) + "\": " + detail::nearest_names(name, names))));
+                                std::string(name) + "\": " + detail::closest_names(name, names))));
   }
 
   robot_description description_;

@@ -3,7 +3,7 @@
 
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/mechanism/chain_walk.hpp>
@@ -74,7 +74,7 @@ template <class C, JointOf<C> Which>
     if (found == names.end()) {
       raise(invalid_input(
           printable(message("duet: ", function, ": no joint \"", std::string_view(which),
-                            "\": ", nearest_names(which, names)))));
+                            "\": ", closest_names(which, names)))));
     }
     return int(found - names.begin());
   }

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/file.hpp>
-#include <duet/core/text/nearest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/text_rows.hpp>
 #include <duet/mechanism/joint.hpp>
@@ -98,7 +98,7 @@ private:
         names.emplace_back(others[std::size_t(i)]);
       }
     }
-    fail("no kind of loop is \"" + std::string(name) + "\": " + nearest_names(name, names));
+    fail("no kind of loop is \"" + std::string(name) + "\": " + closest_names(name, names));
   }
 
   [[nodiscard]] constraint_frame frame() {

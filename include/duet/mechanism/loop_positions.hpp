@@ -70,5 +70,5 @@ struct assembly_search_options {
 } // namespace duet
 
 #ifndef DUET_COMPILED
-#include <duet/mechanism/loops/position_search.hpp>
+#include <duet/mechanism/loops/assembly_search.hpp>
 #endif

@@ -38,7 +38,7 @@ template <class C, class X, FrameOnChain<C> At = tip_of_chain>
 }
 
 template <class M>
-struct volume_and_slope {
+struct volume_and_gradient {
   typename M::Scalar
       volume; ///< w = |det R| of M = QR, without squares of small numbers as in det(MᵀM)
   M slope;    ///< w (M⁺)ᵀ = ∂w/∂M, if `WithSlope`
@@ -48,10 +48,10 @@ struct volume_and_slope {
 /// pivot is the smallest. However small it is, the derivative is not: w (M⁺)ᵀ = Q |r₀ r₁ …|
 /// (|r_last| R⁻ᵀ).
 template <bool WithSlope, class M>
-[[nodiscard]] volume_and_slope<M> volume_of(const M& m) {
+[[nodiscard]] volume_and_gradient<M> volume_of(const M& m) {
   using std::abs;
   using S = typename M::Scalar;
-  volume_and_slope<M> result{S(1), {}};
+  volume_and_gradient<M> result{S(1), {}};
   if constexpr (Batched<S>) {
     result.volume = by_lane([](const auto& x) { return volume_of<false>(x).volume; }, m);
     if constexpr (WithSlope) {

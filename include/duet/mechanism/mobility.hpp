@@ -61,5 +61,5 @@ mobility(const closed_chain_mechanism& mechanism, const Eigen::VectorXd& q);
 } // namespace duet
 
 #ifndef DUET_COMPILED
-#include <duet/mechanism/loops/surroundings.hpp>
+#include <duet/mechanism/loops/neighbourhood.hpp>
 #endif

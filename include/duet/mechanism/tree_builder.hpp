@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
-#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/joint_checks.hpp>
@@ -64,7 +64,7 @@ private:
       for (const tree_link& link : robot_.links) {
         names.push_back(link.name);
       }
-      bad_part(robot_, joint, "no link \"" + name + "\": " + nearest_names(name, names));
+      bad_part(robot_, joint, "no link \"" + name + "\": " + closest_names(name, names));
     }
     return std::size_t(found->second);
   }
@@ -182,7 +182,7 @@ private:
       }
       bad_part(robot_, joint,
                "it follows no joint \"" + joint.mimic->joint +
-                   "\": " + nearest_names(joint.mimic->joint, names));
+                   "\": " + closest_names(joint.mimic->joint, names));
     }
     for (const tree_joint* each : {&joint, &joint_at(found->second)}) {
       if (each->motion.coordinates() != 1) {
@@ -227,7 +227,7 @@ private:
       const auto number = [&](const std::string& name) {
         return std::size_t(table_.link_numbers.at(name));
       };
-      place_on_node place = table_.links[number(joint.parent)];
+      frame_on_node place = table_.links[number(joint.parent)];
       place.offset = place.offset * joint.motion.origin;
       if (joint.motion.kind != joint_kind::fixed) {
         add_nodes_of_joint(table_.nodes, joint.motion, first_[std::size_t(j)], place);
@@ -243,7 +243,7 @@ private:
         if (!(inertia->mass >= 0 && std::isfinite(inertia->mass))) {
           bad_part(robot_, robot_.links[i], "its mass is " + to_text(inertia->mass));
         }
-        const place_on_node& place = table_.links[i];
+        const frame_on_node& place = table_.links[i];
         mass_on_node& sum = table_.masses[std::size_t(place.node + 1)];
         const auto centre = (place.offset * inertia->frame).translation;
         sum.mass += inertia->mass;

@@ -26,7 +26,7 @@
 namespace duet::detail {
 
 /// Link path: joint numbers in the order in which the path passes them.
-struct way_between_links {
+struct link_path {
   std::vector<std::size_t> up;   ///< from the base up to the lowest common ancestor
   std::vector<std::size_t> down; ///< from there down to the tip
 };
@@ -37,9 +37,8 @@ struct way_between_links {
 /// \param pass    called with the number of each joint of the path before its parent is used
 /// \param fail    called with the number of a joint and its error, or with the error alone
 template <class Joints, class Pass, class Fail>
-[[nodiscard]] way_between_links way_between(const Joints& joints, const std::string& base,
-                                            const std::string& tip, const Pass& pass,
-                                            const Fail& fail) {
+[[nodiscard]] link_path find_link_path(const Joints& joints, const std::string& base,
+                                       const std::string& tip, const Pass& pass, const Fail& fail) {
   std::unordered_map<std::string_view, std::size_t> above; // the joint, by the link that it moves
   for (std::size_t j = 0; j < joints.size(); ++j) {
     above.emplace(joints[j].child, j);
@@ -61,7 +60,7 @@ template <class Joints, class Pass, class Fail>
     }
     return link;
   };
-  way_between_links result;
+  link_path result;
   const std::string_view top =
       climb(tip, result.down, [&](std::string_view link) { return link == base; });
   if (top != base) {
@@ -93,8 +92,8 @@ template <class Joints, class Pass, class Fail>
 /// \param joint_at  returns the joint of a number, which must be valid in a chain: it has one
 ///                  coordinate of the tree, or is fixed
 template <class JointAt>
-[[nodiscard]] urdf_contents contents_of_way(const way_between_links& way, const std::string& base,
-                                            const JointAt& joint_at) {
+[[nodiscard]] urdf_contents link_path_contents(const link_path& way, const std::string& base,
+                                               const JointAt& joint_at) {
   urdf_contents result;
   result.links.push_back({base, {}});
   placement<double> since_joint; // fixed joints since the last moving one
@@ -150,9 +149,9 @@ template <class JointAt>
     void operator()(std::size_t, const std::string& what) const { raise(invalid_input(what)); }
     void operator()(const std::string& what) const { raise(invalid_input(what)); }
   } const fail; // not called for a valid tree
-  const auto way = way_between(
+  const auto way = find_link_path(
       robot.joints, base, tip, [](std::size_t) {}, fail);
-  urdf_contents result = contents_of_way(way, base, [&](std::size_t i) -> const tree_joint& {
+  urdf_contents result = link_path_contents(way, base, [&](std::size_t i) -> const tree_joint& {
     if (const std::string reason = not_in_a_chain(robot.joints[i]); !reason.empty()) {
       bad_part(robot, robot.joints[i], reason);
     }

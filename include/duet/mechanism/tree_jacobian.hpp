@@ -38,7 +38,7 @@ using tree_columns = Eigen::Matrix<S, Rows, Eigen::Dynamic>;
 
 /// A frame of a tree and its observer, relative to the node above both.
 template <class S>
-struct viewed_frames {
+struct relative_frames {
   link_displacement<S> frame, observer;
 
   /// Pose of the frame relative to the observer.
@@ -61,11 +61,11 @@ struct viewed_frames {
 
 /// The two frames, and all nodes that move between them.
 template <class S>
-struct viewed_motion : viewed_frames<S> {
+struct relative_motion : relative_frames<S> {
   tree_motion<S> to_frame, to_observer;
 
   template <class X>
-  viewed_motion(const tree_table& table, const X& x, const tree_view& view)
+  relative_motion(const tree_table& table, const X& x, const tree_view& view)
       : to_frame(motion_to<S>(table, x, view.frame.node, view.top)),
         to_observer(motion_to<S>(table, x, view.observer.node, view.top)) {
     this->frame = stands(to_frame, view.frame.offset);
@@ -105,12 +105,12 @@ add_screws(tree_columns<S, 6>& m, const tree_table& table, const X& x, const nod
 
 /// Sets m to the Jacobian of a frame of a tree; returns the pose of that frame.
 template <class Frame, class S, class X>
-[[nodiscard]] viewed_frames<S> fill_jacobian(tree_columns<S, 6>& m, const tree_table& table,
-                                             const X& x, const tree_view& view) {
+[[nodiscard]] relative_frames<S> fill_jacobian(tree_columns<S, 6>& m, const tree_table& table,
+                                               const X& x, const tree_view& view) {
   m.setConstant(6, Eigen::Index(table.names.size()), S(0));
   const node_path to_frame(table, view.frame.node, view.top);
-  viewed_frames<S> result{attached(add_screws<S>(m, table, x, to_frame, 1), view.frame.offset),
-                          standing_still<S>()};
+  relative_frames<S> result{attached(add_screws<S>(m, table, x, to_frame, 1), view.frame.offset),
+                            standing_still<S>()};
   if (!view.is_from_above) {
     const node_path to_observer(table, view.observer.node, view.top);
     result.observer = attached(add_screws<S>(m, table, x, to_observer, -1), view.observer.offset);
@@ -137,7 +137,7 @@ template <class Frame, class S, class X>
 /// Rᵀ(v̇ + ω̇ × p + ω × ṗ − Ω × (v + ω × p)), Rᵀ(ω̇ − Ω × ω).
 template <class Frame, class S, class X, class V>
 [[nodiscard]] tree_columns<S, 6> jacobian_rate_of(const tree_table& table,
-                                                  const viewed_motion<S>& motion, const X& x,
+                                                  const relative_motion<S>& motion, const X& x,
                                                   const V& x_dot) {
   tree_columns<S, 6> result(6, Eigen::Index(table.names.size()));
   result.setConstant(S(0));
@@ -221,7 +221,7 @@ template <VectorLike X, VectorLike V, FrameConstant Frame, FrameOnTree At>
   const detail::tree_view view = tree.view(at);
   jacobian_and_rate<detail::tree_columns<S, 6>> result;
   static_cast<void>(detail::fill_jacobian<Frame>(result.jacobian, tree.table(), x, view));
-  const detail::viewed_motion<S> motion(tree.table(), x, view);
+  const detail::relative_motion<S> motion(tree.table(), x, view);
   result.rate = detail::jacobian_rate_of<Frame>(tree.table(), motion, x, x_dot);
   return result;
 }
@@ -244,7 +244,7 @@ template <VectorLike X, FrameConstant Frame, FrameOnTree At>
 [[nodiscard]] auto kinematic_hessian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
   using S = detail::tree_scalar<X>;
   const detail::joint_coordinates<S, X> x(tree.table(), q);
-  const detail::viewed_motion<S> motion(tree.table(), x, tree.view(at));
+  const detail::relative_motion<S> motion(tree.table(), x, tree.view(at));
   std::vector<detail::tree_columns<S, 6>> result;
   for (int j = 0; j < tree.size(); ++j) {
     result.push_back(detail::jacobian_rate_of<Frame>(tree.table(), motion, x,

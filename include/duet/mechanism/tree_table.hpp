@@ -37,7 +37,7 @@ struct tree_node {
 }
 
 /// A frame fixed to a node.
-struct place_on_node {
+struct frame_on_node {
   int node = -1; ///< number of the node; −1: the root of the tree
   placement<double> offset{};
 };
@@ -58,7 +58,7 @@ struct mass_on_node {
 struct tree_table {
   std::vector<tree_node> nodes;             ///< nodes, parents first
   std::vector<mass_on_node> masses;         ///< masses of the root, then of each node
-  std::vector<place_on_node> links;         ///< node and offset of each link
+  std::vector<frame_on_node> links;         ///< node and offset of each link
   std::vector<coordinate_source> sources;   ///< sources of the coordinates of all joints
   std::vector<std::string> names;           ///< names of the coordinates of the tree
   std::vector<joint_limits<double>> limits; ///< limits of the coordinates of the tree
@@ -82,7 +82,7 @@ struct tree_table {
 
 /// Appends the nodes of a joint whose frame is at an offset of a node.
 inline void add_nodes_of_joint(std::vector<tree_node>& nodes, const joint<double>& motion,
-                               int coordinate, const place_on_node& place) {
+                               int coordinate, const frame_on_node& place) {
   tree_node node{place.node, coordinate};
   placement<double> origin = place.offset;
   const auto add = [&](joint<double> part) {

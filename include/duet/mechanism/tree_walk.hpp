@@ -149,7 +149,7 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
     for (; some < most && i + some < count && !node(i + some).is_ball; ++some) {
       theta[std::size_t(some)] = x[node(i + some).coordinate];
     }
-    const half_turns<S, -most, std::array<S, most>> turns_of(theta, some, some);
+    const half_angle_sincos<S, -most, std::array<S, most>> periodicity_of(theta, some, some);
     for (int k = 0; k < some; ++k, ++i) {
       const int coordinate = node(i).coordinate;
       const auto put_screw = [&](Eigen::Index, const auto& step, const auto& axis,
@@ -167,7 +167,7 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
       };
       after(node(i), [&](const link_displacement<S>& parent) DUET_INLINE_LAMBDA {
         return link_displacement<S>(after_joint<true>(parent, step_in_memory<double>{node(i).step},
-                                                      k, theta[std::size_t(k)], turns_of,
+                                                      k, theta[std::size_t(k)], periodicity_of,
                                                       put_screw));
       });
     }

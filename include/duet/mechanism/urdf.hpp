@@ -3,7 +3,7 @@
 
 #include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
 #include <duet/mechanism/robot_description.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/serial_chain.hpp>
@@ -62,7 +62,7 @@ public:
       }
       detail::raise(
           invalid_input(printable("duet: no link \"" + std::string(name) +
-                                  "\" in the chain: " + detail::nearest_names(name, names))));
+                                  "\" in the chain: " + detail::closest_names(name, names))));
     }
     return found->frame;
   }

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/file.hpp>
-#include <duet/core/text/nearest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/mechanism/urdf_contents.hpp>
 #include <duet/mechanism/xml_element.hpp>
@@ -23,7 +23,7 @@
 namespace duet::detail {
 
 /// An element of a description and the joint or link that contains it, for messages.
-struct urdf_place {
+struct urdf_context {
   const xml_element& element;
   const xml_element* owner = nullptr;
 };
@@ -83,11 +83,12 @@ public:
   [[nodiscard]] const std::vector<urdf_unknown_element>& unknown() const { return unknown_; }
 
   [[noreturn]] void fail(const std::string& what) const { raise(file_error(path_, what)); }
-  [[noreturn]] void fail(const urdf_place& place, const std::string& what) const {
+  [[noreturn]] void fail(const urdf_context& place, const std::string& what) const {
     fail(place.element.line, name_of(place) + ": " + what);
   }
 
-  [[nodiscard]] const std::string& attribute(const urdf_place& place, std::string_view key) const {
+  [[nodiscard]] const std::string& attribute(const urdf_context& place,
+                                             std::string_view key) const {
     const std::string* const value = place.element.attribute(key);
     if (value == nullptr) {
       fail(place, "no attribute \"" + std::string(key) + "\"");
@@ -95,12 +96,12 @@ public:
     return *value;
   }
 
-  [[noreturn]] void fail_negative(const urdf_place& place, std::string_view key) const {
+  [[noreturn]] void fail_negative(const urdf_context& place, std::string_view key) const {
     fail(place, std::string(key) + "=\"" + attribute(place, key) + "\" is negative");
   }
 
   /// A limit, infinite if it exceeds 1e6 in the direction of `sign`: such a number means unlimited.
-  [[nodiscard]] double limit(const urdf_place& place, std::string_view key, double otherwise,
+  [[nodiscard]] double limit(const urdf_context& place, std::string_view key, double otherwise,
                              int sign) const {
     const std::string* const text = place.element.attribute(key);
     if (text == nullptr) {
@@ -112,7 +113,7 @@ public:
   }
 
   /// The three numbers of an attribute.
-  [[nodiscard]] std::array<double, 3> numbers(const urdf_place& place, std::string_view key,
+  [[nodiscard]] std::array<double, 3> numbers(const urdf_context& place, std::string_view key,
                                               const std::array<double, 3>& otherwise) const {
     const std::string* const text = place.element.attribute(key);
     if (text == nullptr) {
@@ -136,24 +137,24 @@ public:
   }
 
   /// A required number.
-  [[nodiscard]] double number(const urdf_place& place, std::string_view key) const {
+  [[nodiscard]] double number(const urdf_context& place, std::string_view key) const {
     return number(attribute(place, key), place, key);
   }
-  [[nodiscard]] double number(const urdf_place& place, std::string_view key,
+  [[nodiscard]] double number(const urdf_context& place, std::string_view key,
                               double otherwise) const {
     const std::string* const text = place.element.attribute(key);
     return text == nullptr ? otherwise : number(*text, place, key);
   }
 
   /// A required mass or moment of inertia, of any size.
-  [[nodiscard]] double measure(const urdf_place& place, std::string_view key) const {
+  [[nodiscard]] double measure(const urdf_context& place, std::string_view key) const {
     return number(attribute(place, key), place, key, std::numeric_limits<double>::max());
   }
 
 private:
   static constexpr double most = 1e6; ///< maximum length (m) and angle (rad); larger: digits lost
 
-  [[nodiscard]] static std::string name_of(const urdf_place& place) {
+  [[nodiscard]] static std::string name_of(const urdf_context& place) {
     const std::string* const name = place.element.attribute("name");
     return (place.owner != nullptr ? name_of({*place.owner}) + " " : "") + "<" +
            place.element.name + (name != nullptr ? " name=\"" + *name + "\"" : "") + ">";
@@ -162,7 +163,7 @@ private:
     raise(file_error(path_, line, what));
   }
 
-  [[nodiscard]] double number(const std::string& text, const urdf_place& place,
+  [[nodiscard]] double number(const std::string& text, const urdf_context& place,
                               std::string_view key, double limit = most) const {
     const auto value = parse_number(text);
     if (!value || !(std::abs(*value) <= limit)) {
@@ -186,7 +187,7 @@ private:
           !has(kind->attributes, key)) {
         std::vector<std::string> known(kind->attributes.begin(), kind->attributes.end());
         std::erase(known, "");
-        fail({element, owner}, "unknown attribute \"" + key + "\": " + nearest_names(key, known));
+        fail({element, owner}, "unknown attribute \"" + key + "\": " + closest_names(key, known));
       }
     }
     const bool is_part = element.name == "link" || element.name == "joint";
@@ -195,7 +196,7 @@ private:
         unknown_.push_back({each.name, name_of({element, owner}), each.line});
         continue;
       }
-      const urdf_place place{each, is_part ? &element : owner};
+      const urdf_context place{each, is_part ? &element : owner};
       const bool is_one_of_many =
           element.name == "robot" || each.name == "visual" || each.name == "collision";
       if (const xml_element* first = is_one_of_many ? &each : element.child(each.name);

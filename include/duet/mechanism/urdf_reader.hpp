@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/robot_description.hpp>
@@ -63,8 +63,8 @@ public:
       }
       void operator()(const std::string& what) const { reader.document_.fail(what); }
     } const fail{*this};
-    const way_between_links way = way_between(names_.joints, base, tip, pass, fail);
-    urdf_contents result = contents_of_way(way, base, [&](std::size_t i) {
+    const link_path way = find_link_path(names_.joints, base, tip, pass, fail);
+    urdf_contents result = link_path_contents(way, base, [&](std::size_t i) {
       const tree_joint joint = read_joint(*elements_[i]);
       if (const std::string reason = not_in_a_chain(joint); !reason.empty()) {
         document_.fail({*elements_[i]}, reason);
@@ -123,7 +123,7 @@ private:
   }
 
   /// Upper half of a symmetric matrix, whose lower half may also be given.
-  [[nodiscard]] std::array<double, 6> read_moments(const urdf_place& place) const {
+  [[nodiscard]] std::array<double, 6> read_moments(const urdf_context& place) const {
     constexpr std::array<const char*, 6> keys = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
     constexpr std::array<const char*, 6> below = {"", "iyx", "izx", "", "izy", ""};
     std::array<double, 6> result{};
@@ -152,7 +152,7 @@ private:
     result.line = element.line;
     result.motion = read_motion(element);
     if (const xml_element* const mimic = element.child("mimic")) {
-      const urdf_place place{*mimic, &element};
+      const urdf_context place{*mimic, &element};
       result.mimic = {document_.attribute(place, "joint"), document_.number(place, "multiplier", 1),
                       document_.number(place, "offset", 0)};
     }
@@ -187,10 +187,10 @@ private:
   }
 
   [[nodiscard]] std::string no_link(const std::string& link) const {
-    return "no link \"" + link + "\": " + nearest_names(link, names_.links);
+    return "no link \"" + link + "\": " + closest_names(link, names_.links);
   }
 
-  void require_link(const urdf_place& place) const {
+  void require_link(const urdf_context& place) const {
     if (const std::string& link = document_.attribute(place, "link"); !links_.contains(link)) {
       document_.fail(place, no_link(link));
     }
@@ -252,7 +252,7 @@ private:
       }
       return result;
     }
-    const urdf_place place{*limit, &element};
+    const urdf_context place{*limit, &element};
     result.velocity = document_.limit(place, "velocity", result.velocity, 1);
     if (result.velocity < 0) {
       document_.fail_negative(place, "velocity");
@@ -267,7 +267,7 @@ private:
                      "lower " + to_text(result.lower) + " is above upper " + to_text(result.upper));
     }
     if (const xml_element* soft = element.child("safety_controller")) {
-      const urdf_place there{*soft, &element};
+      const urdf_context there{*soft, &element};
       result.lower =
           std::max(result.lower, document_.limit(there, "soft_lower_limit", result.lower, -1));
       result.upper =

@@ -30,7 +30,7 @@ read_origin(const urdf_document& document, const xml_element& in, const xml_elem
 }
 
 /// A size of a shape.
-[[nodiscard]] inline double read_size(const urdf_document& document, const urdf_place& place,
+[[nodiscard]] inline double read_size(const urdf_document& document, const urdf_context& place,
                                       std::string_view key) {
   const double result = document.number(place, key);
   if (result < 0) {
@@ -52,7 +52,7 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
   }
   collision_shape result{read_origin(document, collision, link), {}, collision.line};
   const xml_element& shape = geometry->children.front();
-  const urdf_place place{shape, &link};
+  const urdf_context place{shape, &link};
   const auto size = [&](std::string_view key) { return read_size(document, place, key); };
   if (shape.name == "box") {
     (void)document.attribute(place, "size");

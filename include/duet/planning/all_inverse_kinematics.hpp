@@ -13,11 +13,11 @@
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/chain_loop.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 #include <duet/planning/branches/singular_value.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/planning_model.hpp>
-#include <duet/planning/tip_place.hpp>
+#include <duet/planning/tip_pose.hpp>
 #include <duet/quaternion/norm.hpp>
 
 #include <Eigen/Core>
@@ -106,7 +106,7 @@ void require_six_joints(const C& chain) {
 }
 
 /// θ moved by a full turn into the limits, if that is possible.
-[[nodiscard]] inline double turned_within(double theta, const joint_limits<double>& limits) {
+[[nodiscard]] inline double wrap_into_limits(double theta, const joint_limits<double>& limits) {
   constexpr double turn = 2 * std::numbers::pi;
   for (const double x : {theta, theta + turn, theta - turn}) {
     if (x >= limits.lower && x <= limits.upper) {
@@ -122,18 +122,19 @@ public:
   using branch = inverse_kinematics_solution<C::joints>;
 
   branches_of_chain(const C& chain, const dual_quaternion<double>& goal)
-      : chain_(chain), goal_(place_of(normalized(goal))),
+      : chain_(chain), goal_(to_tip_pose(normalized(goal))),
         axes_(chain, joint_vector<double, C::joints>::Zero(chain.size()).eval(), -1),
         loop_(axes_.loop_to(goal_)) {}
 
-  [[nodiscard]] const joint_loop& loop() const { return loop_; }
+  [[nodiscard]] const loop_equation& loop() const { return loop_; }
 
   /// Solution in the chain's coordinates, without its singular value.
-  [[nodiscard]] branch operator()(const loop_solution& x,
-                                  const std::optional<slides_in_place>& in_place = {}) const {
+  [[nodiscard]] branch
+  operator()(const loop_solution& x,
+             const std::optional<coupled_prismatic_pair>& in_place = {}) const {
     constexpr double rounding = 2e-13; // closed forms have more near singularities
     branch result = described(x, in_place);
-    if (!in_place && result.residual * longest_way(result.joints) > rounding) {
+    if (!in_place && result.residual * max_prismatic_travel(result.joints) > rounding) {
       loop_solution refined = x;
       static_cast<void>(close_loop(loop_, refined.theta, 1));
       const branch other = described(refined, in_place);
@@ -153,7 +154,7 @@ private:
   static constexpr double as_good_as_none = 1e-8;
 
   /// Largest prismatic displacement relative to the arm's size; at least 1.
-  [[nodiscard]] double longest_way(const joint_vector<double, C::joints>& theta) const {
+  [[nodiscard]] double max_prismatic_travel(const joint_vector<double, C::joints>& theta) const {
     double result = 1;
     for (int i = 0; i < 6; ++i) {
       if (!loop_.joints[std::size_t(i)].turns) {
@@ -166,7 +167,7 @@ private:
   /// Moves two joints to the middle of what the limits of both allow, or as little as they need, if
   /// they can.
   void slide_within_limits(joint_vector<double, C::joints>& theta,
-                           const slides_in_place& slides) const {
+                           const coupled_prismatic_pair& slides) const {
     double &first = theta[slides.first], &second = theta[slides.second];
     const auto &one = chain_.limits(slides.first), &other = chain_.limits(slides.second);
     const double way = slides.second_way;
@@ -189,19 +190,19 @@ private:
     for (int i = 0; i < 6 && result; ++i) {
       const double d = a.joints[i] - b.joints[i];
       const bool turns = loop_.joints[std::size_t(i)].turns;
-      result = std::abs(turns ? turned_back(d) : d / axes_.size) < as_good_as_none;
+      result = std::abs(turns ? wrap_angle(d) : d / axes_.size) < as_good_as_none;
     }
     return result;
   }
 
   [[nodiscard]] branch described(const loop_solution& x,
-                                 const std::optional<slides_in_place>& in_place) const {
+                                 const std::optional<coupled_prismatic_pair>& in_place) const {
     branch result;
     result.joints.resize(chain_.size());
     result.multiplicity = x.multiplicity;
     for (int i = 0; i < 6; ++i) {
       const bool turns = loop_.joints[std::size_t(i)].turns;
-      result.joints[i] = turns ? turned_within(turned_back(x.theta[i]), chain_.limits(i))
+      result.joints[i] = turns ? wrap_into_limits(wrap_angle(x.theta[i]), chain_.limits(i))
                                : axes_.size * x.theta[i];
     }
     if (in_place) {
@@ -212,18 +213,18 @@ private:
       const double theta = result.joints[i];
       result.within_limits = result.within_limits && theta >= limits.lower && theta <= limits.upper;
     }
-    const tip_place tip =
+    const tip_pose tip =
         attached(walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
     const pose_error left = deviation_of(error_twist(tip, goal_));
-    result.residual =
-        std::max(left.translation / (axes_.size * longest_way(result.joints)), left.rotation);
+    result.residual = std::max(
+        left.translation / (axes_.size * max_prismatic_travel(result.joints)), left.rotation);
     return result;
   }
 
   const C& chain_;
-  tip_place goal_;
-  chain_axes axes_;
-  joint_loop loop_;
+  tip_pose goal_;
+  chain_screws axes_;
+  loop_equation loop_;
 };
 
 /// Computes the singular values in SIMD batches of eight: a batch takes little more than one.

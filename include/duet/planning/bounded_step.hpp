@@ -18,7 +18,7 @@ inline constexpr double damping_threshold = 1e-3;
 /// Singular value below which they are in vain, except those of joints that swing at a singularity.
 inline constexpr double undamped_threshold = 1e-6;
 /// Singular value below which round-off of J Jᵀ would determine them.
-inline constexpr double swing_threshold = 1e-7;
+inline constexpr double undamped_threshold_near_singularity = 1e-7;
 
 /// Twist [v; ω].
 using small_twist = small_vector<6>;
@@ -56,7 +56,7 @@ template <class J, class V>
 
 /// Residual e − Σ x_i column_i after a step x, over all columns of J.
 template <class J, class V>
-[[nodiscard]] small_twist what_is_left(small_twist e, const J& jacobian, const V& x) {
+[[nodiscard]] small_twist residual_after_step(small_twist e, const J& jacobian, const V& x) {
   for (std::ptrdiff_t j = 0; j < jacobian.cols(); ++j) {
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
       e[i] -= x[j] * jacobian(i, j);

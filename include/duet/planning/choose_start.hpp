@@ -12,8 +12,8 @@
 #include <duet/planning/objective.hpp>
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/planning_model.hpp>
-#include <duet/planning/start_chooser.hpp>
 #include <duet/planning/start_problem.hpp>
+#include <duet/planning/start_search.hpp>
 
 #include <algorithm>
 #include <concepts>
@@ -59,9 +59,9 @@ template <int N, int M>
 
 template <class C, class Objective, class Scene, class Follow>
 [[nodiscard]] start_search_result<C::joints>
-chosen_start(const C& chain, const path_function& path, double first, double last,
-             const start_options& options, const Objective& objective, const Scene& around,
-             const Follow& follow) {
+find_start(const C& chain, const path_function& path, double first, double last,
+           const start_options& options, const Objective& objective, const Scene& around,
+           const Follow& follow) {
   static_assert(planning_types<Objective, Scene>::are_good);
   require_options(options);
   require_objective(objective, chain.size());
@@ -73,12 +73,14 @@ chosen_start(const C& chain, const path_function& path, double first, double las
     problem.around = &around;
   }
   problem.follow = [&](const joints& start, const plan_options& how) {
-    return with_vectors_of<-room>(follow(own_joints(chain, start), how));
+    return with_vectors_of<-room>(follow(to_chain_joints(chain, start), how));
   };
   if constexpr (!std::same_as<Objective, no_objective>) {
-    problem.objective = [&](const joints& x) { return double(objective(own_joints(chain, x))); };
+    problem.objective = [&](const joints& x) {
+      return double(objective(to_chain_joints(chain, x)));
+    };
   }
-  auto found = chosen_start(problem);
+  auto found = find_start(problem);
   return {with_vectors_of<C::joints>(std::move(found.plan)), found.starts, found.unsolved,
           found.reason, found.is_certain};
 }
@@ -112,11 +114,11 @@ find_start_configuration(const C& chain, const Path& path, double first, double 
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: find_start_configuration: the path's parameter goes from ", first, " to ",
                   last);
-  return detail::chosen_start(chain, detail::checked(path), first, last, options, objective, around,
-                              [&](const auto& start, const plan_options& how) {
-                                return follow_path(chain, start, path, first, last, how, objective,
-                                                   around);
-                              });
+  return detail::find_start(chain, detail::checked(path), first, last, options, objective, around,
+                            [&](const auto& start, const plan_options& how) {
+                              return follow_path(chain, start, path, first, last, how, objective,
+                                                 around);
+                            });
 }
 
 /// Start configuration from which the tip of a chain follows a spline of poses over its whole
@@ -126,11 +128,11 @@ template <SerialChain C, PosePath Spline, class Objective = no_objective, class 
 [[nodiscard]] start_search_result<C::joints>
 find_start_configuration(const C& chain, const Spline& spline, const start_options& options = {},
                          const Objective& objective = {}, const Scene& around = {}) {
-  return detail::chosen_start(chain, detail::checked(spline), spline.breaks().front(),
-                              spline.breaks().back(), options, objective, around,
-                              [&](const auto& start, const plan_options& how) {
-                                return follow_path(chain, start, spline, how, objective, around);
-                              });
+  return detail::find_start(chain, detail::checked(spline), spline.breaks().front(),
+                            spline.breaks().back(), options, objective, around,
+                            [&](const auto& start, const plan_options& how) {
+                              return follow_path(chain, start, spline, how, objective, around);
+                            });
 }
 
 template <SerialChain C, VectorLike Start, PosePath Path, class... More>

@@ -92,19 +92,19 @@ template <class Points>
     const vector3<double> along = c.to - c.from;
     const double length = along.norm(), r = c.radius;
     const vector3<double> u = length > 0 ? vector3<double>(along / length) : vector3<double>(along);
-    step downhill;
-    downhill << r * r * u, -r * r * u, -2 * r * length - 4 * r * r;
-    downhill *= reach;
+    step descent_step;
+    descent_step << r * r * u, -r * r * u, -2 * r * length - 4 * r * r;
+    descent_step *= reach;
     std::vector<inequality<step>> within;
     for (const auto& x : points) {
       const auto [distance, t, n] = beside(x, c.from, c.to);
       step slope;
       slope << (1 - t) * n, t * n, 1;
-      within.push_back({slope, distance - r - slope.dot(downhill)});
+      within.push_back({slope, distance - r - slope.dot(descent_step)});
     }
     const auto correction = least_distance(within, 7);
     if (correction) {
-      const step whole = downhill + *correction;
+      const step whole = descent_step + *correction;
       const capsule<double> next = around(points, vector3<double>(c.from + whole.head<3>()),
                                           vector3<double>(c.to + whole.segment<3>(3)));
       const double size = volume_of(next);

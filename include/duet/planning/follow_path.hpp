@@ -6,7 +6,7 @@
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/objective.hpp>
 #include <duet/planning/obstacle_steps.hpp>
-#include <duet/planning/path_follower.hpp>
+#include <duet/planning/path_planner.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/singularity.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -60,38 +60,38 @@ template <class C, class Start, class Objective, class Scene>
   using vector = small_vector<room>;
   require_options(options);
   require_objective(objective, chain.size());
-  const std::conditional_t<std::same_as<Scene, scene>, chain_among_obstacles<C>, chain_model<C>>
+  const std::conditional_t<std::same_as<Scene, scene>, chain_with_obstacles<C>, chain_model<C>>
       model(chain, around);
   const vector theta = model.joints(start);
-  const place_function places = [&](double u) { return model.place(target(u)); };
+  const tip_path places = [&](double u) { return model.place(target(u)); };
   const auto gap =
-      model.given_deviation(pose_error_between(model.at(theta).tip, places(stops.front())));
+      model.unscaled_error(pose_error_between(model.at(theta).tip, places(stops.front())));
   require(options.tolerance.ratio(gap) <= 1, "duet: follow_path: the path begins ", gap.translation,
           " units of length and ", gap.rotation, " rad away from the tip at the start");
   model.require_clearance(theta, options.tolerance.translation);
-  if (const auto joints = own_joints(chain, planned_joints<room>(start, chain.size()));
+  if (const auto joints = to_chain_joints(chain, scaled_joints<room>(start, chain.size()));
       is_nan_at(objective, joints)) {
     fail_not_a_number("duet: follow_path: the objective is nan at the start,", joints);
   }
   std::function<vector(const vector&)> slope;
   if constexpr (!std::same_as<Objective, no_objective>) {
     slope = [&](const vector& x) {
-      const auto joints = own_joints(chain, model.given_joints(x));
+      const auto joints = to_chain_joints(chain, model.unscaled_joints(x));
       // Gradient with respect to coordinates in the planner's units.
-      return model.given_joints(planned_joints<room>(slope_of(objective, joints), chain.size()));
+      return model.unscaled_joints(scaled_joints<room>(slope_of(objective, joints), chain.size()));
     };
   }
   const bool is_out_of_reach =
       may_be_out_of_reach &&
       model.reach.is_beyond(places(stops.back()), model.tolerance(options.tolerance));
-  path_follower<room> follower(model, places, std::move(stops), options, slope);
+  path_planner<room> follower(model, places, std::move(stops), options, slope);
   const auto route = is_out_of_reach ? follower.stay(theta) : follower.plan(theta);
   motion_plan<C::joints> plan;
   for (const auto& w : route.waypoints) {
-    const vector joints = plan.joints.empty() ? planned_joints<room>(start, chain.size())
+    const vector joints = plan.joints.empty() ? scaled_joints<room>(start, chain.size())
                                               : model.given_joints_within_limits(w.state.theta);
-    add_waypoint(plan, chain, own_joints(chain, joints), model.given_pose(w.state.tip), w.u,
-                 model.given_deviation(w.left));
+    add_waypoint(plan, chain, to_chain_joints(chain, joints), model.unscaled_pose(w.state.tip), w.u,
+                 model.unscaled_error(w.left));
     plan.smallest_clearance =
         std::min(plan.smallest_clearance, model.length * model.clearance(w.state.theta));
   }

@@ -24,12 +24,12 @@ struct goal_equations {
 
 /// Sets the equations of a pose: all six components of the twist.
 template <int Room>
-void set_equations(goal_equations<Room>& x, const tip_place& goal) {
+void set_equations(goal_equations<Room>& x, const tip_pose& goal) {
   x.e = error_twist(x.at.tip, goal);
   x.left = {length_of(goal.translation - x.at.tip.translation), deviation_of(x.e).rotation};
 }
 /// True if a pose is certainly out of reach.
-[[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_place& goal,
+[[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_pose& goal,
                                     const pose_tolerance& tolerance) {
   return reach.is_beyond(goal, tolerance);
 }

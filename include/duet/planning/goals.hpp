@@ -40,12 +40,12 @@ namespace detail {
 ///
 /// \tparam Model  model of the chain, with or without obstacles
 template <class C, class Model, class Objective>
-class wishes_of final : public solution_wishes<joint_room(C::joints)> {
+class preferences_of final : public solution_preferences<joint_room(C::joints)> {
   static constexpr int room = joint_room(C::joints);
 
 public:
-  using typename solution_wishes<room>::vector;
-  wishes_of(const Model& model, const Objective& objective)
+  using typename solution_preferences<room>::vector;
+  preferences_of(const Model& model, const Objective& objective)
       : model_(model), objective_(objective) {}
 
   [[nodiscard]] bool has_objective() const override {
@@ -82,7 +82,7 @@ public:
 
 private:
   [[nodiscard]] auto given(const small_vector<room>& theta) const {
-    return own_joints(model_.chain(), model_.given_joints(theta));
+    return to_chain_joints(model_.chain(), model_.unscaled_joints(theta));
   }
 
   const Model& model_;
@@ -95,7 +95,7 @@ class wanted_solutions {
   static_assert(planning_types<Objective, Scene>::are_good);
   static constexpr int room = joint_room(C::joints);
   static constexpr bool is_among_obstacles = std::same_as<Scene, scene>;
-  using model = std::conditional_t<is_among_obstacles, chain_among_obstacles<C>, chain_model<C>>;
+  using model = std::conditional_t<is_among_obstacles, chain_with_obstacles<C>, chain_model<C>>;
   using result = inverse_kinematics_result<C::joints>;
   using known_solutions = typename solution_search<room>::known_solutions;
   static constexpr bool has_objective = !std::same_as<Objective, no_objective>;
@@ -105,7 +105,7 @@ public:
   wanted_solutions(const C& chain, const Start& start, const inverse_kinematics_options& options,
                    const Objective& objective, const Scene& around)
       : start_(start), options_(options), model_((require_size(chain, start), chain), around),
-        wishes_(model_, objective), search_(model_, model_.joints(start), options) {
+        preferences_(model_, objective), search_(model_, model_.joints(start), options) {
     require_objective(objective, chain.size());
   }
   wanted_solutions(const wanted_solutions&) = delete;
@@ -115,19 +115,19 @@ public:
   template <TipGoal G, class Name>
   [[nodiscard]] result operator()(const G& goal, const Name& name,
                                   const known_solutions& known = {}) const {
-    constexpr bool has_wishes = has_objective || is_among_obstacles;
-    const auto x =
-        search_(tip_goal_of<G>(goal, model_.length), has_wishes ? &wishes_ : nullptr, known);
+    constexpr bool has_preferences = has_objective || is_among_obstacles;
+    const auto x = search_(tip_goal_of<G>(goal, model_.length),
+                           has_preferences ? &preferences_ : nullptr, known);
     require_numbers(x, name);
-    return {own_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
-            model_.given_deviation(x.left), x.iterations, x.restarts, x.reason};
+    return {to_chain_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
+            model_.unscaled_error(x.left), x.iterations, x.restarts, x.reason};
   }
   template <class Name>
   [[nodiscard]] result operator()(const dual_quaternion<double>& goal, const Name& name) const {
     if (model_.reach.is_beyond(model_.place(goal), model_.tolerance(options_.tolerance))) {
       return inverse_kinematics(model_.chain(), goal, start_, options_);
     }
-    return (*this)(whole_pose{place_of(normalized(goal))}, name, all_solutions(goal));
+    return (*this)(full_pose_goal{to_tip_pose(normalized(goal))}, name, all_solutions(goal));
   }
 
 private:
@@ -151,13 +151,13 @@ private:
   void require_numbers(const typename solution_search<room>::attempt& x, const Name& name) const {
     const auto fail = [&](const std::string& what) {
       fail_not_a_number("duet: inverse_kinematics: " + what,
-                        own_joints(model_.chain(), model_.given_joints(x.joints)));
+                        to_chain_joints(model_.chain(), model_.unscaled_joints(x.joints)));
     };
     if ((std::isnan(x.left.translation) || std::isnan(x.left.rotation)) &&
         std::isfinite(length_of(model_.at(x.joints).tip.translation))) { // not by overflow
       fail(name() + " is nan wherever it was looked at, as at the");
     }
-    if (x.reason == stop_reason::reached && std::isnan(wishes_.objective(x.joints))) {
+    if (x.reason == stop_reason::reached && std::isnan(preferences_.objective(x.joints))) {
       fail("the objective is nan at all solutions that were found, as at the");
     }
   }
@@ -165,7 +165,7 @@ private:
   const Start& start_;
   const inverse_kinematics_options& options_;
   model model_;
-  wishes_of<C, model, Objective> wishes_;
+  preferences_of<C, model, Objective> preferences_;
   solution_search<room> search_;
 };
 

@@ -39,8 +39,8 @@ public:
   [[nodiscard]] inverse_kinematics_result<C::joints>
   operator()(const dual_quaternion<double>& goal) const {
     const auto x = search_(model_.place(normalized(goal)));
-    return {own_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
-            model_.given_deviation(x.left), x.iterations, x.restarts, x.reason};
+    return {to_chain_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
+            model_.unscaled_error(x.left), x.iterations, x.restarts, x.reason};
   }
 
 private:

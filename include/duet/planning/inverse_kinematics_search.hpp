@@ -11,7 +11,7 @@
 #include <duet/planning/nearest_pose.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/small_vector.hpp>
-#include <duet/planning/split_mix.hpp>
+#include <duet/planning/splitmix64.hpp>
 
 #include <algorithm>
 #include <array>
@@ -37,7 +37,7 @@ namespace detail {
 /// Common part of all searches for configurations of a chain.
 ///
 /// \tparam Goal  a pose, or a type with its own `set_equations` and `is_beyond`
-template <int Room, class Goal = tip_place>
+template <int Room, class Goal = tip_pose>
 class inverse_kinematics_search {
   using vector = small_vector<Room>;
 
@@ -120,7 +120,7 @@ public:
   }
 
   /// Random configuration, uniform within the limits; without them, about the start.
-  [[nodiscard]] vector configuration(split_mix& random) const {
+  [[nodiscard]] vector configuration(splitmix64& random) const {
     vector theta;
     for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
       double lower = model_.lower[i], upper = model_.upper[i];
@@ -158,7 +158,7 @@ private:
   /// Nearest pose from a start on, by the least squared distance of the origins plus |ω|²: Newton's
   /// method with a damping that lets no step increase it. Joints at limits that block them are held
   /// there.
-  template <std::same_as<tip_place> Pose>
+  template <std::same_as<tip_pose> Pose>
   [[nodiscard]] attempt nearest(const vector& start, const Pose& goal) const {
     point here = point_at(start, goal);
     double lambda = 0;
@@ -198,7 +198,7 @@ private:
     std::array<bool, std::size_t(Room)> is_held{}; ///< true if held by a limit that blocks it
     double steepest = 0; ///< largest entry of the gradient of joints that are not held
   };
-  template <std::same_as<tip_place> Pose>
+  template <std::same_as<tip_pose> Pose>
   [[nodiscard]] point point_at(const vector& theta, const Pose& goal) const {
     const equations x = equations_at(theta, goal);
     const three_vector<double> way = goal.translation - x.at.tip.translation;
@@ -243,7 +243,7 @@ typename inverse_kinematics_search<Room, Goal>::attempt
 inverse_kinematics_search<Room, Goal>::operator()(const Goal& goal) const {
   const bool is_out_of_reach = is_beyond(model_.reach, goal, tolerance_);
   const auto search = [&](const vector& from) {
-    if constexpr (std::same_as<Goal, tip_place>) {
+    if constexpr (std::same_as<Goal, tip_pose>) {
       if (is_out_of_reach) {
         return nearest(from, goal);
       }
@@ -252,7 +252,7 @@ inverse_kinematics_search<Room, Goal>::operator()(const Goal& goal) const {
   };
   attempt best = search(start_);
   int iterations = best.iterations, restarts = 0;
-  split_mix random(options_.seed);
+  splitmix64 random(options_.seed);
   while (best.reason != stop_reason::reached && restarts < options_.max_restarts) {
     const attempt next = search(configuration(random));
     iterations += next.iterations;

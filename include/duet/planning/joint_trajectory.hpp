@@ -137,7 +137,7 @@ private:
   /// Segment that contains t, which is moved to an end if it is beyond that by round-off.
   [[nodiscard]] const detail::timed_piece<vector>& piece_at(double& t) const {
     if (!(t >= 0 && t <= duration())) {
-      t = detail::rounded_into(t, 0.0, duration());
+      t = detail::clamp_rounding(t, 0.0, duration());
       if (!(t >= 0 && t <= duration())) {
         detail::raise(invalid_input("duet: joint_trajectory: t is " + to_text(t) +
                                     ", outside 0 to " + to_text(duration()) +

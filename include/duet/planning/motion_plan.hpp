@@ -160,7 +160,7 @@ void add_waypoint(motion_plan<N>& plan, const C& chain, const V& theta,
 
 /// Coordinates of a chain's joints, in the vector type of the chain.
 template <class C, class X>
-[[nodiscard]] joint_vector<double, C::joints> own_joints(const C& chain, const X& x) {
+[[nodiscard]] joint_vector<double, C::joints> to_chain_joints(const C& chain, const X& x) {
   joint_vector<double, C::joints> theta(chain.size());
   for (int i = 0; i < chain.size(); ++i) {
     theta[i] = x[i];

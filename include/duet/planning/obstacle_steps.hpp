@@ -61,13 +61,13 @@ template <class C, class V>
 
 /// Model of a chain among the obstacles of a scene.
 template <class C>
-class chain_among_obstacles final : public chain_model<C> {
+class chain_with_obstacles final : public chain_model<C> {
 public:
   using typename chain_model<C>::state;
   using typename chain_model<C>::vector;
 
   /// \throws invalid_input for an invalid scene
-  chain_among_obstacles(const C& chain, const scene& around)
+  chain_with_obstacles(const C& chain, const scene& around)
       : chain_model<C>(chain), around_(around) {
     require_scene(chain, around);
     this->margin = around.margin / this->length;
@@ -80,7 +80,7 @@ public:
   [[nodiscard]] std::vector<inequality<joint_vector<double, C::joints>>>
   margins(const vector& theta) const {
     auto result = margin_inequalities(
-        this->chain(), own_joints(this->chain(), this->given_joints(theta)), around_);
+        this->chain(), to_chain_joints(this->chain(), this->unscaled_joints(theta)), around_);
     for (auto& each : result) {
       each.bound /= this->length;
       for (int i = 0; i < this->size; ++i) {
@@ -89,10 +89,10 @@ public:
     }
     return result;
   }
-  [[nodiscard]] step_beside_obstacles<int(vector::size())>
+  [[nodiscard]] collision_free_step<int(vector::size())>
   step_beside(const state& from, const small_twist& e, const vector& wish) const override {
     using joints = joint_vector<double, C::joints>;
-    const auto own = [&](const vector& x) { return own_joints(this->chain(), x); };
+    const auto own = [&](const vector& x) { return to_chain_joints(this->chain(), x); };
     const auto inequalities = margins(from.theta);
     if (inequalities.empty()) {
       return {};
@@ -103,7 +103,7 @@ public:
     };
     const auto result = step(inequalities);
     if (result.step) {
-      return {planned_joints<int(vector::size())>(*result.step, this->size),
+      return {scaled_joints<int(vector::size())>(*result.step, this->size),
               result.smallest_singular_value};
     }
     // A step that is infeasible without obstacles too is not blocked by them.
@@ -123,8 +123,8 @@ public:
 
 private:
   [[nodiscard]] chain_clearance<double> nearest(const vector& theta) const {
-    return least_clearance(this->chain(), own_joints(this->chain(), this->given_joints(theta)),
-                           around_);
+    return least_clearance(this->chain(),
+                           to_chain_joints(this->chain(), this->unscaled_joints(theta)), around_);
   }
 
   const scene& around_;

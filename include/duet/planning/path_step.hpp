@@ -22,7 +22,7 @@ namespace duet::detail {
 /// Joint-centring step (joint-limit avoidance): up to a `step` away from limits, growing towards
 /// them.
 template <class V>
-[[nodiscard]] V towards_middle(const V& theta, const V& lower, const V& upper, double step) {
+[[nodiscard]] V joint_centring_step(const V& theta, const V& lower, const V& upper, double step) {
   V result = theta;
   for (std::ptrdiff_t i = 0; i < theta.size(); ++i) {
     const double half = (upper[i] - lower[i]) / 2;
@@ -37,11 +37,11 @@ template <class V>
 /// all.
 using path_function = std::function<dual_quaternion<double>(double)>;
 /// Poses of the tip as a function of a parameter, with lengths in the planner's unit.
-using place_function = std::function<tip_place(double)>;
+using tip_path = std::function<tip_pose(double)>;
 
 /// Result of an attempt to bring the tip to a pose.
 template <int Room>
-struct attempt {
+struct step_result {
   chain_state<Room> state;
   pose_error left = {}; ///< error of the tip relative to the pose
   /// Smallest singular value of the Jacobians on the way, from above.
@@ -93,7 +93,7 @@ struct pose_solver {
   /// Switches to steps without damping and nearer to targets: near singularities joints that are to
   /// swing would lag behind.
   void without_damping() {
-    damped_below = swing_threshold;
+    damped_below = undamped_threshold_near_singularity;
     tolerance = {1e-3 * tolerance.translation, 1e-3 * tolerance.rotation};
   }
 
@@ -109,8 +109,8 @@ struct pose_solver {
   /// Result of the step nearest to the desired joint step `wish` that takes the tip from a state
   /// nearby to the target to first order, and then of Newton's method by least-norm steps, without
   /// damping if that prevents convergence. No step leaves the limits.
-  [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
-                                       const vector& wish) const {
+  [[nodiscard]] step_result<Room> approach(const chain_state<Room>& from, const tip_pose& target,
+                                           const vector& wish) const {
     auto result = approach(from, target, wish, damped_below);
     if (damped_below > undamped_threshold && result.smallest_singular_value < damped_below &&
         !result.is_within(tolerance)) {
@@ -122,17 +122,17 @@ struct pose_solver {
   }
 
   /// Length of the joint step to a target near a state, to first order, without damping.
-  [[nodiscard]] double way_to(const chain_state<Room>& from, const tip_place& target) const {
+  [[nodiscard]] double way_to(const chain_state<Room>& from, const tip_pose& target) const {
     const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
-                                   upper - from.theta, {swing_threshold});
+                                   upper - from.theta, {undamped_threshold_near_singularity});
     return norm(step.step);
   }
 
 private:
   /// \param threshold  singular value below which steps are damped
-  [[nodiscard]] attempt<Room> approach(const chain_state<Room>& from, const tip_place& target,
-                                       const vector& wish, double threshold) const {
-    attempt<Room> result;
+  [[nodiscard]] step_result<Room> approach(const chain_state<Room>& from, const tip_pose& target,
+                                           const vector& wish, double threshold) const {
+    step_result<Room> result;
     if (!move(result, from, error_twist(from.tip, target), wish, threshold)) {
       result.state = from;
       return result;
@@ -161,7 +161,7 @@ private:
 
   /// Takes the step nearest to `wish` that moves the tip by `e` to first order, from a state that
   /// may be that of x; false if obstacles leave none.
-  [[nodiscard]] bool move(attempt<Room>& x, const chain_state<Room>& from, const small_twist& e,
+  [[nodiscard]] bool move(step_result<Room>& x, const chain_state<Room>& from, const small_twist& e,
                           const vector& wish, double threshold) const {
     ++x.iterations;
     const auto beside = model.step_beside(from, e, wish);
@@ -176,7 +176,7 @@ private:
       return false;
     }
     const vector aim = within(from.theta + wish);
-    const small_twist rest = what_is_left(e, from.jacobian, aim - from.theta);
+    const small_twist rest = residual_after_step(e, from.jacobian, aim - from.theta);
     const auto step = bounded_step(from.jacobian, rest, lower - aim, upper - aim, {threshold});
     x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
     x.is_bounded = x.is_bounded || step.is_bounded;

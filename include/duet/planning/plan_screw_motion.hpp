@@ -53,7 +53,7 @@ plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<doub
   detail::require_start(chain, start);
   detail::require_pose(goal, "plan", "the goal");
   const detail::chain_model<C> model(chain);
-  const auto first = model.given_pose(model.at(model.joints(start)).tip);
+  const auto first = model.unscaled_pose(model.at(model.joints(start)).tip);
   const auto target = detail::screw_path(first, goal);
   return detail::follow(chain, start, target, {0, 1}, options, objective, around, true);
 }

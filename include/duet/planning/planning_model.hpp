@@ -9,7 +9,7 @@
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/small_vector.hpp>
-#include <duet/planning/tip_place.hpp>
+#include <duet/planning/tip_pose.hpp>
 
 #include <algorithm>
 #include <array>
@@ -43,7 +43,7 @@ namespace duet::detail {
 
 /// Coordinates in a planner's vector; entries beyond the joints of the chain are 0 and remain so.
 template <int Room, class X>
-[[nodiscard]] small_vector<Room> planned_joints(const X& theta, int size) {
+[[nodiscard]] small_vector<Room> scaled_joints(const X& theta, int size) {
   small_vector<Room> result;
   for (int i = 0; i < size; ++i) {
     result[i] = vector_argument<X>::get(theta, i);
@@ -55,7 +55,7 @@ template <int Room, class X>
 template <int Room>
 struct chain_state {
   small_vector<Room> theta;
-  tip_place tip;
+  tip_pose tip;
   small_matrix<6, Room> jacobian;
 };
 
@@ -70,7 +70,7 @@ struct chain_reach {
   bool has_joints = false;
 
   /// True if certainly no pose of the tip is within the tolerance of the goal.
-  [[nodiscard]] bool is_beyond(const tip_place& goal, const pose_tolerance& tolerance) const {
+  [[nodiscard]] bool is_beyond(const tip_pose& goal, const pose_tolerance& tolerance) const {
     const double distance = length_of(goal.point(back) - first);
     return has_joints && distance > (links + travel) * (1 + 1e-12) + tolerance.translation +
                                         tolerance.rotation * tool;
@@ -90,7 +90,7 @@ struct chain_reach {
 
 /// Step in the presence of obstacles.
 template <int Room>
-struct step_beside_obstacles {
+struct collision_free_step {
   std::optional<small_vector<Room>> step; ///< empty if obstacles leave none
   /// Smallest singular value of the Jacobian, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
@@ -150,13 +150,13 @@ public:
   /// \param theta  a vector of any kind
   template <class X>
   [[nodiscard]] vector joints(const X& theta) const {
-    vector result = planned_joints<Room>(theta, size);
+    vector result = scaled_joints<Room>(theta, size);
     for (int i = 0; i < size; ++i) {
       result[i] /= unit[i];
     }
     return result;
   }
-  [[nodiscard]] vector given_joints(vector theta) const {
+  [[nodiscard]] vector unscaled_joints(vector theta) const {
     for (int i = 0; i < Room; ++i) {
       theta[i] *= unit[i];
     }
@@ -164,18 +164,18 @@ public:
   }
   /// Joints in the user's units, clamped to the limits, which round-off may have violated.
   [[nodiscard]] vector given_joints_within_limits(const vector& theta) const {
-    vector result = given_joints(theta);
+    vector result = unscaled_joints(theta);
     for (int i = 0; i < size; ++i) {
       result[i] = std::clamp(result[i], given_lower_[i], given_upper_[i]);
     }
     return result;
   }
-  [[nodiscard]] tip_place place(const dual_quaternion<double>& a) const {
-    const tip_place x = place_of(a);
+  [[nodiscard]] tip_pose place(const dual_quaternion<double>& a) const {
+    const tip_pose x = to_tip_pose(a);
     return {x.rotation, 1 / length * x.translation};
   }
-  [[nodiscard]] dual_quaternion<double> given_pose(const tip_place& a) const {
-    return detail::pose_at({a.rotation, length * a.translation});
+  [[nodiscard]] dual_quaternion<double> unscaled_pose(const tip_pose& a) const {
+    return detail::to_dual_quaternion({a.rotation, length * a.translation});
   }
   [[nodiscard]] small_matrix<6, Room> given_jacobian(small_matrix<6, Room> j) const {
     for (int i = 0; i < size; ++i) {
@@ -188,7 +188,7 @@ public:
   [[nodiscard]] pose_tolerance tolerance(const pose_tolerance& x) const {
     return {x.translation / length, x.rotation};
   }
-  [[nodiscard]] pose_error given_deviation(const pose_error& x) const {
+  [[nodiscard]] pose_error unscaled_error(const pose_error& x) const {
     return {length * x.translation, x.rotation};
   }
 
@@ -219,7 +219,7 @@ public:
   }
   /// Step nearest to the desired joint step `wish` that moves the tip by `e` to first order and
   /// keeps the margin.
-  [[nodiscard]] virtual step_beside_obstacles<Room>
+  [[nodiscard]] virtual collision_free_step<Room>
   step_beside(const state& /*from*/, const small_twist& /*e*/, const vector& /*wish*/) const {
     return {};
   }
@@ -252,7 +252,7 @@ template <class C>
 void chain_model<C>::set(state& of, const vector& theta) const {
   of.theta = theta;
   of.tip = fill_jacobian<hybrid_frame, true, double>(
-      of.jacobian, chain_, own_joints(chain_, this->given_joints(theta)), tip_of_chain{});
+      of.jacobian, chain_, to_chain_joints(chain_, this->unscaled_joints(theta)), tip_of_chain{});
   of.tip.translation = 1 / this->length * of.tip.translation;
   for (std::size_t i = 0; i < of.jacobian.columns.size(); ++i) {
     auto& column = of.jacobian.columns[i].values;

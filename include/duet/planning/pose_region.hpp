@@ -95,8 +95,8 @@ inline void require_unit(const vector3<double>& n, const char* function, const c
 }
 
 /// Rotation that takes one unit vector to another: a half turn about their bisector.
-[[nodiscard]] inline quaternion<double> turn_between(const vector3<double>& from,
-                                                     const vector3<double>& to) {
+[[nodiscard]] inline quaternion<double> relative_rotation(const vector3<double>& from,
+                                                          const vector3<double>& to) {
   vector3<double> middle = from + to;
   if (!(middle.norm() > 1e-8)) { // opposite: any orthogonal one
     int least = 0;
@@ -120,7 +120,8 @@ pointing_goal(const vector3<double>& axis, const vector3<double>& direction, dou
   detail::require_unit(axis, "pointing_goal", "axis");
   detail::require_unit(direction, "pointing_goal", "direction");
   auto result = free_axis_goal(
-      pose(detail::turn_between(axis, direction), vector3<double>(vector3<double>::Zero())), axis);
+      pose(detail::relative_rotation(axis, direction), vector3<double>(vector3<double>::Zero())),
+      axis);
   result.lower = {-infinity, -infinity, -infinity};
   result.upper = {infinity, infinity, infinity};
   result.max_tilt = tilt;
@@ -137,7 +138,7 @@ pointing_goal(const vector3<double>& axis, const vector3<double>& direction, dou
                                                                   double tilt = 0) {
   detail::require_unit(axis, "position_and_pointing_goal", "axis");
   detail::require_unit(direction, "position_and_pointing_goal", "direction");
-  auto result = free_axis_goal(pose(detail::turn_between(axis, direction), position), axis);
+  auto result = free_axis_goal(pose(detail::relative_rotation(axis, direction), position), axis);
   result.max_tilt = tilt;
   return result;
 }

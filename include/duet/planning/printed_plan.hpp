@@ -84,7 +84,7 @@ template <SerialChain C, VectorLike Start>
   detail::require_start(chain, start);
   detail::require_pose(goal, "plan", "the goal");
   motion_plan<C::joints> plan;
-  const auto theta = detail::own_joints(chain, start);
+  const auto theta = detail::to_chain_joints(chain, start);
   const dual_quaternion<double> first = chain.pose(theta);
   const auto motion = screw_parameters(conj(first) * goal);
   plan.reason = detail::printed_steps(
@@ -123,7 +123,7 @@ template <SerialChain C, VectorLike Start>
   motion_plan<C::joints> plan;
   const auto target = [&](int k) { return std::min(std::size_t(std::max(k, 1)), path.size()) - 1; };
   plan.reason = detail::printed_steps(
-      chain, detail::own_joints(chain, start), path.back(), int(path.size()), options,
+      chain, detail::to_chain_joints(chain, start), path.back(), int(path.size()), options,
       [&](int k, const dual_quaternion<double>&) { return path[target(k)]; },
       [&](int k, const auto& joints, const dual_quaternion<double>& here) {
         detail::add_waypoint(plan, chain, joints, here, k == 0 ? 0. : double(target(k) + 1),

@@ -7,8 +7,8 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/mechanism/serial_chain.hpp>
 #include <duet/planning/branches/chain_loop.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/seven_joints.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/redundant_arm.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/norm.hpp>
@@ -73,16 +73,16 @@ void require_seven_joints(const C& chain) {
 
 /// Chain and goal as the search uses them; refers to the chain.
 template <class C>
-[[nodiscard]] seven_joints seven_joints_of(const C& chain, const tip_place& goal) {
+[[nodiscard]] redundant_arm seven_joints_of(const C& chain, const tip_pose& goal) {
   using joints = joint_vector<double, C::joints>;
   const chain_model<C> model(chain);
-  seven_joints result;
+  redundant_arm result;
   result.size = model.length;
   result.goal = goal;
   for (std::size_t i = 0; i < 7; ++i) {
     result.turns[i] = model.turns[i];
   }
-  result.gap = [model, place = tip_place{goal.rotation, 1 / model.length * goal.translation}](
+  result.gap = [model, place = tip_pose{goal.rotation, 1 / model.length * goal.translation}](
                    const seven_coordinates& x, seven_columns& jacobian) {
     const auto state = model.at(model.joints(x));
     const small_twist e = error_twist(state.tip, place);
@@ -98,7 +98,7 @@ template <class C>
   result.axes_beside = [&chain](int held, double value) {
     joints theta = joints::Zero(chain.size());
     theta[held] = value;
-    return chain_axes(chain, theta, held);
+    return chain_screws(chain, theta, held);
   };
   return result;
 }
@@ -133,14 +133,14 @@ self_motion_curves(const C& chain, const dual_quaternion<double>& goal,
   detail::require_pose(goal, "self_motion_curves", "the goal");
   detail::require_option("self_motion_curves", "resolution", options.resolution,
                          options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
-  const auto arm = detail::seven_joints_of(chain, detail::place_of(normalized(goal)));
+  const auto arm = detail::seven_joints_of(chain, detail::to_tip_pose(normalized(goal)));
   std::vector<self_motion_curve<C::joints>> result;
   for (const detail::traced_curve& curve : detail::all_curves(arm, options.resolution)) {
     self_motion_curve<C::joints> own;
     own.is_closed = curve.is_closed;
     own.dimension = curve.dimension;
     for (const auto& x : curve.points) {
-      own.joints.push_back(detail::own_joints(chain, x));
+      own.joints.push_back(detail::to_chain_joints(chain, x));
     }
     result.push_back(std::move(own));
   }

@@ -4,7 +4,7 @@
 #include <duet/planning/bounded_step.hpp>
 #include <duet/planning/path_step.hpp>
 #include <duet/planning/planning_model.hpp>
-#include <duet/planning/self_motion_pieces.hpp>
+#include <duet/planning/self_motion_components.hpp>
 #include <duet/planning/singularity.hpp>
 #include <duet/planning/small_vector.hpp>
 
@@ -28,8 +28,8 @@ namespace duet::detail {
 /// that are new. With several degrees of redundancy one curve of the manifold is traced, with none
 /// a component is a point.
 template <int Room>
-class self_motion_search : self_motion_pieces<Room> {
-  using base = self_motion_pieces<Room>;
+class self_motion_search : self_motion_components<Room> {
+  using base = self_motion_components<Room>;
   using base::follow, base::found_, base::is_known, base::left_, base::solver_, base::spacing_,
       base::tried;
 
@@ -38,12 +38,12 @@ public:
 
   /// \param singular  singular value below which configurations are left to both sides, too
   /// \param least     minimum of the shorter steps in which the ends of continuations are sought
-  self_motion_search(const pose_solver<Room>& solver, const place_function& target, double spacing,
+  self_motion_search(const pose_solver<Room>& solver, const tip_path& target, double spacing,
                      double singular, double least, int iterations)
       : base(solver, spacing, iterations), target_(target), singular_(singular), least_(least) {}
 
   /// Sequence of configurations, each a step from the one before.
-  using configurations = std::vector<reachable<Room>>;
+  using configurations = std::vector<search_node<Room>>;
 
   /// Continuations from a state at u.front() to u.back(), or as far as they go: one that leads
   /// farthest, the one that does in whole steps, and one to each other isolated component.
@@ -91,7 +91,7 @@ public:
       result.push_back(in_whole_steps);
     }
     for (std::size_t i = first; i < found_.size(); ++i) {
-      if (i != best && found_[i].is_alone) {
+      if (i != best && found_[i].is_isolated) {
         result.push_back(way_to(i));
       }
     }
@@ -108,11 +108,11 @@ private:
   /// Adds what is reached at one parameter from the configurations found_[first] to found_[end − 1]
   /// at another.
   void advance(std::size_t first, std::size_t end, double u, double to) {
-    const tip_place target = target_(to);
+    const tip_pose target = target_(to);
     for (std::size_t i = first; i < end && left_ > 0; ++i) {
       const chain_state<Room> here = found_[i].state;
       const bool is_singular = smallest_singular_value_of(here.jacobian) < singular_;
-      const auto add = [&](const attempt<Room>& next) {
+      const auto add = [&](const step_result<Room>& next) {
         if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
             (!is_singular || leads(next.state, to, here, u))) {
           found_.push_back({next.state, to, std::ptrdiff_t(i), is_singular});
@@ -141,7 +141,7 @@ private:
   }
 
   /// Result of a step to another parameter, in up to 2^`left` parts.
-  [[nodiscard]] attempt<Room> go(const chain_state<Room>& from, double u, double to, int left) {
+  [[nodiscard]] step_result<Room> go(const chain_state<Room>& from, double u, double to, int left) {
     auto direct = tried(from, target_(to), {});
     const bool is_jump = norm(direct.state.theta - from.theta) > .15;
     if ((direct.is_within(solver_.tolerance) && !is_jump) || left == 0) {
@@ -159,10 +159,10 @@ private:
 
   /// Adds configurations for a target near that of a singular one, which lie to both sides of it.
   template <class Add>
-  void leave(const chain_state<Room>& singular, const tip_place& target, const Add& add) {
+  void leave(const chain_state<Room>& singular, const tip_pose& target, const Add& add) {
     const singular_point<Room> here(singular.jacobian);
     const small_twist e = error_twist(singular.tip, target);
-    const vector out = here.way_out();
+    const vector out = here.escape_direction();
     const auto [step, other] = here.steps_for(e);
     const double way = norm(e);
     for (const vector& offset :
@@ -185,12 +185,12 @@ private:
   /// where joint velocities can produce the twist to the target. Beside that Newton's method does
   /// not converge.
   template <class Add>
-  void leave_between(chain_state<Room> a, chain_state<Room> b, const tip_place& target,
+  void leave_between(chain_state<Room> a, chain_state<Room> b, const tip_pose& target,
                      const Add& add) {
-    const tip_place here = a.tip;
-    small_twist w = left_out_twist(a.jacobian);
+    const tip_pose here = a.tip;
+    small_twist w = left_singular_twist(a.jacobian);
     const auto missing = [&](const chain_state<Room>& x) {
-      const small_twist next = left_out_twist(x.jacobian);
+      const small_twist next = left_singular_twist(x.jacobian);
       w = dot(next, w) < 0 ? -1 * next : next;
       return dot(w, error_twist(x.tip, target));
     };
@@ -219,7 +219,7 @@ private:
     return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < spacing_;
   }
 
-  const place_function& target_;
+  const tip_path& target_;
   double singular_, least_;
   struct {
     double u = 0;

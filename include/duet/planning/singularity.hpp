@@ -16,22 +16,23 @@
 namespace duet::detail {
 
 /// Singular value that counts as zero.
-inline constexpr double no_singular_value = 1e-5;
+inline constexpr double singularity_threshold = 1e-5;
 
 /// Null space of the Jacobian: motion of the joints without the tip; it refers to the Jacobian.
 template <int Room>
-class motion_in_place {
+class self_motion_space {
 public:
   using vector = small_vector<Room>;
 
   /// \param none  singular value that counts as zero
-  explicit motion_in_place(const small_matrix<6, Room>& jacobian, double none = no_singular_value)
+  explicit self_motion_space(const small_matrix<6, Room>& jacobian,
+                             double none = singularity_threshold)
       : jacobian_(jacobian), gram_(gram_of(jacobian), {0, none * none}) {}
 
   /// Projection of a step onto the null space, which leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it,
   /// with λ the square of what counts as zero.
-  [[nodiscard]] vector part_of(vector step) const {
-    const small_twist force = gram_.solve(what_is_left({}, jacobian_, step));
+  [[nodiscard]] vector projection_of(vector step) const {
+    const small_twist force = gram_.solve(residual_after_step({}, jacobian_, step));
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
       step[i] += column_dot(jacobian_, i, force);
     }
@@ -40,7 +41,7 @@ public:
   /// Direction of the null space next to `wish`, of unit length; zero if none is near it.
   [[nodiscard]] vector direction(vector wish) const {
     for (int round = 0; round < 2; ++round) { // the second time for round-off
-      wish = part_of(wish);
+      wish = projection_of(wish);
       const double length = norm(wish);
       if (!(length > .3)) {
         return {};
@@ -105,7 +106,7 @@ template <int Room>
 /// Left singular twist: the twist w of unit length that joint velocities produce least, wᵀJ = 0 in
 /// a singular configuration.
 template <int Room>
-[[nodiscard]] small_twist left_out_twist(const small_matrix<6, Room>& jacobian) {
+[[nodiscard]] small_twist left_singular_twist(const small_matrix<6, Room>& jacobian) {
   constexpr double none = 1e-6;
   const damped_gram gram(gram_of(jacobian), {0, none * none});
   small_twist w{{1, .7, -.4, .9, -.6, .5}};
@@ -116,15 +117,15 @@ template <int Room>
   return w;
 }
 
-/// Singular configuration to second order: w, `left_out_twist`, and H, the second derivatives of
-/// the tip's displacement along w,
+/// Singular configuration to second order: w, `left_singular_twist`, and H, the second derivatives
+/// of the tip's displacement along w,
 ///
 /// H_jk = w · [ω_j × v_k; ½ ω_j × ω_k], j ≤ k, of the columns [v; ω] of J in `frame::hybrid`.
 template <int Room>
 class singular_point {
 public:
   explicit singular_point(const small_matrix<6, Room>& jacobian)
-      : jacobian_(jacobian), w_(left_out_twist(jacobian)) {
+      : jacobian_(jacobian), w_(left_singular_twist(jacobian)) {
     const three_vector<double> force{w_[0], w_[1], w_[2]}, moment{w_[3], w_[4], w_[5]};
     for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
       const auto& column = jacobian.columns[std::size_t(k)];
@@ -142,14 +143,14 @@ public:
   /// Escape direction, of unit length, in which the singularity is left fastest; its opposite is as
   /// good. The joint velocities n that leave the tip in place no longer do so at θ + s d, by s
   /// wᵀHd·n: d is the unit vector for which that is largest, of all n of length 1.
-  [[nodiscard]] small_vector<Room> way_out() const {
+  [[nodiscard]] small_vector<Room> escape_direction() const {
     small_vector<Room> d;
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
       d[i] = 1 + .1 * double(i);
     }
-    const motion_in_place still(jacobian_);
+    const self_motion_space still(jacobian_);
     for (int k = 0; k < 8; ++k) {
-      d = times_h(still.part_of(times_h(d)));
+      d = times_h(still.projection_of(times_h(d)));
       const double length = norm(d);
       if (!(length > 1e-12)) {
         return {};
@@ -162,8 +163,8 @@ public:
   /// Two steps s n, n the direction of least motion of the tip, that move it along w as a small
   /// twist does: wᵀJn s + ½ s² nᵀHn = w·e. Zero if there are none.
   [[nodiscard]] std::array<small_vector<Room>, 2> steps_for(const small_twist& e) const {
-    const auto n = motion_in_place(jacobian_, damping_threshold).any_direction();
-    const double slope = -dot(w_, what_is_left({}, jacobian_, n)), bend = dot(n, times_h(n));
+    const auto n = self_motion_space(jacobian_, damping_threshold).any_direction();
+    const double slope = -dot(w_, residual_after_step({}, jacobian_, n)), bend = dot(n, times_h(n));
     const double root = std::sqrt(slope * slope + 2 * bend * dot(w_, e));
     std::array<small_vector<Room>, 2> result;
     for (std::size_t k = 0; k < 2; ++k) {

@@ -30,10 +30,10 @@ using room_vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Ro
 
 /// Preferences among the solutions of a goal: objective and obstacles.
 template <int Room>
-class solution_wishes {
+class solution_preferences {
 public:
   using vector = room_vector<Room>;
-  virtual ~solution_wishes() = default;
+  virtual ~solution_preferences() = default;
   [[nodiscard]] virtual bool has_objective() const = 0;
   [[nodiscard]] virtual double objective(const small_vector<Room>& theta) const = 0;
   [[nodiscard]] virtual vector slope(const small_vector<Room>& theta) const = 0;
@@ -63,8 +63,9 @@ public:
   };
 
   solution_refinement(const planning_model<Room>& model, const tip_goal& goal,
-                      const solution_wishes<Room>& wishes, const pose_tolerance& tolerance)
-      : model_(model), goal_(goal), wishes_(wishes), tolerance_(tolerance) {}
+                      const solution_preferences<Room>& preferences,
+                      const pose_tolerance& tolerance)
+      : model_(model), goal_(goal), preferences_(preferences), tolerance_(tolerance) {}
 
   /// Solution near a given configuration that keeps the margins too and, if there is an objective,
   /// minimises it locally. Nothing if that fails.
@@ -79,7 +80,7 @@ private:
     x.theta = theta;
     const auto state = model_.at(theta);
     const twist_constraint wanted = goal_.constraint(state.tip);
-    x.left = missing_twist(wanted).left;
+    x.left = residual_twist(wanted).left;
     x.excess = std::max(tolerance_.ratio(x.left), model_.shortfall(theta) / tolerance_.translation);
     auto& more = x.conditions.inequalities;
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
@@ -102,7 +103,7 @@ private:
       add(more, normal, std::max(model_.lower[i] - theta[i], -trusted));
       add(more, -normal, std::max(theta[i] - model_.upper[i], -trusted));
     }
-    for (const auto& each : wishes_.clear_of_obstacles(theta)) {
+    for (const auto& each : preferences_.clear_of_obstacles(theta)) {
       add(more, each.normal, std::min(each.bound, .1));
     }
     return x;
@@ -138,20 +139,20 @@ private:
   }
   [[nodiscard]] std::optional<point> solution(const joints& theta) const {
     auto x = restored(theta);
-    if (x && wishes_.has_objective()) {
-      x->value = wishes_.objective(x->theta);
-      x->slope = wishes_.slope(x->theta);
+    if (x && preferences_.has_objective()) {
+      x->value = preferences_.objective(x->theta);
+      x->slope = preferences_.slope(x->theta);
     }
     return x;
   }
 
   /// Projected gradient: the part of the slope that active constraints leave.
-  struct free_slope {
+  struct projected_gradient {
     orthonormal_rows<vector> kept;
     std::size_t count = 0;
     vector slope;
 
-    explicit free_slope(const point& x) {
+    explicit projected_gradient(const point& x) {
       for (const auto& each : x.conditions.equations) {
         kept.add(each.normal);
       }
@@ -168,7 +169,7 @@ private:
   /// Curvature after the update by a step (damped BFGS).
   [[nodiscard]] matrix learned(matrix curvature, bool is_first, const point& before,
                                const point& after) const {
-    const free_slope here(before), there(after);
+    const projected_gradient here(before), there(after);
     vector s(model_.size);
     for (int i = 0; i < model_.size; ++i) {
       s[i] = after.theta[i] - before.theta[i];
@@ -194,7 +195,7 @@ private:
 
   const planning_model<Room>& model_;
   const tip_goal& goal_;
-  const solution_wishes<Room>& wishes_;
+  const solution_preferences<Room>& preferences_;
   pose_tolerance tolerance_;
 };
 
@@ -202,14 +203,14 @@ template <int Room>
 std::optional<typename solution_refinement<Room>::point>
 solution_refinement<Room>::operator()(const joints& theta, int iterations) const {
   auto best = solution(theta);
-  if (!best || !wishes_.has_objective()) {
+  if (!best || !preferences_.has_objective()) {
     return best;
   }
   matrix curvature;
   bool is_first = true;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     if (is_first) { // a first step of a fifth of a radian
-      const double steepness = free_slope(*best).slope.norm();
+      const double steepness = projected_gradient(*best).slope.norm();
       if (!(steepness > 0)) {
         break;
       }

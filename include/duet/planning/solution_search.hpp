@@ -8,7 +8,7 @@
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/small_vector.hpp>
 #include <duet/planning/solution_refinement.hpp>
-#include <duet/planning/split_mix.hpp>
+#include <duet/planning/splitmix64.hpp>
 #include <duet/planning/tip_goal.hpp>
 
 #include <cmath>
@@ -42,20 +42,21 @@ public:
   };
 
   /// \param wishes  preferences; null: the first solution is as good as any
-  [[nodiscard]] attempt operator()(const tip_goal& goal, const solution_wishes<Room>* wishes,
+  [[nodiscard]] attempt operator()(const tip_goal& goal,
+                                   const solution_preferences<Room>* preferences,
                                    const known_solutions& known = {}) const;
 
 private:
   /// Joints changed by full turns, as many as limits allow, while that lowers the objective.
   [[nodiscard]] small_vector<Room> turned(small_vector<Room> theta,
-                                          const solution_wishes<Room>& wishes) const {
+                                          const solution_preferences<Room>& preferences) const {
     constexpr double most = 0x1p20;
-    double least = wishes.objective(theta);
+    double least = preferences.objective(theta);
     const auto is_lower_by = [&](int i, double way) {
       small_vector<Room> other = theta;
       other[i] += way;
       const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
-      const double value = is_within ? wishes.objective(other) : least;
+      const double value = is_within ? preferences.objective(other) : least;
       const bool result = is_within && is_less(value, least);
       if (result) {
         theta = other;
@@ -86,12 +87,13 @@ private:
 
 template <int Room>
 typename solution_search<Room>::attempt
-solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Room>* wishes,
+solution_search<Room>::operator()(const tip_goal& goal,
+                                  const solution_preferences<Room>* preferences,
                                   const known_solutions& known) const {
-  if (wishes == nullptr || is_beyond(model_.reach, goal, tolerance_)) {
+  if (preferences == nullptr || is_beyond(model_.reach, goal, tolerance_)) {
     return search_(goal);
   }
-  const solution_refinement<Room> refine(model_, goal, *wishes, tolerance_);
+  const solution_refinement<Room> refine(model_, goal, *preferences, tolerance_);
   attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
   double least = std::numeric_limits<double>::infinity(); // of the objective
   int iterations = 0, candidates = 0, restarts = 0;
@@ -99,12 +101,12 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
     constexpr int rounds = 4; // after self-motions other full turns may be nearer
     std::optional<typename solution_refinement<Room>::point> refined;
     for (int k = 0; k < rounds; ++k) {
-      const auto other = wishes->has_objective() ? turned(theta, *wishes) : theta;
+      const auto other = preferences->has_objective() ? turned(theta, *preferences) : theta;
       if (refined && norm(other - theta) == 0) {
         break;
       }
       refined = refine(other, options_.max_iterations);
-      if (!refined || !wishes->has_objective()) {
+      if (!refined || !preferences->has_objective()) {
         break;
       }
       theta = refined->theta;
@@ -121,7 +123,7 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
   if (known.is_complete && best.reason == stop_reason::reached) {
     return best;
   }
-  split_mix random(options_.seed);
+  splitmix64 random(options_.seed);
   for (;; ++restarts) {
     attempt next =
         search_.approach(restarts == 0 ? search_.start() : search_.configuration(random), goal);
@@ -134,7 +136,7 @@ solution_search<Room>::operator()(const tip_goal& goal, const solution_wishes<Ro
       best = next;
     }
     if (restarts == options_.max_restarts || candidates == options_.candidates ||
-        (candidates == 1 && !wishes->has_objective())) {
+        (candidates == 1 && !preferences->has_objective())) {
       break;
     }
   }

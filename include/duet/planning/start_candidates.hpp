@@ -11,7 +11,7 @@
 #include <duet/planning/objective.hpp>
 #include <duet/planning/self_motion_curves.hpp>
 #include <duet/planning/solutions_within_limits.hpp>
-#include <duet/planning/split_mix.hpp>
+#include <duet/planning/splitmix64.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,7 +56,7 @@ public:
       }
       is_complete = !result.empty();
     }
-    split_mix random(1);
+    splitmix64 random(1);
     for (int i = 0; i < 100 && !is_complete; ++i) {
       const auto found = from(configuration(random), goal, 0, 1e-3);
       if (found.reason == stop_reason::reached && is_new(found.joints, result)) {
@@ -84,7 +84,7 @@ public:
   [[nodiscard]] joints turned(joints theta) const {
     for (int i = 0; i < chain_.size(); ++i) {
       if (chain_.steps()[std::size_t(i)].turns && !chain_.steps()[std::size_t(i)].slides) {
-        theta[i] = turned_within(theta[i], chain_.limits(i));
+        theta[i] = wrap_into_limits(theta[i], chain_.limits(i));
       }
     }
     return theta;
@@ -117,7 +117,7 @@ private:
       return (other.front() - theta).cwiseAbs().maxCoeff() < 1e-3;
     });
   }
-  [[nodiscard]] joints configuration(split_mix& random) const {
+  [[nodiscard]] joints configuration(splitmix64& random) const {
     joints theta(chain_.size());
     for (int i = 0; i < chain_.size(); ++i) {
       const auto& limits = chain_.limits(i);

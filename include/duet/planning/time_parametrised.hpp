@@ -7,8 +7,8 @@
 #include <duet/planning/joint_trajectory.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/timing/joint_paths.hpp>
+#include <duet/planning/timing/time_parametrisation_input.hpp>
 #include <duet/planning/timing/timed_curve.hpp>
-#include <duet/planning/timing/timing_problem.hpp>
 
 #include <Eigen/Core>
 
@@ -31,7 +31,8 @@ template <class V>
 }
 
 template <int N>
-[[nodiscard]] joint_trajectory<N> timed_along(const timing_problem<N>& problem, bool is_smooth) {
+[[nodiscard]] joint_trajectory<N> timed_along(const time_parametrisation_input<N>& problem,
+                                              bool is_smooth) {
   const auto& polygon = problem.polygon;
   if (polygon.edges() == 0) {
     const auto zero = joint_vector<double, N>::Zero(problem.velocity.size());

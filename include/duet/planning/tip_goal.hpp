@@ -24,7 +24,7 @@ namespace duet::detail {
 class tip_goal {
 public:
   virtual ~tip_goal() = default;
-  [[nodiscard]] virtual twist_constraint constraint(const tip_place& tip) const = 0;
+  [[nodiscard]] virtual twist_constraint constraint(const tip_pose& tip) const = 0;
   [[nodiscard]] virtual double distance_from(const three_vector<double>&) const { return 0; }
 };
 
@@ -34,8 +34,9 @@ class tip_goal_of final : public tip_goal {
 public:
   /// \param length  the planner's unit of length
   tip_goal_of(const G& goal, double length) : goal_(goal), length_(length) {}
-  [[nodiscard]] twist_constraint constraint(const tip_place& tip) const override {
-    twist_constraint x = goal_.constraint(pose_at({tip.rotation, length_ * tip.translation}));
+  [[nodiscard]] twist_constraint constraint(const tip_pose& tip) const override {
+    twist_constraint x =
+        goal_.constraint(to_dual_quaternion({tip.rotation, length_ * tip.translation}));
     x.lower.head<3>() /= length_;
     x.upper.head<3>() /= length_;
     x.matrix.topRightCorner<3, 3>() /= length_;
@@ -57,12 +58,12 @@ private:
 };
 
 /// Full pose as a goal.
-struct whole_pose {
-  tip_place place;
+struct full_pose_goal {
+  tip_pose place;
 
   [[nodiscard]] twist_constraint constraint(const dual_quaternion<double>& tip) const {
     twist_constraint result;
-    const small_twist e = error_twist(place_of(tip), place);
+    const small_twist e = error_twist(to_tip_pose(tip), place);
     result.matrix.setIdentity();
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
       result.lower[i] = e[i];
@@ -76,11 +77,11 @@ struct whole_pose {
 };
 
 /// Residual twist: the part of a constraint that is not satisfied yet, and its size.
-struct missing_twist {
+struct residual_twist {
   small_twist e;
   pose_error left;
 
-  explicit missing_twist(const twist_constraint& wanted) {
+  explicit residual_twist(const twist_constraint& wanted) {
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
       e[i] = std::max(wanted.lower[i], std::min(wanted.upper[i], 0.0));
     }
@@ -105,7 +106,7 @@ template <int Room>
 template <int Room>
 void set_equations(goal_equations<Room>& x, const tip_goal& goal) {
   const twist_constraint wanted = goal.constraint(x.at.tip);
-  const missing_twist missing(wanted);
+  const residual_twist missing(wanted);
   x.e = missing.e;
   x.left = missing.left;
   const small_matrix<6, Room> jacobian = x.at.jacobian;

@@ -248,15 +248,15 @@ enum class slerp_arc {
 /// True if two rotations, or those of two poses, are half a turn apart within a tolerance in
 /// radians, so that neither arc between them is the shorter.
 template <class A, class B>
-[[nodiscard]] auto is_half_turn_apart(const quaternion<A>& a, const quaternion<B>& b,
-                                      double tolerance = 1e-9) {
+[[nodiscard]] auto differs_by_half_turn(const quaternion<A>& a, const quaternion<B>& b,
+                                        double tolerance = 1e-9) {
   using std::abs;
   return 2 * abs(innermost(dot(a, b))) <= tolerance;
 }
 
 /// SLERP, spherical linear interpolation from a to b, both of unit norm: a (a* b)^τ (N9), along the
 /// shorter arc by default. If a and b are exactly half a turn apart both arcs have the same length
-/// and b is taken as it is, see `is_half_turn_apart`.
+/// and b is taken as it is, see `differs_by_half_turn`.
 ///
 /// \throws invalid_input if a or b is zero
 /// \return `quaternion<T>`

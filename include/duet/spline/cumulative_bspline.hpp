@@ -55,8 +55,8 @@ public:
     increments_.reserve(controls_.size());
     increments_.push_back(vector3<T>::Zero());
     for (std::size_t i = 1; i < controls_.size(); ++i) {
-      increments_.push_back(detail::log_vector(detail::turn_between(controls_[i - 1], controls_[i]),
-                                               "cumulative_bspline"));
+      increments_.push_back(detail::log_vector(
+          detail::relative_rotation(controls_[i - 1], controls_[i]), "cumulative_bspline"));
     }
   }
 

@@ -18,7 +18,7 @@
 namespace duet {
 namespace detail {
 
-enum class end_kind {
+enum class end_condition_kind {
   natural,
   velocity,
   acceleration,
@@ -56,31 +56,32 @@ template <class T>
 struct curve_ends {
   using rates = std::array<vector3<T>, 2>; ///< values at the start and at the end
 
-  detail::end_kind kind;        ///< kind of end conditions
-  rates velocity, acceleration; ///< halved, in spatial axes; zero if not given
+  detail::end_condition_kind kind; ///< kind of end conditions
+  rates velocity, acceleration;    ///< halved, in spatial axes; zero if not given
 
-  explicit curve_ends(detail::end_kind k) : kind(k) {
+  explicit curve_ends(detail::end_condition_kind k) : kind(k) {
     velocity.fill(vector3<T>::Constant(T(real_type_t<T>(0))));
     acceleration = velocity;
   }
-  curve_ends(const natural&) : curve_ends(detail::end_kind::natural) {}
+  curve_ends(const natural&) : curve_ends(detail::end_condition_kind::natural) {}
   template <class V>
-  curve_ends(const clamped<V>& ends) : curve_ends(detail::end_kind::velocity) {
+  curve_ends(const clamped<V>& ends) : curve_ends(detail::end_condition_kind::velocity) {
     detail::check_end_rates("clamped", ends.start, ends.end);
     velocity = {detail::half_rate<T>(ends.start), detail::half_rate<T>(ends.end)};
   }
   template <class V>
-  curve_ends(const end_acceleration<V>& ends) : curve_ends(detail::end_kind::acceleration) {
+  curve_ends(const end_acceleration<V>& ends)
+      : curve_ends(detail::end_condition_kind::acceleration) {
     detail::check_end_rates("end_acceleration", ends.start, ends.end);
     acceleration = {detail::half_rate<T>(ends.start), detail::half_rate<T>(ends.end)};
   }
   template <class V>
   curve_ends(const fully_clamped<V>& ends) : curve_ends(ends.velocity) {
-    kind = detail::end_kind::velocity_and_acceleration;
+    kind = detail::end_condition_kind::velocity_and_acceleration;
     acceleration = curve_ends(ends.acceleration).acceleration;
   }
-  curve_ends(const not_a_knot&) : curve_ends(detail::end_kind::not_a_knot) {}
-  curve_ends(const periodic&) : curve_ends(detail::end_kind::periodic) {}
+  curve_ends(const not_a_knot&) : curve_ends(detail::end_condition_kind::not_a_knot) {}
+  curve_ends(const periodic&) : curve_ends(detail::end_condition_kind::periodic) {}
 
   /// Rejects all other types.
   template <class Other>

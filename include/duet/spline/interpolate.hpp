@@ -85,7 +85,7 @@ closed(std::vector<quaternion<T>> q) {
   using std::sqrt;
   const bool is_opposite = innermost(dot(q.front(), q.back())) < 0;
   const quaternion<T> again = is_opposite ? -q.front() : q.front();
-  const vector3<T> half = turn_vector(quaternion<T>(conj(again) * q.back()));
+  const vector3<T> half = rotation_vector_between(quaternion<T>(conj(again) * q.back()));
   const auto tolerance = sqrt(std::numeric_limits<real_type_t<T>>::epsilon());
   const auto check = [&](const auto& x, const char* unit) {
     using R = real_type_t<T>;
@@ -144,20 +144,20 @@ template <CurveType Spline, class T>
     using R = real_type_t<T>;
     using equations = equations_of_t<Spline, T>;
     static_assert(CurveEquations<equations>);
-    if (Spline::order < 6 && ends.kind == end_kind::velocity_and_acceleration) {
+    if (Spline::order < 6 && ends.kind == end_condition_kind::velocity_and_acceleration) {
       raise(invalid_input(
           "duet: interpolate: a cubic's ends take velocities or accelerations, not both"));
     }
-    check_rows("interpolate", parameters, q.size(), equations::least_rows(ends.kind));
+    check_rows("interpolate", parameters, q.size(), equations::min_samples(ends.kind));
     q = align_quaternion_signs(std::move(q));
-    if (ends.kind == end_kind::periodic) {
+    if (ends.kind == end_condition_kind::periodic) {
       q = closed(std::move(q));
     }
     const equations all(parameters, q, ends);
     const auto curve = [&](auto& newton, const auto& solution) {
       if (report != nullptr) {
         *report = {newton.iterations(), 2 * double(newton.residual()),
-                   double(all.largest_turn().first)};
+                   double(all.max_rotation().first)};
       }
       return all.curve(parameters, std::move(q), solution);
     };

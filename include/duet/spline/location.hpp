@@ -90,7 +90,7 @@ public:
 
   /// Returns u, or the end of the domain if u is beyond it by round-off only, see `outside`.
   [[nodiscard]] R rounded_into_domain(const R& u) const {
-    return detail::rounded_into(u, breaks_.front(), breaks_.back());
+    return detail::clamp_rounding(u, breaks_.front(), breaks_.back());
   }
 
   /// Index of the span that holds u. Spans are half-open, the last one closed. Beyond an end by
@@ -99,7 +99,7 @@ public:
   /// \throws invalid_input outside the domain
   [[nodiscard]] DUET_ALWAYS_INLINE std::size_t find_span(const R& u) const {
     if (!contains(u)) [[unlikely]] {
-      return span_beside(u);
+      return adjacent_span(u);
     }
     // If knots are about uniform the guess is right; otherwise a binary search finds the span.
     const std::size_t guess = guessed_span(u);
@@ -128,7 +128,7 @@ private:
     }
     return find_span(u);
   }
-  [[nodiscard]] DUET_COLD std::size_t span_beside(const R& u) const {
+  [[nodiscard]] DUET_COLD std::size_t adjacent_span(const R& u) const {
     if (contains(rounded_into_domain(u))) {
       return u < front() ? 0 : span_count() - 1;
     }

@@ -65,7 +65,7 @@ void check_rows(const char* caller, const std::vector<R>& parameters, std::size_
 /// Relative rotation a* b with all digits of a small rotation: a* a has no vector part, and
 /// subtracting it first is exact.
 template <class T>
-[[nodiscard]] quaternion<T> turn_between(const quaternion<T>& a, const quaternion<T>& b) {
+[[nodiscard]] quaternion<T> relative_rotation(const quaternion<T>& a, const quaternion<T>& b) {
   const quaternion<T> difference = conj(a) * (b - a);
   return {dot(a, b), difference.x(), difference.y(), difference.z()};
 }
@@ -94,11 +94,11 @@ template <class T>
 /// Logarithm and exponential as elsewhere, but compiled once: in interpolation the cost of calls
 /// does not matter.
 template <class T>
-[[nodiscard]] DUET_OUT_OF_LINE vector3<T> turn_vector(const quaternion<T>& q) {
+[[nodiscard]] DUET_OUT_OF_LINE vector3<T> rotation_vector_between(const quaternion<T>& q) {
   return log_vector(q, "interpolate");
 }
 template <class T>
-[[nodiscard]] DUET_OUT_OF_LINE quaternion<T> turn_by(const vector3<T>& v) {
+[[nodiscard]] DUET_OUT_OF_LINE quaternion<T> apply_rotation(const vector3<T>& v) {
   return duet::exp(v);
 }
 
@@ -135,7 +135,7 @@ template <class T>
 [[nodiscard]] std::vector<quaternion<T>> align_quaternion_signs(std::vector<quaternion<T>> q) {
   q = normalized_quaternions(std::move(q));
   for (std::size_t i = 1; i < q.size(); ++i) {
-    if (is_half_turn_apart(q[i - 1], q[i])) {
+    if (differs_by_half_turn(q[i - 1], q[i])) {
       detail::raise(
           invalid_sample(i, "half a turn from the row before: either way round is as short"));
     }

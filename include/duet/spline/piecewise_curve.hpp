@@ -112,7 +112,7 @@ private:
     std::size_t span = 0;
     bool is_at_rest = false;
     if (!spans.contains(value)) [[unlikely]] {
-      const place there = place_beside(value);
+      const place there = clamp_to_domain(value);
       span = there.span;
       is_at_rest = there.is_at_rest;
       u = is_at_rest ? P(there.u) : P(u + (there.u - value));
@@ -140,7 +140,7 @@ private:
       const auto here = static_cast<R>(value[k]);
       std::size_t& i = span[std::size_t(k)];
       if (!spans.contains(here)) [[unlikely]] {
-        i = place_beside(here).span;
+        i = clamp_to_domain(here).span;
         is_inside = false;
       } else if constexpr (std::is_same_v<Hint, span_hint>) {
         i = spans.find_span(here, hint);
@@ -156,7 +156,7 @@ private:
     for (int k = 0; k < reals::lanes; ++k) {
       const auto here = static_cast<R>(value[k]);
       if (!spans.contains(here)) {
-        const place at = place_beside(here);
+        const place at = clamp_to_domain(here);
         is_at_rest.set(k, at.is_at_rest);
         there.set(k, at.u);
         rounding.set(k, at.is_at_rest ? R(0) : R(at.u - here));
@@ -181,7 +181,7 @@ private:
     bool is_at_rest;
   };
   /// \throws invalid_input if the curve is not defined there
-  [[nodiscard]] DUET_COLD place place_beside(const R& u) const {
+  [[nodiscard]] DUET_COLD place clamp_to_domain(const R& u) const {
     const auto& spans = curve().spans();
     const bool is_before = u < spans.front();
     const std::size_t span = is_before ? 0 : spans.breaks().size() - 2;

@@ -80,7 +80,7 @@ public:
     pieces_.reserve(parameters.size() - 1);
     for (std::size_t i = 0; i + 1 < parameters.size(); ++i) {
       const segment s(parameters[i + 1] - parameters[i],
-                      detail::log_vector(detail::turn_between(elements_[i], elements_[i + 1]),
+                      detail::log_vector(detail::relative_rotation(elements_[i], elements_[i + 1]),
                                          "rotation_vector_spline"));
       pieces_.push_back(s.polynomial(half_rates[i], half_rates[i + 1]));
     }
@@ -98,7 +98,7 @@ public:
   from_pieces(const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
               std::vector<std::array<vector3<T>, std::size_t(Order)>> pieces) {
     checked(parameters, elements, pieces, "pieces", 1);
-    rotation_vector_spline result(made_of_pieces{}, parameters,
+    rotation_vector_spline result(from_segments_tag{}, parameters,
                                   normalized_quaternions(std::move(elements)), std::move(pieces));
     for (std::size_t i = 0; i < result.pieces_.size(); ++i) {
       const auto x =
@@ -127,8 +127,8 @@ private:
   template <class, int, class>
   friend class detail::rotation_vector_equations;
 
-  struct made_of_pieces {};
-  rotation_vector_spline(made_of_pieces, const std::vector<real_type>& parameters,
+  struct from_segments_tag {};
+  rotation_vector_spline(from_segments_tag, const std::vector<real_type>& parameters,
                          std::vector<quaternion<T>> elements, std::vector<polynomial> pieces)
       : spans_(spans_over(parameters)), elements_(std::move(elements)), pieces_(std::move(pieces)) {
   }

@@ -10,7 +10,7 @@ if(NOT output_of_header_only MATCHES "sine.*reached.*slide.*traced.*near" OR NOT
   message(FATAL_ERROR "${output_of_header_only}\n\nlinked:\n${output_of_linked}")
 endif()
 
-foreach(name IN ITEMS "curve_through<" "fit_result<[^\n]*> duet::fit<" "::path_follower<8>::plan\\("
+foreach(name IN ITEMS "curve_through<" "fit_result<[^\n]*> duet::fit<" "::path_planner<8>::plan\\("
         "::inverse_kinematics_search<8,[^\n]*>::operator\\(\\)" "::chain_model<[^\n]*>::set\\(" "::screw_path<"
         "::read_urdf_contents<" "::compared<" "::closed_chain_mechanism::closed\\(" "duet::find_assembly_configurations\\(" "duet::mobility\\(" "::driven_motion::followed\\("
         "duet::trace\\(")

@@ -248,7 +248,7 @@ struct lane_traits<batch<T, W>> {
 template <class T, int W, std::invocable F, std::invocable G>
 [[nodiscard]] DUET_ALWAYS_INLINE auto select(const lane_mask<T, W>& condition, F&& f, G&& g) {
   using result = std::common_type_t<std::invoke_result_t<F>, std::invoke_result_t<G>>;
-  detail::require_own_numbers<result>();
+  detail::require_owning_result<result>();
   if (!any(condition)) {
     return static_cast<result>(g());
   }

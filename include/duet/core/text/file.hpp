@@ -116,31 +116,31 @@ private:
 /// Name of a draft, for signal handlers: these can neither lock nor allocate, and may run while
 /// another thread finishes with the draft. Only the thread that has changed `owner` to `busy` uses
 /// `name`.
-struct listed_draft {
+struct registered_temporary {
   static constexpr unsigned long nobody = 0, busy = 1;
   static_assert(std::atomic<unsigned long>::is_always_lock_free);
 
   std::atomic<unsigned long> owner{nobody};
   std::array<char, 4096> name{}; ///< the maximum length of a path on Linux
 };
-inline constinit std::array<listed_draft, 64> listed_drafts{};
-inline std::atomic<unsigned long> last_draft{listed_draft::busy};
+inline constinit std::array<registered_temporary, 64> listed_drafts{};
+inline std::atomic<unsigned long> last_draft{registered_temporary::busy};
 
 } // namespace detail
 
 /// Removes drafts: for the handler of a signal that ends the program. Signal-safe on POSIX.
 inline void remove_drafts() noexcept {
-  using detail::listed_draft;
-  for (listed_draft& draft : detail::listed_drafts) {
+  using detail::registered_temporary;
+  for (registered_temporary& draft : detail::listed_drafts) {
     unsigned long owner = draft.owner.load();
-    if (owner > listed_draft::busy &&
-        draft.owner.compare_exchange_strong(owner, listed_draft::busy)) {
+    if (owner > registered_temporary::busy &&
+        draft.owner.compare_exchange_strong(owner, registered_temporary::busy)) {
 #if __has_include(<unistd.h>)
       ::unlink(draft.name.data()); // POSIX does not guarantee it for std::remove
 #else
       std::remove(draft.name.data());
 #endif
-      draft.owner.store(listed_draft::nobody);
+      draft.owner.store(registered_temporary::nobody);
     }
   }
 }
@@ -231,12 +231,12 @@ private:
   }
 
   void enlist() {
-    using detail::listed_draft;
+    using detail::registered_temporary;
     id_ = ++detail::last_draft;
-    for (listed_draft& draft : detail::listed_drafts) {
-      unsigned long owner = listed_draft::nobody;
+    for (registered_temporary& draft : detail::listed_drafts) {
+      unsigned long owner = registered_temporary::nobody;
       if (name_.size() < draft.name.size() &&
-          draft.owner.compare_exchange_strong(owner, listed_draft::busy)) {
+          draft.owner.compare_exchange_strong(owner, registered_temporary::busy)) {
         *std::copy(name_.begin(), name_.end(), draft.name.begin()) = '\0';
         draft.owner.store(id_);
         return;
@@ -244,9 +244,9 @@ private:
     }
   }
   void strike() const {
-    for (detail::listed_draft& draft : detail::listed_drafts) {
+    for (detail::registered_temporary& draft : detail::listed_drafts) {
       unsigned long mine = id_;
-      if (draft.owner.compare_exchange_strong(mine, detail::listed_draft::nobody)) {
+      if (draft.owner.compare_exchange_strong(mine, detail::registered_temporary::nobody)) {
         return;
       }
     }

@@ -16,7 +16,7 @@ namespace detail {
 
 /// Number of bytes of the UTF-8 character that a text begins with; 0 if there is none, or if it
 /// controls a terminal: a control character, a line separator, a change of the writing direction.
-[[nodiscard]] inline std::size_t shown_bytes(std::string_view text) {
+[[nodiscard]] inline std::size_t escaped_bytes(std::string_view text) {
   const auto byte = [text](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
   };
@@ -57,7 +57,7 @@ namespace detail {
   constexpr std::string_view digits = "0123456789abcdef";
   std::string result;
   while (!text.empty()) {
-    std::size_t count = detail::shown_bytes(text);
+    std::size_t count = detail::escaped_bytes(text);
     if (count > 0) {
       result += text.substr(0, count);
     } else {

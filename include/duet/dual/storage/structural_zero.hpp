@@ -63,7 +63,7 @@ template <class T>
       is_structural_zero(partial), [] { return T(0); },
       [&] {
         if constexpr (Infinitesimal<T>) {
-          return T::surviving_product(slope, partial);
+          return T::zero_preserving_product(slope, partial);
         } else {
           return T(slope * partial);
         }
@@ -88,7 +88,7 @@ template <class T, class P>
 
 /// slope · x of two numbers with surviving zeros.
 template <class T>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr T surviving_product(const T& slope, const T& x) {
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr T zero_preserving_product(const T& slope, const T& x) {
   if constexpr (std::floating_point<T> || lane_traits<T>::is_batch) {
     return masked_product(slope, x);
   } else {
@@ -113,7 +113,7 @@ inline constexpr int in_place_limit = 32;
 
 /// slope · p
 template <class T>
-struct chain_of_one {
+struct unary_chain {
   static constexpr bool masks_numbers = true;
   static constexpr int masked_packets = mask_limit;
   T slope;
@@ -127,7 +127,7 @@ struct chain_of_one {
 
 /// slope_a · p + slope_b · q
 template <class T>
-struct chain_of_two {
+struct binary_chain {
   static constexpr bool masks_numbers = true;
   static constexpr int masked_packets = mask_limit;
   T slope_a, slope_b;
@@ -145,7 +145,7 @@ struct chain_of_two {
 /// (p − ratio · q) · inverse, where for numbers ratio = value · inverse and so is not finite if
 /// `inverse` is not.
 template <class T>
-struct chain_of_quotient {
+struct quotient_chain {
   // Two masks cost more than a branch.
   static constexpr bool masks_numbers = false;
   static constexpr int masked_packets = branch_limit;
@@ -207,7 +207,7 @@ combined(const Kernel<T>& kernel, const Mask& is_finite, const Row& row, const R
 /// slope · row
 template <class T, class Row>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Row chain(const T& slope, const Row& row) {
-  const chain_of_one<T> kernel{slope};
+  const unary_chain<T> kernel{slope};
   return combined(kernel, kernel.is_finite(), row);
 }
 
@@ -215,7 +215,7 @@ template <class T, class Row>
 template <class T, class Row>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr Row chain(const T& slope_a, const Row& a,
                                                      const T& slope_b, const Row& b) {
-  const chain_of_two<T> kernel{slope_a, slope_b};
+  const binary_chain<T> kernel{slope_a, slope_b};
   return combined(kernel, kernel.is_finite(), a, b);
 }
 
@@ -230,7 +230,8 @@ DUET_ALWAYS_INLINE constexpr auto with_surviving_products([[maybe_unused]] const
       return sum([](const T& a, const T& b) DUET_INLINE_LAMBDA { return T(a * b); });
     }
   }
-  return sum([](const T& a, const T& b) DUET_INLINE_LAMBDA { return surviving_product(a, b); });
+  return sum([](const T& a, const T& b)
+                 DUET_INLINE_LAMBDA { return zero_preserving_product(a, b); });
 }
 
 } // namespace duet::detail

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/loops/curve.hpp>
-#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/rank_revealing_svd.hpp>
 #include <duet/mechanism/loops/second_derivatives.hpp>
+#include <duet/mechanism/loops/solution_curve.hpp>
 
 #include <Eigen/Core>
 
@@ -21,7 +21,7 @@
 namespace duet::detail {
 
 /// A branch point of a curve.
-struct branching {
+struct branch_point_data {
   Eigen::VectorXd x; ///< coordinates as in `curve_point`
   /// Unit tangents: straight on, those of other branches in pairs of opposites, back.
   std::vector<Eigen::VectorXd> ways;
@@ -30,13 +30,13 @@ struct branching {
 
 class branch_finder {
 public:
-  explicit branch_finder(const loop_curve& curve) : curve_(curve) {}
+  explicit branch_finder(const solution_curve& curve) : curve_(curve) {}
 
   /// The branch point ahead of a point of the curve, to round-off; empty if there is none, or if
   /// branches touch there, so that second derivatives do not separate them.
   ///
   /// \param step  half of the last rejected step; a branch point is near if it is small
-  [[nodiscard]] std::optional<branching> ahead(const curve_point& from, double step) const {
+  [[nodiscard]] std::optional<branch_point_data> ahead(const curve_point& from, double step) const {
     const auto x = step < 1e-3 ? singular_point(from, 4 * step) : std::nullopt;
     if (!x || from.tangent.dot(*x - from.x) <= 0) {
       return std::nullopt;
@@ -57,7 +57,7 @@ public:
       }
     }
     ways.push_back(back);
-    branching result{*x, {}, {}};
+    branch_point_data result{*x, {}, {}};
     for (const Eigen::VectorXd& way : ways) {
       if (const auto point = beside(*x, way)) {
         result.ways.push_back(way);
@@ -83,7 +83,7 @@ private:
                                                               double within) const {
     const Eigen::MatrixXd& u = from.image;
     const Eigen::Index n = from.x.size(), r = u.cols();
-    const ranked_matrix reduced(Eigen::MatrixXd(u.transpose().lazyProduct(from.matrix)));
+    const rank_revealing_svd reduced(Eigen::MatrixXd(u.transpose().lazyProduct(from.matrix)));
     const Eigen::VectorXd& s = reduced.singular_values();
     Eigen::Index lost = 0; // rank that is lost, as far as visible from here
     while (lost < r && s[r - 1 - lost] < 10 * within * s[0]) {
@@ -111,7 +111,7 @@ private:
         j.block(row, column, n, r) = a.transpose();
         j.block(last, column, lost, r) = w0.transpose();
       }
-      const ranked_matrix svd(j);
+      const rank_revealing_svd svd(j);
       if (svd.rank() < all) {
         return std::nullopt; // branches touch
       }
@@ -135,7 +135,7 @@ private:
   /// all w orthogonal to its image. For a kernel of dimension two these are the zeros of a form in
   /// the plane, otherwise they are searched for from random starts.
   [[nodiscard]] std::vector<Eigen::VectorXd> tangents(const Eigen::VectorXd& x) const {
-    const ranked_matrix a(curve_.matrix(x));
+    const rank_revealing_svd a(curve_.matrix(x));
     const Eigen::MatrixXd kernel = a.kernel();
     const std::vector<Eigen::MatrixXd> forms = curve_.forms(x, a.cokernel(), kernel);
     std::vector<Eigen::VectorXd> found;
@@ -183,7 +183,7 @@ private:
       parts.row(Eigen::Index(k)) << (form(0, 0) + form(1, 1)) / 2, (form(0, 0) - form(1, 1)) / 2,
           form(0, 1);
     }
-    const ranked_matrix svd(parts);
+    const rank_revealing_svd svd(parts);
     const Eigen::VectorXd form = svd.right().col(0);
     const double cosine = -form[0] / std::hypot(form[1], form[2]);
     if (!(std::abs(cosine) < 1)) {
@@ -193,7 +193,7 @@ private:
     std::vector<double> result;
     for (const double twice : {middle + apart, middle - apart}) {
       const Eigen::VectorXd rest = parts * Eigen::Vector3d(1, std::cos(twice), std::sin(twice));
-      if (rest.norm() < ranked_matrix::least * svd.singular_values()[0]) {
+      if (rest.norm() < rank_revealing_svd::least * svd.singular_values()[0]) {
         result.push_back(twice / 2);
       }
     }
@@ -212,7 +212,7 @@ private:
     return std::nullopt;
   }
 
-  const loop_curve& curve_;
+  const solution_curve& curve_;
 };
 
 } // namespace duet::detail

@@ -9,10 +9,10 @@
 #include <duet/mechanism/closed_tree.hpp>
 #include <duet/mechanism/loop_motion.hpp>
 #include <duet/mechanism/loops/branch_finder.hpp>
-#include <duet/mechanism/loops/closing.hpp>
-#include <duet/mechanism/loops/curve.hpp>
-#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/loop_closure_solver.hpp>
+#include <duet/mechanism/loops/rank_revealing_svd.hpp>
 #include <duet/mechanism/loops/second_derivatives.hpp>
+#include <duet/mechanism/loops/solution_curve.hpp>
 
 #include <Eigen/Core>
 
@@ -53,7 +53,7 @@ driven_motion::driven_motion(closed_chain_mechanism mechanism, const Eigen::Vect
     : mechanism_(std::move(mechanism)), drives_(std::move(drives)),
       dependent_(detail::all_but(mechanism_.size(), drives_)), options_(options),
       start_(mechanism_.closed(q0, drives_)), solve_(solver(start_)) {
-  const detail::ranked_matrix all = detail::linearised(mechanism_, start_);
+  const detail::rank_revealing_svd all = detail::linearised(mechanism_, start_);
   const Eigen::Index free = mechanism_.size() - all.rank();
   detail::require(free == Eigen::Index(drives_.size()), "duet: driven_motion: ", drives_.size(),
                   " drives, but the loops leave ", free, " independent rates");
@@ -70,7 +70,7 @@ driven_motion::warm_started_at(const Eigen::VectorXd& u) const {
 
 DUET_COMPILED_FUNCTION Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
   const Eigen::MatrixXd j = detail::columns(detail::unit_jacobian(mechanism_, q), dependent_);
-  const detail::ranked_matrix svd(j);
+  const detail::rank_revealing_svd svd(j);
   detail::require(svd.rank() == j.cols(), "duet: driven_motion: ", driven(),
                   " does not determine the rates of the other coordinates: a dead point");
   Eigen::MatrixXd result(j.cols(), j.rows());
@@ -138,7 +138,7 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
   if (length == 0) {
     return start_;
   }
-  const detail::loop_curve curve(mechanism_, start_, drives_, way);
+  const detail::solution_curve curve(mechanism_, start_, drives_, way);
   constexpr double least = 1e-7; // minimum step
   auto here = *curve.start(1);   // its tangent is defined: drives determine all rates
   const auto require_step = [&](double step) {
@@ -174,7 +174,7 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
       require_step(step);
       continue;
     }
-    detail::loop_curve::stretch to{*next, step};
+    detail::solution_curve::curve_interval to{*next, step};
     if (next->s_rate() <= 0) {
       to = curve.zero(here, *next, step, [](const auto& at) { return at.s_rate(); });
     }

@@ -4,7 +4,7 @@
 #include <duet/core/random_source.hpp>
 #include <duet/dual/taylor.hpp>
 #include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/rank_revealing_svd.hpp>
 
 #include <Eigen/Core>
 
@@ -98,7 +98,7 @@ common_zero(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd v, double
     if (f.norm() < rounding) {
       return v;
     }
-    const ranked_matrix svd(j);
+    const rank_revealing_svd svd(j);
     v -= svd.solve(f, svd.rank());
   }
   return std::nullopt;

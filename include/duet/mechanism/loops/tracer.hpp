@@ -4,12 +4,12 @@
 #include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/coordinate_turns.hpp>
 #include <duet/mechanism/loop_motion.hpp>
 #include <duet/mechanism/loop_trace.hpp>
 #include <duet/mechanism/loops/branch_finder.hpp>
-#include <duet/mechanism/loops/curve.hpp>
 #include <duet/mechanism/loops/motion_follower.hpp>
+#include <duet/mechanism/loops/solution_curve.hpp>
+#include <duet/mechanism/periodic_coordinates.hpp>
 
 #include <Eigen/Core>
 
@@ -29,11 +29,12 @@ namespace duet {
 namespace detail {
 
 /// Start of a curve with its rates, to detect that the curve returns.
-class way_back {
+class closure_test {
 public:
-  way_back(const closed_chain_mechanism& of, const loop_curve& curve, const curve_point& start)
-      : units_(of.units()), angles_(coordinate_turns(of).angles), q_(curve.coordinates(start.x)),
-        rates_(curve.rates(start.tangent).cwiseQuotient(units_)) {}
+  closure_test(const closed_chain_mechanism& of, const solution_curve& curve,
+               const curve_point& start)
+      : units_(of.units()), angles_(periodic_coordinates(of).angles),
+        q_(curve.coordinates(start.x)), rates_(curve.rates(start.tangent).cwiseQuotient(units_)) {}
 
   /// True if the start is between both points.
   [[nodiscard]] bool is_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
@@ -84,7 +85,7 @@ private:
   [[nodiscard]] std::vector<Eigen::VectorXd> follow(double direction) {
     std::vector<Eigen::VectorXd> positions;
     curve_point here = *curve_.start(direction);
-    way_back back(of_, curve_, here);
+    closure_test back(of_, curve_, here);
     double done = 0;
     for (double step = options_.largest_step; step > 1e-7 && done < options_.longest;) {
       auto next = curve_.advance(here, step);
@@ -102,7 +103,7 @@ private:
       }
       const Eigen::VectorXd to = curve_.coordinates(next->x);
       if (turns_off) {
-        back = way_back(of_, curve_, *next);
+        back = closure_test(of_, curve_, *next);
       } else if (done > 0 && back.is_between(curve_.coordinates(here.x), to)) {
         result_.is_closed = true;
         return positions;
@@ -164,7 +165,7 @@ private:
 
   const closed_chain_mechanism& of_;
   trace_options options_;
-  loop_curve curve_;
+  solution_curve curve_;
   motion_trace result_;
 };
 

@@ -16,7 +16,7 @@
 namespace duet::detail {
 
 /// Trigonometric polynomial a + b cos θ + c sin θ.
-struct turning_value {
+struct first_harmonic {
   double a = 0, b = 0, c = 0;
 
   [[nodiscard]] double at(double theta) const {
@@ -40,7 +40,7 @@ inline constexpr double one_angle = 3e-7;
 /// \param error  error of a, b and c, if it exceeds round-off
 /// \return false if the function is zero to round-off, or an error decides whether there are zeros
 template <class Visit>
-bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
+bool visit_zeros(const first_harmonic& f, const Visit& visit, double error = 0) {
   constexpr double rounding = 1e-12, nearly = 1e-9;
   const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
@@ -59,7 +59,7 @@ bool visit_zeros(const turning_value& f, const Visit& visit, double error = 0) {
 
 /// System of two equations f(θ) = g(φ).
 struct angle_pairs {
-  std::array<turning_value, 2> f, g;
+  std::array<first_harmonic, 2> f, g;
 
   /// Calls visit(θ, φ, multiplicity) for each solution.
   ///
@@ -83,7 +83,7 @@ struct angle_pairs {
   }
 
 private:
-  using two_values = std::array<turning_value, 2>;
+  using two_values = std::array<first_harmonic, 2>;
 
   [[nodiscard]] static double determinant(const two_values& f) {
     return f[0].b * f[1].c - f[0].c * f[1].b;
@@ -118,12 +118,12 @@ private:
   static bool by_one(const two_values& f, const two_values& g, const Visit& visit) {
     const double at_0 = std::hypot(f[0].b, f[0].c), at_1 = std::hypot(f[1].b, f[1].c);
     const std::size_t larger = at_0 >= at_1 ? 0 : 1, other = 1 - larger;
-    const turning_value &fl = f[larger], &fo = f[other], &gl = g[larger], &go = g[other];
+    const first_harmonic &fl = f[larger], &fo = f[other], &gl = g[larger], &go = g[other];
     const double size = fl.b * fl.b + fl.c * fl.c;
     const double ratio = size > 0 ? (fl.b * fo.b + fl.c * fo.c) / size : 0;
     bool is_determined = true;
-    const turning_value left{go.a - fo.a - ratio * (gl.a - fl.a), go.b - ratio * gl.b,
-                             go.c - ratio * gl.c};
+    const first_harmonic left{go.a - fo.a - ratio * (gl.a - fl.a), go.b - ratio * gl.b,
+                              go.c - ratio * gl.c};
     const bool has_phi = visit_zeros(left, [&](double phi, int m) {
       const bool has_theta = visit_zeros({fl.a - gl.at(phi), fl.b, fl.c},
                                          [&](double theta, int n) { visit(theta, phi, m * n); });

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/loop_solution_set.hpp>
 
 #include <array>
 #include <cstddef>
@@ -34,28 +34,28 @@ namespace detail {
 /// All solutions of a loop, by the method that suits its geometry.
 class branch_search {
 public:
-  explicit branch_search(const joint_loop& loop);
+  explicit branch_search(const loop_equation& loop);
 
-  [[nodiscard]] const loop_answer& answer() const { return answer_; }
+  [[nodiscard]] const loop_solution_set& answer() const { return answer_; }
   [[nodiscard]] solution_method method() const { return method_; }
 
 private:
   branch_search() = default;
 
-  void search(const joint_loop& loop);
-  void search_beside(const joint_loop& loop);
+  void search(const loop_equation& loop);
+  void search_beside(const loop_equation& loop);
   /// Solves the loop that begins with its joint number `first` as a loop of the type `Form`.
   ///
   /// \return false if no solution is found and coordinates are undetermined
   template <class Form, class... Rest>
-  bool solve(solution_method method, int first, const joint_loop& loop, const Rest&... rest);
+  bool solve(solution_method method, int first, const loop_equation& loop, const Rest&... rest);
 
-  loop_answer answer_;
+  loop_solution_set answer_;
   solution_method method_ = solution_method::elimination;
 };
 
 /// All solutions of a loop by Raghavan–Roth elimination, for arms without special geometry.
-[[nodiscard]] DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop);
+[[nodiscard]] DUET_COMPILED_FUNCTION loop_solution_set eliminated(const loop_equation& loop);
 
 } // namespace detail
 } // namespace duet

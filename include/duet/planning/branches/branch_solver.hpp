@@ -6,10 +6,10 @@
 #include <duet/planning/branches/close_loop.hpp>
 #include <duet/planning/branches/closed_forms.hpp>
 #include <duet/planning/branches/general_loop.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_answer.hpp>
-#include <duet/planning/branches/parallel_slides.hpp>
-#include <duet/planning/branches/turns.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/loop_solution_set.hpp>
+#include <duet/planning/branches/parallel_prismatic.hpp>
+#include <duet/planning/branches/subproblems.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
@@ -48,12 +48,12 @@ namespace duet::detail {
 }
 
 template <class Form, class... Rest>
-bool branch_search::solve(solution_method method, int first, const joint_loop& loop,
+bool branch_search::solve(solution_method method, int first, const loop_equation& loop,
                           const Rest&... rest) {
-  constexpr int most = std::same_as<Form, sliding_loop> ? 2 : 8;
+  constexpr int most = std::same_as<Form, three_prismatic_loop> ? 2 : 8;
   constexpr double rounding = 1e-13, beside = .01;
   const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
-    const loop_gap gap(loop, theta);
+    const closure_error gap(loop, theta);
     if (gap.twist.norm() > rounding * gap.size) { // near a singularity
       six_coordinates refined = theta;
       if (close_loop(loop, refined) && (refined - theta).norm() < beside * gap.size) {
@@ -66,7 +66,7 @@ bool branch_search::solve(solution_method method, int first, const joint_loop& l
     for (int k = 0; k < 6; ++k) {
       const auto i = std::size_t((k + first) % 6);
       found.theta[Eigen::Index(i)] =
-          loop.joints[std::size_t(k)].turns ? turned_back(theta[k]) : theta[k];
+          loop.joints[std::size_t(k)].turns ? wrap_angle(theta[k]) : theta[k];
     }
     answer_.solutions.push_back(found);
     answer_.complex_solutions -= multiplicity;
@@ -81,11 +81,11 @@ bool branch_search::solve(solution_method method, int first, const joint_loop& l
   return true;
 }
 
-DUET_COMPILED_FUNCTION loop_answer eliminated(const joint_loop& loop) {
+DUET_COMPILED_FUNCTION loop_solution_set eliminated(const loop_equation& loop) {
   return solve_general_loop<elimination>(loop);
 }
 
-DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
+DUET_COMPILED_FUNCTION branch_search::branch_search(const loop_equation& loop) {
   search(loop);
   const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop),
              is_general = method_ == solution_method::elimination ||
@@ -100,7 +100,7 @@ DUET_COMPILED_FUNCTION branch_search::branch_search(const joint_loop& loop) {
 
 /// Searches for solutions with slightly displaced goals: round-off may have made a double solution
 /// complex, and with a nearby goal it is complex or two real ones.
-inline void branch_search::search_beside(const joint_loop& loop) {
+inline void branch_search::search_beside(const loop_equation& loop) {
   constexpr int times = 6;
   constexpr double by = 1e-7;
   for (int k = 0; k < times && answer_.solutions.empty(); ++k) {
@@ -116,22 +116,23 @@ inline void branch_search::search_beside(const joint_loop& loop) {
   }
 }
 
-inline void branch_search::search(const joint_loop& loop) {
+inline void branch_search::search(const loop_equation& loop) {
   const auto& joints = loop.joints;
   const auto sliding =
       std::count_if(joints.begin(), joints.end(), [](const loop_joint& j) { return !j.turns; });
   if (sliding == 3) {
-    solve<sliding_loop>(solution_method::three_prismatic, 0, loop);
+    solve<three_prismatic_loop>(solution_method::three_prismatic, 0, loop);
     return;
   }
   if (sliding == 2) {
-    const auto in_place = parallel_slides_of(loop);
-    answer_ = in_place ? solve_parallel_slides(*in_place) : solve_general_loop<two_prismatic>(loop);
+    const auto in_place = parallel_prismatic_of(loop);
+    answer_ =
+        in_place ? solve_parallel_prismatic(*in_place) : solve_general_loop<two_prismatic>(loop);
     method_ = solution_method::two_prismatic;
     return;
   }
   const auto from = [&](int first) {
-    joint_loop result = loop;
+    loop_equation result = loop;
     for (int k = 0; k < first; ++k) {
       result = result.shifted();
     }
@@ -141,7 +142,7 @@ inline void branch_search::search(const joint_loop& loop) {
     const loop_joint &a = joints[i], &b = joints[i + 1], &c = joints[i + 2];
     const int first = int(i), after = (first + 3) % 6;
     if (const auto centre = common_point(a, b, c)) {
-      const vector3d in_loop = after == 0 ? *centre : inverse_place(loop.closing).point(*centre);
+      const vector3d in_loop = after == 0 ? *centre : inverse_pose(loop.closing).point(*centre);
       if (solve<spherical_loop>(solution_method::spherical_wrist, after, from(after), in_loop)) {
         return;
       }

@@ -3,7 +3,7 @@
 
 #include <duet/core/compiled.hpp>
 #include <duet/mechanism/chain_walk.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
@@ -17,9 +17,9 @@ namespace duet::detail {
 
 /// Joint axes of a chain in the zero configuration, in a frame at their centre and in units of
 /// their size.
-struct chain_axes {
+struct chain_screws {
   std::array<loop_joint, 6> joints{};
-  tip_place tip{}; ///< pose in the zero configuration, in the frame and units of the base
+  tip_pose tip{}; ///< pose in the zero configuration, in the frame and units of the base
   three_vector<double> middle{};
   double size = 1;
 
@@ -28,7 +28,7 @@ struct chain_axes {
   /// \param skip  index of a joint that is left out, fixed at its coordinate in
   /// θ; negative: no joint
   template <class C, class X>
-  chain_axes(const C& chain, const X& theta, int skip) {
+  chain_screws(const C& chain, const X& theta, int skip) {
     tip = attached(walk<true, double>(
                        chain, theta, chain.size(),
                        [&](Eigen::Index i, const auto& step, const auto& axis, const auto& point) {
@@ -38,14 +38,14 @@ struct chain_axes {
                          }
                        }),
                    chain.tip().offset);
-    choose_units();
+    normalise();
   }
 
   /// Loop equation with the tip at a goal.
   ///
   /// \param goal  tip pose in the base frame
-  [[nodiscard]] joint_loop loop_to(const tip_place& goal) const {
-    tip_place closing = goal * inverse_place(tip);
+  [[nodiscard]] loop_equation loop_to(const tip_pose& goal) const {
+    tip_pose closing = goal * inverse_pose(tip);
     closing.translation = 1 / size * (closing.point(middle) - middle);
     return {joints, closing};
   }
@@ -53,7 +53,7 @@ struct chain_axes {
 private:
   /// Finds the centre and the size of the axes, and scales them. The centre is the point with the
   /// smallest sum of squared distances from the axes.
-  void choose_units();
+  void normalise();
 };
 
 } // namespace duet::detail

@@ -18,7 +18,7 @@
 namespace duet::detail {
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION void chain_axes::choose_units() {
+DUET_COMPILED_FUNCTION void chain_screws::normalise() {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const loop_joint& j : joints) {

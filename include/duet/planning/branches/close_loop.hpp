@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 #include <duet/planning/branches/orthonormalise.hpp>
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 namespace duet::detail {
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta,
+DUET_COMPILED_FUNCTION bool close_loop(const loop_equation& loop, six_coordinates& theta,
                                        double size_of_angles) {
   constexpr double rounding = 2e-15, good = 1e-13, hopeful = 1e-6, singular = 1e-7;
   double before = HUGE_VAL;
   six_coordinates last = six_coordinates::Zero(), measured = theta;
   for (int k = 0; k < 60; ++k) {
-    const loop_gap gap(loop, theta);
+    const closure_error gap(loop, theta);
     const double to_angle = gap.size / std::min(gap.size, size_of_angles);
     const double left = std::sqrt(gap.twist.head<3>().squaredNorm() +
                                   to_angle * to_angle * gap.twist.tail<3>().squaredNorm()) /

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <duet/planning/branches/angle_pairs.hpp>
+#include <duet/planning/branches/connecting_rotation.hpp>
 #include <duet/planning/branches/folded_elbow.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/middle_turn.hpp>
-#include <duet/planning/branches/turns.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/subproblems.hpp>
 #include <duet/planning/planning_model.hpp>
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ namespace duet::detail {
 /// Closed-form solutions of a loop whose joints 4 to 6 have axes that meet.
 class spherical_loop {
 public:
-  explicit spherical_loop(const joint_loop& loop, const vector3d& centre)
+  explicit spherical_loop(const loop_equation& loop, const vector3d& centre)
       : loop_(loop), centre_(centre) {}
 
   /// Calls visit(θ, multiplicity) for each solution: exp(θ₁S₁) exp(θ₂S₂) exp(θ₃S₃) moves the centre
@@ -61,15 +61,15 @@ public:
     }
     // In a frame with its origin on the second axis: the points e₃ c and e₁⁻¹ goal have the same
     // component along that axis and the same squared norm.
-    const turned_vector from(third.axis, centre_ - third.point, third.point - second.point);
-    const turned_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
-    const auto height = [&](const turned_vector& x) { return part_along(second.axis, x); };
-    const auto square = [&](const turned_vector& x) {
+    const rotating_vector from(third.axis, centre_ - third.point, third.point - second.point);
+    const rotating_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
+    const auto height = [&](const rotating_vector& x) { return part_along(second.axis, x); };
+    const auto square = [&](const rotating_vector& x) {
       const double still = dot(x.across, x.across) + dot(x.along, x.along);
-      return turning_value{still, 2 * dot(x.along, x.across), 2 * dot(x.along, x.beside)};
+      return first_harmonic{still, 2 * dot(x.along, x.across), 2 * dot(x.along, x.beside)};
     };
     const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
-    middle_turn middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
+    connecting_rotation middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
     const bool has_pairs = pairs([&](double near1, double near3, int m) {
       middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
         six_coordinates theta;
@@ -89,7 +89,7 @@ private:
   bool wrist(six_coordinates& theta, int multiplicity, double error, const Visit& visit) const {
     const quaternion<double> turn =
         conj(product_of_joints(loop_, theta, 0, 3).rotation) * loop_.closing.rotation;
-    const double nearest = visit_three_turns(
+    const double nearest = for_each_three_axis_decomposition(
         loop_.joints[3], loop_.joints[4], loop_.joints[5], turn,
         [&](double alpha, double beta, double gamma, int m) {
           theta.tail<3>() << alpha, beta, gamma;
@@ -104,7 +104,7 @@ private:
   /// Error of the first three coordinates by round-off in the position of the centre.
   [[nodiscard]] double error_of(const six_coordinates& theta) const {
     constexpr double rounding = 3e-15;
-    const six_columns all = loop_gap(loop_, theta).jacobian;
+    const six_columns all = closure_error(loop_, theta).jacobian;
     const Eigen::Vector3d goal = loop_.closing.point(centre_);
     Eigen::Matrix3d ways;
     for (int i = 0; i < 3; ++i) {
@@ -113,14 +113,14 @@ private:
     return rounding * ways.inverse().norm();
   }
 
-  const joint_loop& loop_;
+  const loop_equation& loop_;
   vector3d centre_;
 };
 
 /// Closed-form solutions of a loop whose joints 1 to 3 have parallel axes.
 class planar_loop {
 public:
-  explicit planar_loop(const joint_loop& loop) : loop_(loop) {}
+  explicit planar_loop(const loop_equation& loop) : loop_(loop) {}
 
   /// Calls visit(θ, multiplicity) for each solution: exp(θ₅S₅) exp(θ₆S₆) closing⁻¹ and
   /// exp(−θ₄S₄) map the plane perpendicular to the three axes to the same plane, and a motion
@@ -131,14 +131,14 @@ public:
   bool operator()(const Visit& visit) const {
     const auto &fourth = loop_.joints[3], &fifth = loop_.joints[4], &sixth = loop_.joints[5];
     const vector3d n = loop_.joints[0].axis;
-    const tip_place opening = inverse_place(loop_.closing);
+    const tip_pose opening = inverse_pose(loop_.closing);
     const vector3d goal_normal = rotated(opening.rotation, n);
     const double goal_distance = dot(goal_normal, opening.translation);
     // Rotations of a plane about the fifth axis preserve the component of its normal along that
     // axis and its distance from a point on that axis.
-    const turned_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
-    const auto distance = [&](const turned_vector& x, double before, const vector3d& offset) {
-      turning_value result = part_along(offset, x);
+    const rotating_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
+    const auto distance = [&](const rotating_vector& x, double before, const vector3d& offset) {
+      first_harmonic result = part_along(offset, x);
       result.a += before;
       return result;
     };
@@ -147,7 +147,7 @@ public:
          distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
         {part_along(fifth.axis, from),
          distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
-    middle_turn middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
+    connecting_rotation middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
     bool is_determined = true;
     const bool has_pairs = pairs([&](double near4, double near6, int m) {
       middle(near6, near4, m, [&](double theta6, double theta4, double theta5, int multiplicity) {
@@ -168,16 +168,16 @@ public:
 private:
   /// Function of θ₅ for a fifth axis that has become parallel to the first three: 0 where the
   /// distance of the third axis from the first is at the centre of its range.
-  [[nodiscard]] turning_value beyond_reach(const six_coordinates& theta) const {
+  [[nodiscard]] first_harmonic beyond_reach(const six_coordinates& theta) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2],
                &fifth = loop_.joints[4];
     const auto across = [&](const loop_joint& j, const vector3d& x) {
       return x - dot(j.axis, x) * j.axis;
     };
-    const tip_place after = loop_.closing * inverse_place(product_of_joints(loop_, theta, 5, 1)),
-                    before = inverse_place(product_of_joints(loop_, theta, 3, 1));
-    const turned_vector way(-1 * fifth.axis, before.point(third.point) - fifth.point);
-    const vector3d still = across(fifth, fifth.point - inverse_place(after).point(first.point));
+    const tip_pose after = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 5, 1)),
+                   before = inverse_pose(product_of_joints(loop_, theta, 3, 1));
+    const rotating_vector way(-1 * fifth.axis, before.point(third.point) - fifth.point);
+    const vector3d still = across(fifth, fifth.point - inverse_pose(after).point(first.point));
     const double a = length_of(across(first, second.point - first.point)), c = length_of(still),
                  b = length_of(across(first, third.point - second.point)),
                  d = length_of(way.across),
@@ -189,14 +189,14 @@ private:
   template <class Visit>
   bool plane(six_coordinates& theta, int multiplicity, const Visit& visit) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
-    const tip_place motion = loop_.closing * inverse_place(product_of_joints(loop_, theta, 3, 3));
+    const tip_pose motion = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 3, 3));
     const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
     const double whole = angle_of(motion.rotation, n); // sum of angles about n and −n
     const vector3d offset = second.point - first.point;
-    const turned_vector arm(second.axis, third.point - second.point, offset);
+    const rotating_vector arm(second.axis, third.point - second.point, offset);
     const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
     const vector3d across = in_plane(offset), goal = in_plane(to);
-    middle_turn turn(n, arm, to);
+    connecting_rotation turn(n, arm, to);
     const double error = multiplicity > 1 ? 2 * one_angle : 0; // error of the other angles
     const bool has_second = visit_zeros(
         {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
@@ -214,13 +214,13 @@ private:
     return has_second && turn.nearest() > error;
   }
 
-  const joint_loop& loop_;
+  const loop_equation& loop_;
 };
 
 /// Closed-form solutions of a loop of three revolute and three prismatic joints.
-class sliding_loop {
+class three_prismatic_loop {
 public:
-  explicit sliding_loop(const joint_loop& loop) : loop_(loop) {}
+  explicit three_prismatic_loop(const loop_equation& loop) : loop_(loop) {}
 
   /// Calls visit(θ, multiplicity) for each solution: revolute joints alone make the rotation,
   /// prismatic displacements the rest.
@@ -235,31 +235,31 @@ public:
     }
     const auto joint = [&](std::size_t k) { return loop_.joints[std::size_t(turning[k])]; };
     bool is_determined = true;
-    const double nearest =
-        visit_three_turns(joint(0), joint(1), joint(2), loop_.closing.rotation,
-                          [&](double alpha, double beta, double gamma, int multiplicity) {
-                            six_coordinates theta = six_coordinates::Zero();
-                            theta[turning[0]] = alpha;
-                            theta[turning[1]] = beta;
-                            theta[turning[2]] = gamma;
-                            const loop_gap gap(loop_, theta);
-                            Eigen::Matrix3d ways;
-                            for (int k = 0; k < 3; ++k) {
-                              ways.col(k) = gap.jacobian.col(sliding[std::size_t(k)]).head<3>();
-                            }
-                            const Eigen::Matrix3d inverse = ways.inverse();
-                            is_determined = is_determined && inverse.norm() < 1e15 / ways.norm();
-                            const Eigen::Vector3d d = inverse * gap.twist.head<3>();
-                            for (int k = 0; k < 3; ++k) {
-                              theta[sliding[std::size_t(k)]] = d[k];
-                            }
-                            visit(theta, multiplicity);
-                          });
+    const double nearest = for_each_three_axis_decomposition(
+        joint(0), joint(1), joint(2), loop_.closing.rotation,
+        [&](double alpha, double beta, double gamma, int multiplicity) {
+          six_coordinates theta = six_coordinates::Zero();
+          theta[turning[0]] = alpha;
+          theta[turning[1]] = beta;
+          theta[turning[2]] = gamma;
+          const closure_error gap(loop_, theta);
+          Eigen::Matrix3d ways;
+          for (int k = 0; k < 3; ++k) {
+            ways.col(k) = gap.jacobian.col(sliding[std::size_t(k)]).head<3>();
+          }
+          const Eigen::Matrix3d inverse = ways.inverse();
+          is_determined = is_determined && inverse.norm() < 1e15 / ways.norm();
+          const Eigen::Vector3d d = inverse * gap.twist.head<3>();
+          for (int k = 0; k < 3; ++k) {
+            theta[sliding[std::size_t(k)]] = d[k];
+          }
+          visit(theta, multiplicity);
+        });
     return nearest > 0 && is_determined;
   }
 
 private:
-  const joint_loop& loop_;
+  const loop_equation& loop_;
 };
 
 } // namespace duet::detail

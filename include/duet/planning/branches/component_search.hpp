@@ -5,13 +5,13 @@
 #include <duet/planning/branches/branch_search.hpp>
 #include <duet/planning/branches/chain_loop.hpp>
 #include <duet/planning/branches/curve_tracer.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/loop_solution_set.hpp>
+#include <duet/planning/branches/redundant_arm.hpp>
 #include <duet/planning/branches/self_motion_set.hpp>
 #include <duet/planning/branches/seven_joint_arm.hpp>
-#include <duet/planning/branches/seven_joints.hpp>
 #include <duet/planning/branches/surface_sampler.hpp>
-#include <duet/planning/split_mix.hpp>
+#include <duet/planning/splitmix64.hpp>
 
 #include <algorithm>
 #include <array>
@@ -29,7 +29,7 @@ namespace duet::detail {
 /// Collects the components of the self-motion set of one redundant arm at one goal.
 class component_search {
 public:
-  component_search(const seven_joints& arm, double resolution)
+  component_search(const redundant_arm& arm, double resolution)
       : arm_(arm), set_(arm), tracer_(set_, resolution), sampler_(set_), resolution_(resolution) {}
 
   [[nodiscard]] std::vector<traced_curve> operator()() {
@@ -60,7 +60,7 @@ private:
     }
   }
   void add_slice(int held, double value) {
-    const chain_axes axes = arm_.axes_beside(held, value);
+    const chain_screws axes = arm_.axes_beside(held, value);
     const branch_search search(axes.loop_to(arm_.goal));
     for (const loop_solution& x : search.answer().solutions) {
       seven_coordinates theta;
@@ -147,19 +147,19 @@ private:
 
   static constexpr double step = .05, small_step = .005; ///< steps from a singular point to others
 
-  const seven_joints& arm_;
+  const redundant_arm& arm_;
   self_motion_set set_;
   curve_tracer tracer_;
   surface_sampler sampler_;
   double resolution_;
-  split_mix random_{1};
+  splitmix64 random_{1};
   bool is_degenerate_ = false; ///< true if the tip pose is known to be singular
   std::array<std::vector<seven_coordinates>, 8> seeds_; ///< seeds by null-space dimension
   std::vector<traced_curve> found_;
 };
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
+DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const redundant_arm& arm,
                                                             double resolution) {
   return component_search(arm, resolution)();
 }

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/planning/branches/joint_loop.hpp>
 #include <duet/planning/branches/line_coordinates.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
@@ -35,7 +35,7 @@ class elimination {
 public:
   using matrix = Eigen::Matrix<double, 12, 12>;
 
-  explicit elimination(const joint_loop& loop) : loop_(loop) {
+  explicit elimination(const loop_equation& loop) : loop_(loop) {
     const auto& joints = loop.joints;
     const auto backwards = [](loop_joint j) {
       j.axis = -1 * j.axis;
@@ -227,7 +227,7 @@ private:
     const Eigen::Matrix<double, 8, 1> x = eliminated_ * all;
     theta[1] = loop_.joints[1].turns ? std::atan2(x[1], x[0]) : x[0];
     theta[0] = loop_.joints[0].turns ? std::atan2(x[5], x[2]) : x[2];
-    const tip_place rest = inverse_place(product_of_joints(loop_, theta, 0, 5)) * loop_.closing;
+    const tip_pose rest = inverse_pose(product_of_joints(loop_, theta, 0, 5)) * loop_.closing;
     const three_vector<double>& n = loop_.joints[5].axis;
     const quaternion<double>& q = rest.rotation;
     theta[5] = 2 * std::atan2(n.x * q.x() + n.y * q.y() + n.z * q.z(), q.w());
@@ -236,7 +236,7 @@ private:
     }
   }
 
-  joint_loop loop_;
+  loop_equation loop_;
   Eigen::Matrix<double, 14, 27> arm_; // all equations, the last six without the eliminated products
   Eigen::Matrix<double, 8, 27> eliminated_; // eliminated products
 };

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/middle_turn.hpp>
-#include <duet/planning/branches/turns.hpp>
+#include <duet/planning/branches/connecting_rotation.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/subproblems.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <cmath>
@@ -28,8 +28,7 @@ struct angle_found {
 
 /// Angles θ with |v(θ)| = length (Paden–Kahan subproblem 3), for a length less than half of the
 /// maximum. At x from the known angle of the minimum, |v|² = least² + 4 r sin²(x/2).
-[[nodiscard]] inline std::vector<angle_found> angles_of_length(const turned_vector& v,
-                                                               double length) {
+[[nodiscard]] inline std::vector<angle_found> subproblem3(const rotating_vector& v, double length) {
   constexpr double rounding = 1e-14;
   const double b = dot(v.along, v.across), c = dot(v.along, v.beside), r = std::hypot(b, c);
   const double at_least = std::atan2(-c, -b), least = length_of(v.at(at_least));
@@ -57,7 +56,7 @@ struct folded_elbow {
   bool is_any = false;    ///< true if two angles are arbitrary: multiples of 90° are given
   std::vector<turns> all = {};
 
-  folded_elbow(const joint_loop& loop, const vector3d& point, const vector3d& goal) {
+  folded_elbow(const loop_equation& loop, const vector3d& point, const vector3d& goal) {
     for (const bool is_goal : {true, false}) {
       if (!is_folded) {
         find(loop, point, goal, is_goal);
@@ -69,7 +68,7 @@ private:
   /// Finds the solutions in one of both cases.
   ///
   /// \param is_goal  true: goal close to axes 1 and 2; false: point close to axes 2 and 3
-  void find(const joint_loop& loop, const vector3d& point, const vector3d& goal, bool is_goal) {
+  void find(const loop_equation& loop, const vector3d& point, const vector3d& goal, bool is_goal) {
     constexpr double close_by = 1e-3, rounding = 4e-15, in_it = 3e-14, certain = 3e-13;
     const loop_joint &first = loop.joints[0], &second = loop.joints[1], &third = loop.joints[2];
     const loop_joint &other = is_goal ? first : third, &elbow = is_goal ? third : first;
@@ -87,9 +86,9 @@ private:
     is_folded = true;
     is_certain = distance > certain;
     is_any = !(distance > in_it);
-    const turned_vector moving(is_goal ? elbow.axis : -1 * elbow.axis,
-                               (is_goal ? point : goal) - elbow.point, elbow.point - meeting);
-    for (const auto& [theta, multiplicity] : angles_of_length(moving, distance)) {
+    const rotating_vector moving(is_goal ? elbow.axis : -1 * elbow.axis,
+                                 (is_goal ? point : goal) - elbow.point, elbow.point - meeting);
+    for (const auto& [theta, multiplicity] : subproblem3(moving, distance)) {
       const auto add = [&, angle = theta, times = multiplicity](double alpha, double beta, int m) {
         all.push_back(is_goal ? turns{alpha, beta, angle, times * m}
                               : turns{angle, alpha, beta, times * m});
@@ -103,9 +102,9 @@ private:
       }
       const vector3d v = moving.at(theta), moved = 1 / length_of(v) * v,
                      stays = 1 / distance * still;
-      const two_turns_between both(is_goal ? first.axis : second.axis,
-                                   is_goal ? second.axis : third.axis, is_goal ? moved : stays,
-                                   is_goal ? stays : moved, (rounding + apart) / distance);
+      const subproblem2 both(is_goal ? first.axis : second.axis, is_goal ? second.axis : third.axis,
+                             is_goal ? moved : stays, is_goal ? stays : moved,
+                             (rounding + apart) / distance);
       for (const auto& [alpha, beta, m] : both) {
         add(alpha, beta, m);
       }

@@ -2,15 +2,15 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/planning/branches/connecting_rotation.hpp>
 #include <duet/planning/branches/elimination.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/loop_solution_set.hpp>
 #include <duet/planning/branches/loop_solutions.hpp>
-#include <duet/planning/branches/middle_turn.hpp>
 #include <duet/planning/branches/singular_value.hpp>
-#include <duet/planning/branches/two_slides.hpp>
-#include <duet/planning/split_mix.hpp>
-#include <duet/planning/tip_place.hpp>
+#include <duet/planning/branches/two_prismatic.hpp>
+#include <duet/planning/splitmix64.hpp>
+#include <duet/planning/tip_pose.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -31,7 +31,7 @@ namespace duet::detail {
 
 /// Order of the joints of a loop, from one of them on, forwards or backwards.
 struct loop_order {
-  joint_loop loop;
+  loop_equation loop;
   int first = 0;
   bool is_reversed = false;
   double quality = 0; ///< measure of how well equations can be solved in this order; 0: not at all
@@ -50,7 +50,7 @@ struct loop_order {
 /// Quality of an order for the elimination of the first two joints: |(p₁ − p₂)·(n₁ × n₂)|, which is
 /// 0 if their axes meet or are parallel; |n₁ × n₂| if both are prismatic, a quarter of it if one
 /// is. The third and the sixth joint must be revolute.
-[[nodiscard]] inline double quality_of(const joint_loop& loop, const elimination*) {
+[[nodiscard]] inline double quality_of(const loop_equation& loop, const elimination*) {
   const loop_joint &a = loop.joints[0], &b = loop.joints[1];
   const auto across = cross(a.axis, b.axis);
   return !loop.joints[2].turns || !loop.joints[5].turns ? 0
@@ -60,7 +60,7 @@ struct loop_order {
 }
 /// Quality of an order for two prismatic joints: the first joint must be revolute, and no axis of
 /// the other three revolute joints parallel to the next.
-[[nodiscard]] inline double quality_of(const joint_loop& loop, const two_prismatic*) {
+[[nodiscard]] inline double quality_of(const loop_equation& loop, const two_prismatic*) {
   double result = loop.joints[0].turns ? 1 : 0;
   const loop_joint* before = nullptr;
   for (std::size_t i = 1; i < 6; ++i) {
@@ -77,10 +77,12 @@ struct loop_order {
 ///
 /// \param general  loop in general position, for which the quality of orders is computed
 template <class System>
-[[nodiscard]] std::vector<loop_order> orders_of(const joint_loop& loop, const joint_loop& general) {
+[[nodiscard]] std::vector<loop_order> orders_of(const loop_equation& loop,
+                                                const loop_equation& general) {
   std::vector<loop_order> result;
   result.reserve(12);
-  const auto add = [&](const joint_loop& l, const joint_loop& judged, int first, bool is_reversed) {
+  const auto add = [&](const loop_equation& l, const loop_equation& judged, int first,
+                       bool is_reversed) {
     const double quality = quality_of(judged, static_cast<const System*>(nullptr));
     if (quality > 0) {
       const loop_order next{l, first, is_reversed, quality};
@@ -88,7 +90,7 @@ template <class System>
       result.insert(std::upper_bound(result.begin(), result.end(), next, is_better), next);
     }
   };
-  joint_loop from = loop, judged = general;
+  loop_equation from = loop, judged = general;
   for (int first = 0; first < 6; ++first) {
     add(from, judged, first, false);
     add(from.reversed(), judged.reversed(), first, true);
@@ -104,30 +106,30 @@ template <class System>
 /// with large prismatic displacements.
 class small_vectors {
 public:
-  small_vectors(const joint_loop& loop, double by, std::uint64_t seed)
+  small_vectors(const loop_equation& loop, double by, std::uint64_t seed)
       : random_(seed), by_(by / squared_travel(loop)) {}
   [[nodiscard]] vector3d operator()() {
     const double x = random_(), y = random_(), z = random_();
     return by_ * vector3d{2 * x - 1, 2 * y - 1, 2 * z - 1};
   }
-  [[nodiscard]] tip_place displacement() {
+  [[nodiscard]] tip_pose displacement() {
     const vector3d rotation = (*this)(), translation = (*this)();
     return {normalized(quaternion<double>(1, rotation.x, rotation.y, rotation.z)), translation};
   }
 
 private:
-  split_mix random_;
+  splitmix64 random_;
   double by_;
 };
 
 /// Loop with a goal close to the given one.
-[[nodiscard]] inline joint_loop with_disturbed_goal(joint_loop loop, double by,
-                                                    std::uint64_t seed) {
+[[nodiscard]] inline loop_equation with_disturbed_goal(loop_equation loop, double by,
+                                                       std::uint64_t seed) {
   loop.closing = small_vectors(loop, by, seed).displacement() * loop.closing;
   return loop;
 }
 /// Loop with a goal and axes in general position, close to the given ones.
-[[nodiscard]] inline joint_loop disturbed(joint_loop loop, double by, std::uint64_t seed) {
+[[nodiscard]] inline loop_equation disturbed(loop_equation loop, double by, std::uint64_t seed) {
   small_vectors any(loop, by, seed);
   for (loop_joint& j : loop.joints) {
     const vector3d axis = j.axis + any();
@@ -158,7 +160,7 @@ zeros_on_circle(std::span<const std::complex<double>> roots) {
   }
   for (zero_on_circle& one : result) {
     one.is_single = std::count_if(result.begin(), result.end(), [&](const zero_on_circle& other) {
-                      return std::abs(turned_back(other.angle - one.angle)) < beside;
+                      return std::abs(wrap_angle(other.angle - one.angle)) < beside;
                     }) == 1;
   }
   return result;
@@ -168,7 +170,7 @@ zeros_on_circle(std::span<const std::complex<double>> roots) {
 template <class System>
 class general_solver {
 public:
-  explicit general_solver(const joint_loop& loop) : found_(loop) {}
+  explicit general_solver(const loop_equation& loop) : found_(loop) {}
 
   [[nodiscard]] const loop_solutions& found() const { return found_; }
   /// True if there may be solutions on curves of which no point was found.
@@ -185,7 +187,7 @@ public:
   /// may all be complex.
   void add_from_anywhere() {
     constexpr int starts = 12;
-    split_mix random(1);
+    splitmix64 random(1);
     for (int k = 0; k < starts; ++k) {
       six_coordinates theta;
       for (double& x : theta) {
@@ -240,7 +242,7 @@ private:
     std::size_t result = nowhere;
     for (std::size_t i = 0; i < found_.all().size(); ++i) {
       const double theta = found_.all()[i].theta[order.joint(System::hidden)];
-      const double off = std::abs(turned_back(theta - angle));
+      const double off = std::abs(wrap_angle(theta - angle));
       if (off < beside) {
         if (result != nowhere || off > close) {
           return nowhere;
@@ -256,7 +258,7 @@ private:
 };
 
 /// True if the goal is farther away than the joints can reach.
-[[nodiscard]] inline bool is_beyond_reach(const joint_loop& loop) {
+[[nodiscard]] inline bool is_beyond_reach(const loop_equation& loop) {
   double reach = 0; // upper bound
   for (const loop_joint& j : loop.joints) {
     reach += j.turns ? 2 * length_of(j.point) : HUGE_VAL;
@@ -266,10 +268,10 @@ private:
 
 /// True if no solution is regular, whatever the goal, as if two neighbouring joints rotate about
 /// one axis.
-[[nodiscard]] inline bool is_always_singular(const joint_loop& loop) {
+[[nodiscard]] inline bool is_always_singular(const loop_equation& loop) {
   six_coordinates theta;
   theta << .3, -1.1, .7, 1.9, -.6, 2.3;
-  return smallest_singular_value(loop_gap(loop, theta).jacobian) < 1e-9;
+  return smallest_singular_value(closure_error(loop, theta).jacobian) < 1e-9;
 }
 
 /// All solutions of a loop by a system of equations.
@@ -283,7 +285,7 @@ private:
 /// five if there are no solutions; or if three loops add no others. They are not if some are on a
 /// curve, or near what is nearly a curve.
 template <class System>
-[[nodiscard]] loop_answer solve_general_loop(const joint_loop& loop) {
+[[nodiscard]] loop_solution_set solve_general_loop(const loop_equation& loop) {
   constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-5};
   const auto orders = orders_of<System>(loop, disturbed(loop, by[0], 1));
   general_solver<System> solver(loop);
@@ -311,7 +313,7 @@ template <class System>
   if (found.all().empty()) {
     solver.add_from_anywhere(); // finds a singular solution, or a curve of them
   }
-  loop_answer result;
+  loop_solution_set result;
   result.solutions = found.all();
   result.complex_solutions = std::max(0, System::most - found.count());
   result.is_complete = agree && found.on_curves() == 0 && !found.is_near_curve() &&

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/loop_solution_set.hpp>
 #include <duet/planning/branches/orthonormalise.hpp>
 
 #include <Eigen/Core>
@@ -20,7 +20,7 @@ namespace duet::detail {
 
 /// Squared ratio of the goal's translation to ten times the size of the loop, as by long travels of
 /// prismatic joints; at least 1.
-[[nodiscard]] inline double squared_travel(const joint_loop& loop) {
+[[nodiscard]] inline double squared_travel(const loop_equation& loop) {
   const vector3d offset = .1 * loop.closing.translation;
   return std::max(1., dot(offset, offset));
 }
@@ -28,7 +28,7 @@ namespace duet::detail {
 /// Solutions of a loop found so far.
 class loop_solutions {
 public:
-  explicit loop_solutions(const joint_loop& loop) : loop_(loop) {}
+  explicit loop_solutions(const loop_equation& loop) : loop_(loop) {}
 
   [[nodiscard]] const std::vector<loop_solution>& all() const { return all_; }
   /// Number of isolated solutions, with multiplicity.
@@ -64,7 +64,7 @@ public:
     }
     for (Eigen::Index i = 0; i < 6; ++i) {
       if (loop_.joints[std::size_t(i)].turns) {
-        theta[i] = turned_back(theta[i]);
+        theta[i] = wrap_angle(theta[i]);
       }
     }
     for (std::size_t i = 0; i < all_.size(); ++i) {
@@ -87,7 +87,7 @@ private:
     six_coordinates result = b - a;
     for (Eigen::Index i = 0; i < 6; ++i) {
       if (loop_.joints[std::size_t(i)].turns) {
-        result[i] = turned_back(result[i]);
+        result[i] = wrap_angle(result[i]);
       }
     }
     return result;
@@ -108,7 +108,7 @@ private:
   }
   [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
     constexpr double rounding = 3e-13;
-    const loop_gap gap(loop_, theta);
+    const closure_error gap(loop_, theta);
     return gap.twist.norm() < rounding * gap.size;
   }
 
@@ -123,8 +123,8 @@ private:
     constexpr std::size_t enough = 24; // number of singular solutions: others are on curves
     const six_coordinates theta = all_[at].theta;
     const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
-    six_columns rows = loop_gap(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
-    six_columns inverse = six_columns::Identity();                   // then L⁻ᵀ
+    six_columns rows = closure_error(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
+    six_columns inverse = six_columns::Identity();                        // then L⁻ᵀ
     orthonormalise(rows, inverse);
     six_coordinates v, u;
     v << 1, .7, -.4, .9, -.6, .5;
@@ -163,8 +163,8 @@ private:
       is_near_curve_ = is_near_curve_ ||
                        (sigma < nearly_singular && std::max(forwards, backwards) < almost_none);
     }
-    const auto along = [&](double t) { return u.dot(loop_gap(loop_, theta + t * v).twist); };
-    const double slope = u.dot(loop_gap(loop_, theta).jacobian * v);
+    const auto along = [&](double t) { return u.dot(closure_error(loop_, theta + t * v).twist); };
+    const double slope = u.dot(closure_error(loop_, theta).jacobian * v);
     const double curvature = (along(h) + along(-h)) / (h * h), t = 2 * slope / curvature;
     degenerate_ += sigma < nearly_singular && !(std::abs(curvature) > fold);
     if (!(std::abs(t) < 1)) {
@@ -190,7 +190,7 @@ private:
     for (const double t : {.004, .01, .02, .04, .07, .1, .15, .22, .33, .5}) {
       double mu = 0;
       for (int k = 0; k < 2; ++k) {
-        const loop_gap gap(loop_, x);
+        const closure_error gap(loop_, x);
         Eigen::Matrix<double, 7, 7> bordered;
         bordered << gap.jacobian, u, v.transpose(), 0;
         Eigen::Matrix<double, 7, 1> left;
@@ -218,7 +218,7 @@ private:
   /// True if there is another solution, or nearly one, in the direction v from a singular one.
   [[nodiscard]] bool is_on_curve(const six_coordinates& theta, const six_coordinates& v) const {
     constexpr double part = 1e-2, nearly = 1e-7, rounding = 1e-12;
-    const double size = loop_gap(loop_, theta).size;
+    const double size = closure_error(loop_, theta).size;
     double h = HUGE_VAL;
     for (Eigen::Index i = 0; i < 6; ++i) {
       h = std::min(h, part * (loop_.joints[std::size_t(i)].turns ? 1 : size) / std::abs(v[i]));
@@ -226,11 +226,11 @@ private:
     six_coordinates other = theta + h * v;
     static_cast<void>(close_loop(loop_, other));
     const double distance = (other - theta).norm();
-    return loop_gap(loop_, other).twist.norm() < std::max(nearly, rounding * size) &&
+    return closure_error(loop_, other).twist.norm() < std::max(nearly, rounding * size) &&
            distance > h / 10 && distance < 10 * h;
   }
 
-  joint_loop loop_;
+  loop_equation loop_;
   std::vector<loop_solution> all_;
   int on_curves_ = 0, degenerate_ = 0;
   std::size_t singular_ = 0;

@@ -2,10 +2,10 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/loop_solution_set.hpp>
 #include <duet/planning/branches/seven_joint_arm.hpp>
-#include <duet/planning/split_mix.hpp>
+#include <duet/planning/splitmix64.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -41,14 +41,14 @@ class self_motion_set {
 public:
   using null_space = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, 7>;
 
-  explicit self_motion_set(const seven_joints& arm) : arm_(arm) {}
+  explicit self_motion_set(const redundant_arm& arm) : arm_(arm) {}
 
   /// Difference b − a, rotation angles by the shorter arc; lengths relative to the arm's size.
   [[nodiscard]] seven_coordinates difference(const seven_coordinates& b,
                                              const seven_coordinates& a) const {
     seven_coordinates d = b - a;
     for (int i = 0; i < 7; ++i) {
-      d[i] = arm_.turns[std::size_t(i)] ? turned_back(d[i]) : d[i] / arm_.size;
+      d[i] = arm_.turns[std::size_t(i)] ? wrap_angle(d[i]) : d[i] / arm_.size;
     }
     return d;
   }
@@ -133,7 +133,7 @@ public:
 
   /// Random unit vector of a null space.
   [[nodiscard]] static seven_coordinates any_direction(const null_space& kernel,
-                                                       split_mix& random) {
+                                                       splitmix64& random) {
     seven_coordinates result;
     do {
       result.setZero();
@@ -147,7 +147,7 @@ public:
   /// Dimension of M at a point, from the projections of points at a distance `step` in
   /// directions of the Jacobian's null space. (At crossings: the dimension of the span of all
   /// curves that meet there.)
-  [[nodiscard]] int dimension(const seven_coordinates& x, double step, split_mix& random) const {
+  [[nodiscard]] int dimension(const seven_coordinates& x, double step, splitmix64& random) const {
     const null_space basis = kernel(x);
     if (basis.cols() == 1) {
       return 1;
@@ -170,12 +170,12 @@ public:
   /// the projection fails.
   [[nodiscard]] std::optional<seven_coordinates> neighbour(const seven_coordinates& x, double step,
                                                            const null_space& basis,
-                                                           split_mix& random) const {
+                                                           splitmix64& random) const {
     return projected(moved(x, step * any_direction(basis, random)), 3 * step);
   }
 
   /// Random point of M; empty if the search from a random configuration fails.
-  [[nodiscard]] std::optional<seven_coordinates> any_point(split_mix& random) const {
+  [[nodiscard]] std::optional<seven_coordinates> any_point(splitmix64& random) const {
     seven_coordinates x;
     for (int i = 0; i < 7; ++i) {
       const double part = 2 * random() - 1;
@@ -188,7 +188,7 @@ private:
   using square = Eigen::Matrix<double, 7, 7>;
   using decomposition = Eigen::JacobiSVD<square>;
 
-  const seven_joints& arm_;
+  const redundant_arm& arm_;
 };
 
 } // namespace duet::detail

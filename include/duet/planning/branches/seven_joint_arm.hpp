@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/planning/branches/chain_loop.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 #include <duet/planning/planning_model.hpp>
 
 #include <Eigen/Core>
@@ -20,14 +20,14 @@ using seven_coordinates = Eigen::Matrix<double, 7, 1>;
 using seven_columns = Eigen::Matrix<double, 6, 7>;
 
 /// Arm of seven joints, and the goal of its tip (end effector).
-struct seven_joints {
+struct redundant_arm {
   std::array<bool, 7> turns{};
   double size = 1; ///< characteristic length of the arm
-  tip_place goal{};
+  tip_pose goal{};
   /// Pose error of the tip, and the Jacobian; lengths relative to the arm's size.
   std::function<six_coordinates(const seven_coordinates&, seven_columns&)> gap;
   /// Axes of the other joints, with one fixed at a coordinate.
-  std::function<chain_axes(int, double)> axes_beside;
+  std::function<chain_screws(int, double)> axes_beside;
 };
 
 /// Consecutive points of a curve, or a sample of a component of another dimension.

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/planning/branches/self_motion_set.hpp>
 #include <duet/planning/branches/seven_joint_arm.hpp>
-#include <duet/planning/split_mix.hpp>
+#include <duet/planning/splitmix64.hpp>
 
 #include <Eigen/Core>
 
@@ -27,7 +27,7 @@ public:
 
   /// Up to 64 points of the component that contains x, as far from each other as they can be found.
   [[nodiscard]] traced_curve sample(const seven_coordinates& x, int dimension, int kernel,
-                                    split_mix& random) const {
+                                    splitmix64& random) const {
     constexpr std::size_t count = 64;
     constexpr int tries = 32;
     traced_curve result{{x}, false, dimension, kernel};
@@ -48,7 +48,7 @@ public:
 
   /// True if a walk on the component leads from x to one of the sample's points.
   [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x,
-                           split_mix& random) const {
+                           splitmix64& random) const {
     constexpr int detours = 4;
     bool result = leads_there(component, x);
     for (int k = 0; k < detours && !result; ++k) {
@@ -114,7 +114,7 @@ private:
 
   /// End of a walk of a given length in a random direction.
   [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length,
-                                         split_mix& random) const {
+                                         splitmix64& random) const {
     seven_coordinates way = self_motion_set::any_direction(set_.kernel(x), random);
     for (; length > 0; length -= stride) {
       const auto next = step(x, way, std::min(length, stride));

@@ -3,10 +3,10 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/planning/joint_trajectory.hpp>
-#include <duet/planning/timing/pace_bounds.hpp>
-#include <duet/planning/timing/quickest_pace.hpp>
-#include <duet/planning/timing/reference_law.hpp>
-#include <duet/planning/timing/timing_problem.hpp>
+#include <duet/planning/timing/minimum_time_path_velocity.hpp>
+#include <duet/planning/timing/path_velocity_constraints.hpp>
+#include <duet/planning/timing/reference_parametrisation.hpp>
+#include <duet/planning/timing/time_parametrisation_input.hpp>
 
 #include <algorithm>
 #include <array>
@@ -62,7 +62,7 @@ template <class V>
 ///
 /// \throws invalid_input where second derivatives jump
 template <int N>
-void require_smooth(const timing_problem<N>& problem,
+void require_smooth(const time_parametrisation_input<N>& problem,
                     const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   for (std::size_t k = 1; k < curve.size(); ++k) {
     const auto &before = curve[k - 1], &after = curve[k];
@@ -84,7 +84,7 @@ void require_smooth(const timing_problem<N>& problem,
 /// Velocities of all joints at the first and the last end of a curve.
 template <int N>
 [[nodiscard]] std::array<joint_vector<double, N>, 2>
-rates_at(const timing_problem<N>& problem,
+rates_at(const time_parametrisation_input<N>& problem,
          const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   const auto& last = curve.back();
   return {problem.initial_speed * curve.front().first(0),
@@ -95,7 +95,7 @@ rates_at(const timing_problem<N>& problem,
 ///
 /// \throws invalid_input for a velocity at an end that exceeds its limit by more than round-off
 template <int N>
-void require_slow_ends(const timing_problem<N>& problem,
+void require_slow_ends(const time_parametrisation_input<N>& problem,
                        const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   const auto rates = rates_at(problem, curve);
   for (const bool is_last : {false, true}) {
@@ -111,13 +111,14 @@ void require_slow_ends(const timing_problem<N>& problem,
 /// Trajectory along a curve with a squared path velocity τ̇²(τ) over n intervals of τ, given by its
 /// B-spline coefficients `pace`.
 template <class V>
-[[nodiscard]] timed_path<V> timed_by_pace(const std::vector<joint_cubic<V>>& curve,
-                                          const std::vector<reference_piece>& path, std::size_t n,
-                                          const std::vector<double>& pace) {
+[[nodiscard]] timed_path<V> trajectory_from_path_velocity(const std::vector<joint_cubic<V>>& curve,
+                                                          const std::vector<reference_piece>& path,
+                                                          std::size_t n,
+                                                          const std::vector<double>& pace) {
   timed_path<V> result;
   result.pieces.reserve(path.size());
   for (const auto& [edge, interval, from, l, start, a, b, c] : path) {
-    const auto rows = pace_powers(interval, n);
+    const auto rows = path_velocity_powers(interval, n);
     const double* of = &pace[interval];
     const double curvature = times(rows[2], of), rise = times(rows[1], of) + 2 * from * curvature;
     const double before = times(rows[0], of) + from * (times(rows[1], of) + from * curvature);
@@ -147,29 +148,29 @@ struct jerk_search_result {
 /// given number of intervals.
 ///
 /// \param motion    motion that defines τ
-/// \param accuracy  as of `quickest_pace`
+/// \param accuracy  as of `minimum_time_path_velocity`
 template <int N>
-[[nodiscard]] auto timed_by_jerks(const timing_problem<N>& problem,
+[[nodiscard]] auto timed_by_jerks(const time_parametrisation_input<N>& problem,
                                   const std::vector<joint_cubic<joint_vector<double, N>>>& curve,
                                   const timed_path<joint_vector<double, N>>& motion,
                                   std::size_t intervals, double accuracy) {
   const auto& knots = problem.polygon.s;
   const std::array<double, 2> speeds{problem.initial_speed, problem.final_speed};
-  const reference_law law(places_of(motion, intervals, knots.back()),
-                          {speeds[0] == 0, speeds[1] == 0});
+  const reference_parametrisation law(places_of(motion, intervals, knots.back()),
+                                      {speeds[0] == 0, speeds[1] == 0});
   const auto path = law.pieces(knots);
-  const pace_bounds bounds(curve, path, intervals, problem.velocity, problem.acceleration,
-                           problem.jerk);
+  const path_velocity_constraints bounds(curve, path, intervals, problem.velocity,
+                                         problem.acceleration, problem.jerk);
   std::array<double, 2> ends{};
   for (std::size_t e = 0; e < 2; ++e) {
     const double rate = speeds[e] / (e == 0 ? law.first_slope() : law.last_slope());
     ends[e] = speeds[e] > 0 ? rate * rate : 0;
   }
-  const found_pace pace = quickest_pace(bounds, ends, accuracy);
+  const path_velocity_result pace = minimum_time_path_velocity(bounds, ends, accuracy);
   jerk_search_result<joint_vector<double, N>> result;
   result.reached = {std::sqrt(pace.reached[0]), std::sqrt(pace.reached[1])};
   result.nearest_joint = pace.nearest_joint;
-  result.motion = timed_by_pace(curve, path, intervals, pace.coefficients);
+  result.motion = trajectory_from_path_velocity(curve, path, intervals, pace.coefficients);
   return result;
 }
 

@@ -42,15 +42,15 @@ struct piece_polynomial {
 
 /// Cubic polynomial by its Bernstein coefficients, with the amount by which the middle two have to
 /// be moved up and down to enclose another polynomial.
-struct near_cubic {
+struct cubic_approximation {
   std::array<double, 4> at{};
   double error = 0;
 
-  near_cubic() = default;
+  cubic_approximation() = default;
   /// Interpolates a polynomial at 0, 1/3, 2/3 and 1. The difference, with Bernstein coefficients
   /// e_j, e_0 = e_9 = 0, is u (1 − u) Σ 72 / (j (9 − j)) e_j B_{j−1}(u) with those of seventh
   /// degree, and the middle two coefficients are multiplied by 3 u (1 − u).
-  explicit near_cubic(piece_polynomial p) {
+  explicit cubic_approximation(piece_polynomial p) {
     double end = 0, third = 0, two_thirds = 0;
     for (std::size_t i = 10; i-- > 0;) {
       end += p.of[i];

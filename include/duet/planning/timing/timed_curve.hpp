@@ -4,8 +4,8 @@
 #include <duet/core/errors.hpp>
 #include <duet/planning/joint_trajectory.hpp>
 #include <duet/planning/timing/jerk_limited.hpp>
-#include <duet/planning/timing/path_speeds.hpp>
-#include <duet/planning/timing/timing_problem.hpp>
+#include <duet/planning/timing/phase_plane_velocities.hpp>
+#include <duet/planning/timing/time_parametrisation_input.hpp>
 
 #include <algorithm>
 #include <array>
@@ -45,7 +45,7 @@ template <class V>
 /// Checks that the boundary velocities are feasible.
 ///
 /// \throws invalid_input if they are not, with the fraction of them that is feasible
-inline void require_rates(const speed_refusal& refusal, double first, double last) {
+inline void require_rates(const infeasible_boundary& refusal, double first, double last) {
   if (refusal.at_start || refusal.at_end) {
     const double asked = refusal.at_start ? first : last;
     raise(invalid_input(message(
@@ -106,16 +106,16 @@ template <class V>
 /// \throws invalid_input for velocities at ends that are too fast
 template <int N>
 [[nodiscard]] auto
-timed_by_accelerations(const timing_problem<N>& problem,
+timed_by_accelerations(const time_parametrisation_input<N>& problem,
                        const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
   const double first = problem.initial_speed, last = problem.final_speed;
   joint_vector<double, N> limits = problem.acceleration;
   std::optional<timed_path<joint_vector<double, N>>> result;
   for (int round = 0; round < 8; ++round) {
-    speed_refusal refusal;
-    const std::vector<double> squares = path_speeds(bounds_of(parts, problem.velocity, limits),
-                                                    first * first, last * last, refusal);
+    infeasible_boundary refusal;
+    const std::vector<double> squares = phase_plane_velocities(
+        bounds_of(parts, problem.velocity, limits), first * first, last * last, refusal);
     if (result && (refusal.at_start || refusal.at_end)) {
       break; // velocities at their limits
     }
@@ -135,18 +135,19 @@ timed_by_accelerations(const timing_problem<N>& problem,
 /// motion, path velocities near the ends would have to change, and searches that start there stall
 /// in a corner of the feasible set.)
 template <int N>
-[[nodiscard]] auto gentle_motion(const timing_problem<N>& problem,
-                                 const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+[[nodiscard]] auto
+min_acceleration_motion(const time_parametrisation_input<N>& problem,
+                        const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
   std::array<double, 2> ends{problem.initial_speed * problem.initial_speed,
                              problem.final_speed * problem.final_speed};
-  speed_refusal refusal;
+  infeasible_boundary refusal;
   std::vector<double> squares;
   const auto is_found = [&](double scale) {
     const joint_vector<double, N> acceleration = scale * problem.acceleration;
     refusal = {};
-    squares =
-        path_speeds(bounds_of(parts, problem.velocity, acceleration), ends[0], ends[1], refusal);
+    squares = phase_plane_velocities(bounds_of(parts, problem.velocity, acceleration), ends[0],
+                                     ends[1], refusal);
     return !refusal.at_start && !refusal.at_end;
   };
   while (!is_found(1)) {
@@ -173,8 +174,9 @@ public:
   using vector = joint_vector<double, N>;
   using motion = timed_path<vector>;
 
-  jerk_search(const timing_problem<N>& problem, const std::vector<joint_cubic<vector>>& curve)
-      : problem_(problem), curve_(curve), gentle_(gentle_motion(problem, curve)) {}
+  jerk_search(const time_parametrisation_input<N>& problem,
+              const std::vector<joint_cubic<vector>>& curve)
+      : problem_(problem), curve_(curve), gentle_(min_acceleration_motion(problem, curve)) {}
 
   /// Motion within the limits; empty if none is found.
   [[nodiscard]] std::optional<motion> found() {
@@ -197,7 +199,7 @@ public:
 private:
   /// Searches with jerk limits multiplied by `scale`, coarsely if that is not 1.
   [[nodiscard]] jerk_search_result<vector> find(const motion& from, double share, double scale) {
-    timing_problem<N> loose = problem_;
+    time_parametrisation_input<N> loose = problem_;
     loose.jerk *= scale;
     return timed_by_jerks(loose, curve_, from, std::size_t(std::max(16.0, problem_.parts / share)),
                           scale > 1 ? 200 : 5e4);
@@ -227,7 +229,7 @@ private:
     return {};
   }
 
-  const timing_problem<N>& problem_;
+  const time_parametrisation_input<N>& problem_;
   const std::vector<joint_cubic<vector>>& curve_;
   motion gentle_;
   jerk_search_result<vector> nearest_;
@@ -238,7 +240,7 @@ private:
 /// \throws invalid_input for velocities at ends with which no motion is found
 template <int N>
 [[nodiscard]] auto
-timed_within_jerks(const timing_problem<N>& problem,
+timed_within_jerks(const time_parametrisation_input<N>& problem,
                    const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   require_smooth(problem, curve);
   require_slow_ends(problem, curve);
@@ -259,7 +261,7 @@ timed_within_jerks(const timing_problem<N>& problem,
 /// Minimum-time motion along a curve, as `joint_trajectory`.
 template <int N>
 [[nodiscard]] joint_trajectory<N>
-timed(const timing_problem<N>& problem,
+timed(const time_parametrisation_input<N>& problem,
       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   auto path = problem.jerk.array().isInf().all() ? timed_by_accelerations(problem, curve)
                                                  : timed_within_jerks(problem, curve);

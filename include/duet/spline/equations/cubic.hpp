@@ -11,7 +11,7 @@
 #include <duet/spline/curve_ends.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/rate_gradients.hpp>
-#include <duet/spline/equations/small_turns.hpp>
+#include <duet/spline/equations/small_angles.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
 
@@ -49,9 +49,9 @@ public:
     const std::size_t n = turns_.size();
     R shortest = u[1] - u[0], longest = shortest;
     for (std::size_t i = 0; i < n; ++i) {
-      turns_[i] = turn_between(data_[i], data_[i + 1]);
-      angles_[i] = turn_vector(turns_[i]);
-      const bool is_shifted = kind_ == end_kind::not_a_knot;
+      turns_[i] = relative_rotation(data_[i], data_[i + 1]);
+      angles_[i] = rotation_vector_between(turns_[i]);
+      const bool is_shifted = kind_ == end_condition_kind::not_a_knot;
       const std::size_t span = !is_shifted || i == 0 ? i : std::min(i - 1, n - 3);
       arc& a = arcs_[i];
       a = {span, basis_.template weights<0>(span, u[i])[0], basis_.changes(span, u[i], u[i + 1])};
@@ -61,13 +61,15 @@ public:
       longest = std::max(longest, step);
     }
     unevenness_ = longest / shortest;
-    const auto& rates = kind_ == end_kind::velocity ? ends.velocity : ends.acceleration;
+    const auto& rates = kind_ == end_condition_kind::velocity ? ends.velocity : ends.acceleration;
     end_rates_ = {rotate(conj(data_.front()), rates[0]), rotate(conj(data_.back()), rates[1])};
   }
 
   /// Minimum number of samples; fewer leave equations without their unknowns.
-  [[nodiscard]] static std::size_t least_rows(end_kind kind) {
-    return kind == end_kind::not_a_knot ? 4 : kind == end_kind::periodic ? 3 : 2;
+  [[nodiscard]] static std::size_t min_samples(end_condition_kind kind) {
+    return kind == end_condition_kind::not_a_knot ? 4
+           : kind == end_condition_kind::periodic ? 3
+                                                  : 2;
   }
 
   /// Number of equations, equal to that of the unknowns.
@@ -75,7 +77,7 @@ public:
   [[nodiscard]] corners corner_columns() const {
     return is_cyclic() ? corners{size() - 1, 0} : corners{2, size() - 3};
   }
-  [[nodiscard]] unknowns start() const { return small_turn_solution<R>(*this); }
+  [[nodiscard]] unknowns start() const { return small_angle_solution<R>(*this); }
 
   [[nodiscard]] R relative_step(const unknowns& x, const unknowns& step) const {
     return detail::relative_step<R>(*this, x, step);
@@ -84,7 +86,7 @@ public:
 
   /// Largest rotation angle between neighbouring samples, rad, and the index of the sample before
   /// it.
-  [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
+  [[nodiscard]] std::pair<R, std::size_t> max_rotation() const {
     using std::sqrt;
     std::pair<R, std::size_t> result{R(0), 0};
     for (std::size_t i = 0; i < angles_.size(); ++i) {
@@ -101,7 +103,7 @@ public:
   void scale(const R& lambda) {
     for (std::size_t i = 0; i < turns_.size(); ++i) {
       angles_[i] = lambda * components(angles_[i]);
-      turns_[i] = turn_by(angles_[i]);
+      turns_[i] = apply_rotation(angles_[i]);
     }
     for (vector3<T>& rate : end_rates_) {
       rate = lambda * components(rate);
@@ -134,18 +136,19 @@ public:
     for (std::size_t j = 0; j < 3; ++j) {
       turned[j] = a.change[j] * components(omega[j]);
       if (j > 0 && a.from[j] != 0) {
-        const quaternion<T> back = turn_by<T>(R(-a.from[j]) * components(omega[j]));
+        const quaternion<T> back = apply_rotation<T>(R(-a.from[j]) * components(omega[j]));
         for (std::size_t k = 0; k < j; ++k) {
           turned[k] = rotate(back, turned[k]);
         }
       }
     }
-    const quaternion<T> turn = turn_by(turned[0]) * turn_by(turned[1]) * turn_by(turned[2]);
-    return turn_vector(quaternion<T>(conj(turn) * turns_[row]));
+    const quaternion<T> turn =
+        apply_rotation(turned[0]) * apply_rotation(turned[1]) * apply_rotation(turned[2]);
+    return rotation_vector_between(quaternion<T>(conj(turn) * turns_[row]));
   }
 
   /// Equation Σ weights_j x_j = right for rotations so small that their order does not matter.
-  [[nodiscard]] small_turn_equation<T> small_turns(std::size_t row) const {
+  [[nodiscard]] small_angle_equation<T> small_angles(std::size_t row) const {
     if (has_end_rates()) {
       if (row == 0 || row + 1 == size()) {
         return end_equation(row == 0);
@@ -185,13 +188,15 @@ public:
   }
 
 private:
-  [[nodiscard]] bool is_cyclic() const { return kind_ == end_kind::periodic; }
-  [[nodiscard]] bool has_end_rates() const { return !is_cyclic() && kind_ != end_kind::not_a_knot; }
+  [[nodiscard]] bool is_cyclic() const { return kind_ == end_condition_kind::periodic; }
+  [[nodiscard]] bool has_end_rates() const {
+    return !is_cyclic() && kind_ != end_condition_kind::not_a_knot;
+  }
 
-  [[nodiscard]] static std::vector<R> knots(const std::vector<R>& u, end_kind kind) {
-    return kind == end_kind::periodic     ? periodic_knots(u, 4)
-           : kind == end_kind::not_a_knot ? not_a_knot_knots(u, 4)
-                                          : clamped_knots(u, 4);
+  [[nodiscard]] static std::vector<R> knots(const std::vector<R>& u, end_condition_kind kind) {
+    return kind == end_condition_kind::periodic     ? periodic_knots(u, 4)
+           : kind == end_condition_kind::not_a_knot ? not_a_knot_knots(u, 4)
+                                                    : clamped_knots(u, 4);
   }
 
   /// ω_0 = 0 and the increments of all control points.
@@ -213,13 +218,13 @@ private:
       const arc& a = arcs_[i];
       if (a.span == result.size()) {
         const auto back = [&](std::size_t j) {
-          return turn_by<T>(R(-a.from[j]) * components(increments[a.span + 1 + j]));
+          return apply_rotation<T>(R(-a.from[j]) * components(increments[a.span + 1 + j]));
         };
         result.push_back(normalized(data_[i] * back(1) * back(0)));
       }
     }
     while (result.size() < basis_.size()) {
-      result.push_back(normalized(result.back() * turn_by(increments[result.size()])));
+      result.push_back(normalized(result.back() * apply_rotation(increments[result.size()])));
     }
     return result;
   }
@@ -257,15 +262,15 @@ private:
 
   /// Weights of the increments in the rate that is given at an end of the curve, and that rate,
   /// both scaled to the size of an increment.
-  [[nodiscard]] small_turn_equation<T> end_equation(bool at_start) const {
+  [[nodiscard]] small_angle_equation<T> end_equation(bool at_start) const {
     const std::size_t span = at_start ? 0 : basis_.breaks().size() - 2;
     const R h = basis_.breaks()[span + 1] - basis_.breaks()[span];
-    const bool is_velocity = kind_ == end_kind::velocity;
+    const bool is_velocity = kind_ == end_condition_kind::velocity;
     const R scale = is_velocity ? R(h / 3) : R(h * h / 6),
             end = basis_.breaks()[at_start ? 0 : span + 1];
     const auto weights = basis_.template weights<2>(span, end);
-    small_turn_equation<T> result{weights[is_velocity ? 1 : 2],
-                                  scale * components(end_rates_[at_start ? 0 : 1])};
+    small_angle_equation<T> result{weights[is_velocity ? 1 : 2],
+                                   scale * components(end_rates_[at_start ? 0 : 1])};
     for (R& weight : result.weights) {
       weight *= scale;
     }
@@ -279,12 +284,12 @@ private:
     const auto [b, right] = end_equation(at_start);
     three_vector<T> sum = b[0] * components(omega[0]) + b[1] * components(omega[1]);
     if (!at_start) {
-      sum = rotated(conj(turn_by(omega[2])), sum);
+      sum = rotated(conj(apply_rotation(omega[2])), sum);
     }
     return sum + b[2] * components(omega[2]) - components(right);
   }
 
-  end_kind kind_;
+  end_condition_kind kind_;
   bspline_basis<4, R> basis_;
   std::vector<quaternion<T>> data_;
   std::vector<quaternion<T>> turns_;

@@ -35,7 +35,7 @@ using equations_of_t = typename equations_of<Spline, T>::type;
 /// Equations F(x) = 0 for the parameters of an interpolating curve, in blocks of N numbers.
 ///
 /// They are constructed from parameters, samples with aligned signs and end conditions, and have
-/// - `least_rows(kind)`, the minimum number of samples for these end conditions;
+/// - `min_samples(kind)`, the minimum number of samples for these end conditions;
 /// - `start()`, the initial guess, near the solution for small rotations;
 /// - `residuals(x, r)`, which sets r = F(x);
 /// - `scale(λ)`, which changes the equations to those of a smaller motion;
@@ -47,10 +47,10 @@ template <class E>
 concept CurveEquations = requires(E e, const E f, const typename E::unknowns x,
                                   typename E::unknowns r, typename E::real_type lambda,
                                   const typename E::matrix& jacobian) {
-  { E::least_rows(end_kind()) } -> std::same_as<std::size_t>;
+  { E::min_samples(end_condition_kind()) } -> std::same_as<std::size_t>;
   f.residuals(x, r);
   e.scale(lambda);
-  { f.largest_turn() } -> std::same_as<std::pair<typename E::real_type, std::size_t>>;
+  { f.max_rotation() } -> std::same_as<std::pair<typename E::real_type, std::size_t>>;
   { f.unevenness() } -> std::convertible_to<typename E::real_type>;
   jacobian.solve(r);
 };

@@ -34,7 +34,7 @@ public:
 
   explicit spline_newton(const equations& full) : full_(full), x_(full.start()) {
     if (!descend(full)) {
-      continue_from_smaller_turns();
+      continue_from_smaller_angles();
     }
   }
 
@@ -105,7 +105,7 @@ private:
 
   /// Continuation in λ from 0 to 1: rotations to the power λ; each solution is extrapolated to the
   /// initial guess for the next.
-  DUET_COLD DUET_OUT_OF_LINE void continue_from_smaller_turns() {
+  DUET_COLD DUET_OUT_OF_LINE void continue_from_smaller_angles() {
     R lambda(0);
     R h(0.25);
     x_.assign(x_.size(), unknown::Zero());
@@ -140,7 +140,7 @@ private:
   }
 
   [[noreturn]] DUET_COLD DUET_OUT_OF_LINE void fail(const R& lambda) const {
-    const auto [angle, row] = full_.largest_turn();
+    const auto [angle, row] = full_.max_rotation();
     const std::string found =
         lambda > 0
             ? message(

@@ -89,9 +89,9 @@ using gradient_by_three = std::array<matrix3<R>, 3>;
 
 /// Transposed rotation matrix of e = exp(v), and J(v).
 template <class R>
-struct turning_factor {
+struct rotation_factor {
   matrix3<R> back, jacobian;
-  explicit turning_factor(const vector3<R>& v) {
+  explicit rotation_factor(const vector3<R>& v) {
     const R s = dot(components(v), components(v));
     const auto [cosine, ratio] = first_stumpff_pair(s);
     // c_1(4s), 2c_2(4s) and 4c_3(4s) from those of s
@@ -112,7 +112,7 @@ minus_product_gradient(const std::array<std::pair<std::size_t, R>, Factors>& fac
   std::array<bool, 3> is_taken_in{};
   for (const auto& [j, b] : factors) {
     if (b != 0) {
-      const turning_factor<R> e(b * components(omega[j]));
+      const rotation_factor<R> e(b * components(omega[j]));
       for (std::size_t k = 0; k < 3; ++k) {
         if (is_taken_in[k]) {
           by[k] = product(e.back, by[k]);
@@ -138,7 +138,7 @@ end_gradient(const std::array<R, 3>& b, const std::array<vector3<R>, 3>& omega, 
     }
   }
   if (is_turned) { // ŵ = e* w e changes by 2 ŵ × J δω_2
-    const turning_factor<R> e(omega[2]);
+    const rotation_factor<R> e(omega[2]);
     vector3<R> turned = vector3<R>::Zero();
     for (std::size_t j = 0; j < 2; ++j) {
       by[j] = product(e.back, by[j]);

@@ -36,7 +36,7 @@ struct rotation_vector_ends {
 
   rotation_vector_ends(const curve_ends<T>& ends, const quaternion<T>& first,
                        const quaternion<T>& last)
-      : is_cyclic(ends.kind == end_kind::periodic), equations(equations_of(ends.kind)) {
+      : is_cyclic(ends.kind == end_condition_kind::periodic), equations(equations_of(ends.kind)) {
     for (std::size_t k = 0; k < own; ++k) {
       for (const std::size_t end : {0U, 1U}) {
         // A given third derivative is zero: no snap.
@@ -52,32 +52,32 @@ struct rotation_vector_ends {
   [[nodiscard]] std::size_t reach() const { return reach(equations); }
   /// Minimum number of samples; fewer leave an equation without its knots, or make two equations
   /// equal.
-  [[nodiscard]] static std::size_t least_rows(end_kind kind) {
-    return kind == end_kind::periodic ? 3 : 2 + 2 * reach(equations_of(kind));
+  [[nodiscard]] static std::size_t min_samples(end_condition_kind kind) {
+    return kind == end_condition_kind::periodic ? 3 : 2 + 2 * reach(equations_of(kind));
   }
 
 private:
-  [[nodiscard]] static std::array<end_equation, own> equations_of(end_kind kind) {
+  [[nodiscard]] static std::array<end_equation, own> equations_of(end_condition_kind kind) {
     // The cubic uses the first column. Natural ends have no snap: reflected there, the curve is
     // smooth.
     std::array<end_equation, 2> both{};
     switch (kind) {
-    case end_kind::natural:
+    case end_condition_kind::natural:
       both = {{{0, 1}, {0, 3}}};
       break;
-    case end_kind::velocity:
+    case end_condition_kind::velocity:
       both = {{{0, 0}, {1, highest}}};
       break;
-    case end_kind::acceleration:
+    case end_condition_kind::acceleration:
       both = {{{0, 1}, {1, highest}}};
       break;
-    case end_kind::velocity_and_acceleration:
+    case end_condition_kind::velocity_and_acceleration:
       both = {{{0, 0}, {0, 1}}};
       break;
-    case end_kind::not_a_knot:
+    case end_condition_kind::not_a_knot:
       both = {{{1, highest}, {2, highest}}};
       break;
-    case end_kind::periodic:
+    case end_condition_kind::periodic:
       break;
     }
     std::array<end_equation, own> result;

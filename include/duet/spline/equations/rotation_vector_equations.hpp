@@ -7,7 +7,7 @@
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/curve_ends.hpp>
 #include <duet/spline/equations/rotation_vector_ends.hpp>
-#include <duet/spline/equations/small_turns.hpp>
+#include <duet/spline/equations/small_angles.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
@@ -53,12 +53,14 @@ public:
     turns_.resize(last);
     for (std::size_t i = 0; i < last; ++i) {
       steps_[i] = (u[i + 1] - u[i]) / unit_;
-      turns_[i] = turn_vector(turn_between(q[i], q[i + 1]));
+      turns_[i] = rotation_vector_between(relative_rotation(q[i], q[i + 1]));
     }
     make_pieces();
   }
 
-  [[nodiscard]] static std::size_t least_rows(end_kind kind) { return ends_type::least_rows(kind); }
+  [[nodiscard]] static std::size_t min_samples(end_condition_kind kind) {
+    return ends_type::min_samples(kind);
+  }
 
   /// Changes the equations to those of a smaller motion: rotations between samples and rates at the
   /// ends times λ.
@@ -82,7 +84,7 @@ public:
 
   /// Largest rotation angle between neighbouring samples, rad, and the index of the sample before
   /// it.
-  [[nodiscard]] std::pair<R, std::size_t> largest_turn() const {
+  [[nodiscard]] std::pair<R, std::size_t> max_rotation() const {
     using std::sqrt;
     std::pair<R, std::size_t> largest{R(-1), 0};
     for (std::size_t i = 0; i < turns_.size(); ++i) {
@@ -140,7 +142,7 @@ protected:
         per_unit /= unit_;
       }
     }
-    return curve(typename curve::made_of_pieces(), u, std::move(q), std::move(polynomials));
+    return curve(typename curve::from_segments_tag(), u, std::move(q), std::move(polynomials));
   }
 
   ends_type ends_;

@@ -101,7 +101,7 @@ public:
 
 private:
   static constexpr R tolerance = R(1e-11); // rad
-  static constexpr R longest_turn = R(0.5);
+  static constexpr R max_rotation = R(0.5);
   static constexpr R least_outlier = R(1e-9); ///< samples that fit to round-off have no outliers
 
   [[nodiscard]] bool is_robust() const {
@@ -265,7 +265,7 @@ private:
     for (Eigen::Index i = dimension; i <= delta.size(); i += dimension) {
       turn = std::max(turn, R(delta.template segment<3>(i - 3).norm()));
     }
-    const R fraction = turn > longest_turn ? R(longest_turn / turn) : R(1);
+    const R fraction = turn > max_rotation ? R(max_rotation / turn) : R(1);
     std::vector<element> moved = controls_;
     last_step_ = fraction * delta;
     return this->moved_by(controls_, last_step_);

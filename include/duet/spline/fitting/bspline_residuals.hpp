@@ -79,7 +79,7 @@ protected:
 
   /// Half-angle vector from control point i − 1 to i.
   [[nodiscard]] static vector3<T> increment(const std::vector<element>& controls, std::size_t i) {
-    return log_vector(turn_between(controls[i - 1], controls[i]), "fit");
+    return log_vector(relative_rotation(controls[i - 1], controls[i]), "fit");
   }
 
   /// Control points perturbed by tangent vectors in their body axes, one after the other.
@@ -203,7 +203,7 @@ private:
   /// Logarithm log(S* Q) along the shorter arc.
   [[nodiscard]] vector3<T> residual(const element& value, std::size_t i) const {
     const bool is_opposite = innermost(dot(value, rows_[i])) < 0;
-    return log_vector(turn_between(value, is_opposite ? element(-rows_[i]) : rows_[i]), "fit");
+    return log_vector(relative_rotation(value, is_opposite ? element(-rows_[i]) : rows_[i]), "fit");
   }
 
   [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return R(2) * components(half); }

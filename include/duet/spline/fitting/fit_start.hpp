@@ -182,7 +182,8 @@ template <class T>
 [[nodiscard]] std::vector<quaternion<T>> rows_seen_from(const quaternion<T>& origin,
                                                         std::vector<quaternion<T>> rows) {
   for (quaternion<T>& each : rows) {
-    each = turn_between(origin, innermost(dot(origin, each)) < 0 ? quaternion<T>(-each) : each);
+    each =
+        relative_rotation(origin, innermost(dot(origin, each)) < 0 ? quaternion<T>(-each) : each);
   }
   return rows;
 }

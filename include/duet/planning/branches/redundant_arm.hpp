@@ -15,7 +15,7 @@ namespace duet::detail {
 ///
 /// \param resolution  maximum distance between consecutive points of curves, lengths relative to
 /// the arm's size
-[[nodiscard]] DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const seven_joints& arm,
+[[nodiscard]] DUET_COMPILED_FUNCTION std::vector<traced_curve> all_curves(const redundant_arm& arm,
                                                                           double resolution);
 
 } // namespace duet::detail

@@ -29,12 +29,12 @@ struct ends_at_rest {
 /// Arc length s of a path as a cubic B-spline of τ, 0 ≤ τ ≤ n: twice continuously differentiable
 /// and increasing, as its coefficients are except for the outer ones. At ends at rest s grows with
 /// τ³, so that a motion with any τ̇ > 0 there is at rest without acceleration.
-class reference_law {
+class reference_parametrisation {
 public:
   /// Approximates given arc lengths.
   ///
   /// \param places  approximate s at τ = 0, 1, …, n, n ≥ 4; exact at τ = 0 and n
-  explicit reference_law(const std::vector<double>& places, ends_at_rest rest = {}) {
+  explicit reference_parametrisation(const std::vector<double>& places, ends_at_rest rest = {}) {
     const std::size_t n = places.size() - 1;
     c_.assign(n + 3, places.back());
     std::fill_n(c_.begin(), 3, places.front());
@@ -45,10 +45,10 @@ public:
       c_[i + 1] = places[i] - std::clamp((after - before) / 6, -after / 2, before / 2);
     }
     if (!rest.first) {
-      go_on(places[0], places[1], places[2], c_[2], c_[1], c_[0]);
+      advance(places[0], places[1], places[2], c_[2], c_[1], c_[0]);
     }
     if (!rest.last) {
-      go_on(places[n], places[n - 1], places[n - 2], c_[n], c_[n + 1], c_[n + 2]);
+      advance(places[n], places[n - 1], places[n - 2], c_[n], c_[n + 1], c_[n + 2]);
     }
   }
 
@@ -86,7 +86,7 @@ public:
 private:
   /// Computes the last two coefficients c_1 and c_0 at an end in motion at p_0, from the next two
   /// positions and the coefficient before them.
-  static void go_on(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0) {
+  static void advance(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0) {
     // The differences have one sign. ds/dτ at the end is c_2 + 2 c_1 − 3 p_0: at least a twentieth
     // of c_2 − p_0 is kept.
     const double near_end = p_1 - p_0, next = p_2 - p_1, most = 2.85 * (c_2 - p_0);

@@ -30,7 +30,7 @@ namespace duet::detail {
 ///
 /// \tparam Room  capacity for joints
 template <int Room>
-class start_chooser {
+class start_search {
   using joints = joint_vector<double, -Room>;
   using choice = start_search_result<-Room>;
   struct candidate {
@@ -40,7 +40,7 @@ class start_chooser {
   };
 
 public:
-  explicit start_chooser(const start_problem<Room>& problem)
+  explicit start_search(const start_problem<Room>& problem)
       : problem_(problem), chain_(problem.chain), options_(problem.options),
         solutions_(chain_, problem.around, options_.plan.tolerance) {}
 
@@ -53,7 +53,7 @@ public:
       const joints start = candidates[k].start;
       auto plan = problem_.follow(start, quick);
       // A joint that a limit blocked begins anew a full turn before it.
-      const joints other = turned_back(start, plan);
+      const joints other = wrap_angle(start, plan);
       const bool is_known = std::any_of(candidates.begin(), candidates.end(),
                                         [&](const candidate& each) { return each.start == other; });
       if (!is_known && !std::isnan(cost(other))) {
@@ -147,7 +147,7 @@ private:
   }
 
   /// Start with the joints that a plan ends with at a limit moved a full turn away from it.
-  [[nodiscard]] joints turned_back(joints start, const motion_plan<-Room>& plan) const {
+  [[nodiscard]] joints wrap_angle(joints start, const motion_plan<-Room>& plan) const {
     constexpr double turn = 2 * std::numbers::pi, close = 1e-2;
     const joints& end = plan.joints.back();
     for (int i = 0; i < chain_.size() && plan.reason == stop_reason::joint_limit; ++i) {
@@ -237,12 +237,12 @@ private:
 };
 
 template <int Room>
-[[nodiscard]] start_search_result<-Room> chosen_start(const start_problem<Room>& problem) {
-  return start_chooser<Room>(problem).choose();
+[[nodiscard]] start_search_result<-Room> find_start(const start_problem<Room>& problem) {
+  return start_search<Room>(problem).choose();
 }
 
 #ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE start_search_result<-16> chosen_start(const start_problem<16>&);
+DUET_COMPILED_TEMPLATE start_search_result<-16> find_start(const start_problem<16>&);
 #endif
 
 } // namespace duet::detail

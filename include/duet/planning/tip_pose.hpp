@@ -16,12 +16,12 @@
 namespace duet::detail {
 
 /// Pose of the tip.
-using tip_place = link_displacement<double>;
+using tip_pose = link_displacement<double>;
 
-[[nodiscard]] inline tip_place place_of(const dual_quaternion<double>& a) {
+[[nodiscard]] inline tip_pose to_tip_pose(const dual_quaternion<double>& a) {
   return {rotation(a), components(translation(a))};
 }
-[[nodiscard]] inline dual_quaternion<double> pose_at(const tip_place& a) {
+[[nodiscard]] inline dual_quaternion<double> to_dual_quaternion(const tip_pose& a) {
   return pose_of_unit(a.rotation, a.translation.eigen());
 }
 [[nodiscard]] inline double length_of(const three_vector<double>& x) {
@@ -31,7 +31,7 @@ using tip_place = link_displacement<double>;
 /// Twist [v; ω], in `frame::hybrid`, of the shorter screw motion from one pose to another in unit
 /// time: ω = 2 log r of the rotation r between them, the displacement of the origin ∫₀¹ exp(sω) v
 /// ds, solved for v.
-[[nodiscard]] inline small_twist error_twist(const tip_place& from, const tip_place& to) {
+[[nodiscard]] inline small_twist error_twist(const tip_pose& from, const tip_pose& to) {
   quaternion<double> r = to.rotation * conj(from.rotation);
   if (r.w() < 0) {
     r = -r;
@@ -53,7 +53,7 @@ using tip_place = link_displacement<double>;
 [[nodiscard]] inline pose_error deviation_of(const small_twist& e) {
   return {length_of(three_vector{e[0], e[1], e[2]}), length_of(three_vector{e[3], e[4], e[5]})};
 }
-[[nodiscard]] inline pose_error pose_error_between(const tip_place& a, const tip_place& b) {
+[[nodiscard]] inline pose_error pose_error_between(const tip_pose& a, const tip_pose& b) {
   return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).rotation};
 }
 

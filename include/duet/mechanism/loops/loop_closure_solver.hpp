@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/rank_revealing_svd.hpp>
 
 #include <Eigen/Core>
 
@@ -36,8 +36,8 @@ template <class Mechanism>
   return of.constraint_jacobian(q) * of.units().asDiagonal();
 }
 template <class Mechanism>
-[[nodiscard]] ranked_matrix linearised(const Mechanism& of, const Eigen::VectorXd& q) {
-  return ranked_matrix(unit_jacobian(of, q));
+[[nodiscard]] rank_revealing_svd linearised(const Mechanism& of, const Eigen::VectorXd& q) {
+  return rank_revealing_svd(unit_jacobian(of, q));
 }
 
 /// The columns of a matrix at these indices.
@@ -69,11 +69,11 @@ inline void put(const Eigen::VectorXd& numbers, const std::vector<int>& these,
 
 /// Damped least squares (Levenberg–Marquardt method) for F(q) = 0.
 template <class Mechanism>
-class closing {
+class loop_closure_solver {
 public:
   /// \param free  numbers of the coordinates that may move
-  closing(const Mechanism& of, const Eigen::VectorXd& guess, const std::vector<int>& free,
-          int most_steps = 200)
+  loop_closure_solver(const Mechanism& of, const Eigen::VectorXd& guess,
+                      const std::vector<int>& free, int most_steps = 200)
       : of_(of), free_(free), q_(guess), f_(of.residuals(guess)), norm_(f_.norm()) {
     for (int i = 0; i < most_steps && norm_ > 0 && step(); ++i) {
     }
@@ -89,7 +89,7 @@ private:
   /// Makes a step that reduces the residual; false if there is none.
   [[nodiscard]] bool step() {
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q_), free_);
-    const ranked_matrix svd(j);
+    const rank_revealing_svd svd(j);
     for (int i = 0; i < 25; ++i) {
       Eigen::VectorXd dx = -svd.damped_solve(f_, damping_ * norm_);
       const double length = dx.norm();

@@ -7,10 +7,10 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/coordinate_turns.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/loop_positions.hpp>
-#include <duet/mechanism/loops/closing.hpp>
+#include <duet/mechanism/loops/loop_closure_solver.hpp>
+#include <duet/mechanism/periodic_coordinates.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Core>
@@ -29,9 +29,9 @@ namespace duet {
 
 namespace detail {
 
-class position_search {
+class assembly_search {
 public:
-  position_search(const closed_chain_mechanism& of, const Eigen::VectorXd& at,
+  assembly_search(const closed_chain_mechanism& of, const Eigen::VectorXd& at,
                   const std::vector<int>& held)
       : of_(of), at_(at), free_(all_but(of.size(), held)), turns_(of) {}
 
@@ -44,7 +44,7 @@ public:
              (result.starts >= options.max_starts || chance <= options.missing_probability);
     };
     for (; !is_enough(); ++result.starts) {
-      const closing found(of_, guess(random), free_, 100);
+      const loop_closure_solver found(of_, guess(random), free_, 100);
       if (found.has_closed()) {
         ++result.closed;
         add(result, wrapped(found.coordinates()));
@@ -121,7 +121,7 @@ private:
     places_.push_back(where);
     assembly_configuration found{q, 0, 1, true};
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q), free_);
-    const Eigen::VectorXd s = ranked_matrix(j).singular_values();
+    const Eigen::VectorXd s = rank_revealing_svd(j).singular_values();
     found.smallest_singular_value = s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
     for (int i = 0; i < of_.size(); ++i) {
       const joint_limits<double>& limits = of_.tree().limits(i);
@@ -143,7 +143,7 @@ private:
   const closed_chain_mechanism& of_;
   Eigen::VectorXd at_;
   std::vector<int> free_;
-  coordinate_turns turns_;
+  periodic_coordinates turns_;
   std::vector<std::vector<Eigen::Matrix<double, 7, 1>>> places_;
 };
 
@@ -162,7 +162,7 @@ find_assembly_configurations(const closed_chain_mechanism& mechanism, const std:
   for (std::size_t i = 0; i < held.size(); ++i) {
     q[held[i]] = at[Eigen::Index(i)];
   }
-  return detail::position_search(mechanism, q, held).run(options);
+  return detail::assembly_search(mechanism, q, held).run(options);
 }
 #endif
 

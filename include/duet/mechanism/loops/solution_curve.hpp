@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/loops/closing.hpp>
-#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/loop_closure_solver.hpp>
+#include <duet/mechanism/loops/rank_revealing_svd.hpp>
 #include <duet/mechanism/loops/second_derivatives.hpp>
 
 #include <Eigen/Core>
@@ -26,7 +26,7 @@ namespace duet::detail {
 struct curve_point {
   Eigen::VectorXd x;
   Eigen::VectorXd tangent; ///< unit tangent dx per unit of arc length
-  Eigen::MatrixXd matrix;  ///< the matrix A of `loop_curve`
+  Eigen::MatrixXd matrix;  ///< the matrix A of `solution_curve`
   Eigen::MatrixXd image;   ///< orthonormal columns that span the image of A
   double least;            ///< smallest nonzero singular value of A
 
@@ -37,11 +37,11 @@ struct curve_point {
 /// The configurations q(s) of a mechanism whose driven coordinates are on the straight line u₀ + s
 /// w, |w| = 1 in units of the coordinates, as a curve in (q_dependent, s), which is smooth where s
 /// reverses: the kernel of A = (∂F/∂q_dependent, ∂F/∂u w) is its tangent.
-class loop_curve {
+class solution_curve {
 public:
   /// \param way  direction of the driven coordinates, each per unit; of any length except for 0
-  loop_curve(const closed_chain_mechanism& of, const Eigen::VectorXd& q0, std::vector<int> drives,
-             const Eigen::VectorXd& way)
+  solution_curve(const closed_chain_mechanism& of, const Eigen::VectorXd& q0,
+                 std::vector<int> drives, const Eigen::VectorXd& way)
       : of_(of), q0_(q0), drives_(std::move(drives)), dependent_(all_but(of.size(), drives_)),
         way_(way.normalized()) {}
 
@@ -98,7 +98,7 @@ public:
   }
 
   /// A step along the tangent from one point and the point of the curve that it leads to.
-  struct stretch {
+  struct curve_interval {
     curve_point end;
     double step;
   };
@@ -106,10 +106,10 @@ public:
   /// step: by the Illinois variant of regula falsi (false position), which halves the weight of a
   /// bound that is kept.
   template <class Rate>
-  [[nodiscard]] stretch zero(const curve_point& from, const curve_point& to, double step,
-                             const Rate& rate) const {
+  [[nodiscard]] curve_interval zero(const curve_point& from, const curve_point& to, double step,
+                                    const Rate& rate) const {
     double a = 0, b = step, at_a = rate(from), at_b = rate(to);
-    stretch result{to, step};
+    curve_interval result{to, step};
     for (int i = 0, side = 0; i < 60 && at_a != at_b; ++i) {
       const double c = (a * at_b - b * at_a) / (at_b - at_a);
       const auto next = reached(from, c);
@@ -166,7 +166,7 @@ private:
   [[nodiscard]] std::optional<curve_point> point(const Eigen::VectorXd& x,
                                                  const Eigen::VectorXd& before) const {
     curve_point result{x, {}, matrix(x), {}, 0};
-    const ranked_matrix svd(result.matrix);
+    const rank_revealing_svd svd(result.matrix);
     if (svd.rank() != x.size() - 1) {
       return std::nullopt;
     }
@@ -189,7 +189,7 @@ private:
     double before = most;
     for (int i = 0; i < 12; ++i) {
       const Eigen::VectorXd f = residuals(x);
-      const ranked_matrix svd(matrix(x).leftCols(n));
+      const rank_revealing_svd svd(matrix(x).leftCols(n));
       if (svd.rank() < x.size() - 1) {
         return false;
       }

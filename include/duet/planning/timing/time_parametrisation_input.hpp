@@ -21,7 +21,7 @@ namespace duet::detail {
 
 /// Waypoints, limits and boundary velocities of a time parametrisation, validated.
 template <int N>
-struct timing_problem {
+struct time_parametrisation_input {
   using vector = joint_vector<double, N>;
 
   joint_polygon<vector> polygon;
@@ -72,7 +72,7 @@ template <class V, class Velocity, class Acceleration, class Options>
 [[nodiscard]] auto timing_problem_of(const std::vector<V>& waypoints, const Velocity& velocity,
                                      const Acceleration& acceleration, const Options& options) {
   constexpr int joints = V::RowsAtCompileTime > 0 ? V::RowsAtCompileTime : -V::MaxRowsAtCompileTime;
-  using problem = timing_problem<joints>;
+  using problem = time_parametrisation_input<joints>;
   using vector = typename problem::vector;
   require(!waypoints.empty(), "duet: time_optimal_trajectory: no waypoints");
   const Eigen::Index n = waypoints.front().size();
@@ -112,7 +112,7 @@ template <class V, class Velocity, class Acceleration, class Options>
 ///
 /// \throws invalid_input if a joint still leaves its range because of its velocity at an end
 template <int N>
-[[nodiscard]] auto slopes_within_ranges(const timing_problem<N>& problem,
+[[nodiscard]] auto slopes_within_ranges(const time_parametrisation_input<N>& problem,
                                         std::vector<joint_vector<double, N>> slopes) {
   const auto& polygon = problem.polygon;
   const auto safe = monotone_slopes(polygon);

@@ -23,21 +23,21 @@ namespace duet::detail {
 /// Equation Σ weights_j x_j = right for rotations so small that their order does not matter and
 /// coordinates do not mix.
 template <class T>
-struct small_turn_equation {
+struct small_angle_equation {
   std::array<real_type_t<T>, 3> weights;
   vector3<T> right;
 };
 
 /// Solution of all these equations; zero if they are singular.
 template <class R, class Equations>
-[[nodiscard]] std::vector<vector3<R>> small_turn_solution(const Equations& equations) {
+[[nodiscard]] std::vector<vector3<R>> small_angle_solution(const Equations& equations) {
   const std::size_t n = equations.size();
   typename Equations::matrix matrix;
   auto& rows = matrix.rows();
   rows.resize(n);
   std::vector<vector3<R>> x(n);
   for (std::size_t row = 0; row < n; ++row) {
-    const small_turn_equation<R> equation = equations.small_turns(row);
+    const small_angle_equation<R> equation = equations.small_angles(row);
     for (std::size_t j = 0; j < 3; ++j) {
       matrix3<R>& block = rows[row].at(equations.place(row, j));
       block.setZero();
@@ -66,7 +66,7 @@ template <class R, class Equations>
   std::vector<R> moved(n, R(0)), term(n);
   R largest(0);
   for (std::size_t row = 0; row < n; ++row) {
-    const small_turn_equation<R> equation = equations.small_turns(row);
+    const small_angle_equation<R> equation = equations.small_angles(row);
     term[row] = length(equation.right);
     for (std::size_t j = 0; j < 3; ++j) {
       const std::size_t k = equations.unknown(row, j);

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
-#include <duet/planning/timing/pace_bounds.hpp>
-#include <duet/planning/timing/pace_model.hpp>
-#include <duet/planning/timing/quickest_pace.hpp>
+#include <duet/planning/timing/barrier_newton_model.hpp>
+#include <duet/planning/timing/minimum_time_path_velocity.hpp>
+#include <duet/planning/timing/path_velocity_constraints.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ namespace duet::detail {
 ///
 /// A limit proportional to 1 / √p, with p = b, is replaced by (3 m − p) / (2 m √m), its tangent at
 /// the value m of b in the middle of a segment, which is below it.
-class pace_search {
+class log_barrier_solver {
 public:
   /// Starts from a constant path velocity that is low enough: in a time k times as long,
   /// velocities, accelerations and jerks are smaller by k, k² and k³.
@@ -35,17 +35,18 @@ public:
   /// \param bounds  constraints; must outlive the search
   /// \param ends    squared path velocities required at the ends, where joint velocities satisfy
   /// their limits; 0: free
-  explicit pace_search(const pace_bounds& bounds, const std::array<double, 2>& ends = {0, 0})
-      : bounds_(bounds), ends_(ends), pace_(bounds.pieces.back().first + 3, 1.0) {
+  explicit log_barrier_solver(const path_velocity_constraints& bounds,
+                              const std::array<double, 2>& ends = {0, 0})
+      : bounds_(bounds), ends_(ends), squared_velocity_(bounds.pieces.back().first + 3, 1.0) {
     double stretch = 0;
-    for_each_bound(pace_, [&](const pace_bound& b) {
+    for_each_bound(squared_velocity_, [&](const barrier_constraint& b) {
       stretch = std::max(stretch, std::pow((std::abs(b.x) + b.beyond) / b.limit, 1.0 / b.order));
     });
     double slow = .7 / (stretch * stretch);
     for (const double end : ends_) {
       slow = end > 0 ? std::min(slow, end) : slow;
     }
-    std::fill(pace_.begin(), pace_.end(), slow);
+    std::fill(squared_velocity_.begin(), squared_velocity_.end(), slow);
     is_kept_ = {ends_[0] == slow, ends_[1] == slow};
   }
 
@@ -55,13 +56,13 @@ public:
   ///
   /// \return the fraction of the required value attained at each end; 1 where
   /// it is attained or free
-  [[nodiscard]] std::array<double, 2> reach_ends() {
+  [[nodiscard]] std::array<double, 2> find_feasible_start() {
     double count = 0; // number of logarithms: for a convex set the fraction missing is count / lift
-    for_each_bound(pace_, [&](const pace_bound&) { count += 2; });
+    for_each_bound(squared_velocity_, [&](const barrier_constraint&) { count += 2; });
     const auto missing = [&] {
       double result = 0;
       for (std::size_t e = 0; e < 2; ++e) {
-        result = std::max(result, is_slow(e) ? 1 - pace_[end_of(e)] / ends_[e] : 0);
+        result = std::max(result, is_slow(e) ? 1 - squared_velocity_[end_of(e)] / ends_[e] : 0);
       }
       return result;
     };
@@ -70,13 +71,14 @@ public:
       for (int steps = 0; steps < 60 && are_ends_slow() && step({0, lift}) > .1; ++steps) {
       }
     }
-    return {is_slow(0) ? pace_.front() / ends_[0] : 1, is_slow(1) ? pace_.back() / ends_[1] : 1};
+    return {is_slow(0) ? squared_velocity_.front() / ends_[0] : 1,
+            is_slow(1) ? squared_velocity_.back() / ends_[1] : 1};
   }
 
   /// Joint whose acceleration and jerk limits are the nearest, summed over the path.
   [[nodiscard]] std::size_t nearest_joint() const {
     std::vector<double> sums(bounds_.joints.size() / bounds_.pieces.size());
-    for_each_bound(pace_, [&](const pace_bound& b) {
+    for_each_bound(squared_velocity_, [&](const barrier_constraint& b) {
       if (b.joint) {
         sums[*b.joint] += b.limit / (b.limit - b.beyond - std::abs(b.x));
       }
@@ -89,20 +91,20 @@ public:
   /// their values.
   [[nodiscard]] const std::vector<double>& quickest(double accuracy) {
     if (are_ends_slow()) {
-      for (double& each : pace_) {
+      for (double& each : squared_velocity_) {
         each *= .95;
       }
       for (std::size_t e = 0; e < 2; ++e) {
-        ends_[e] = ends_[e] > 0 ? pace_[end_of(e)] : 0;
+        ends_[e] = ends_[e] > 0 ? squared_velocity_[end_of(e)] : 0;
       }
       is_kept_ = {true, true};
     }
-    const double unit = double(bounds_.pieces.size()) / time(pace_);
+    const double unit = double(bounds_.pieces.size()) / time(squared_velocity_);
     for (double weight = 40 * unit; weight < accuracy * unit; weight *= 4) {
       for (int steps = 0; steps < 60 && step({weight, 0}) > .1; ++steps) {
       }
     }
-    return pace_;
+    return squared_velocity_;
   }
 
 private:
@@ -111,20 +113,22 @@ private:
     double time, lift;
   };
 
-  [[nodiscard]] std::size_t end_of(std::size_t e) const { return e == 0 ? 0 : pace_.size() - 1; }
+  [[nodiscard]] std::size_t end_of(std::size_t e) const {
+    return e == 0 ? 0 : squared_velocity_.size() - 1;
+  }
   [[nodiscard]] bool is_slow(std::size_t e) const { return ends_[e] > 0 && !is_kept_[e]; }
   [[nodiscard]] bool are_ends_slow() const { return is_slow(0) || is_slow(1); }
 
   void for_each_bound(const std::vector<double>& pace, const auto& f) const {
-    static constexpr pace_row zero{};
+    static constexpr linear_form zero{};
     const joint_bounds* joint = bounds_.joints.data();
     const std::size_t joints = bounds_.joints.size() / bounds_.pieces.size();
     for (const piece_bounds& piece : bounds_.pieces) {
       const double* c = &pace[piece.first];
-      const pace_row row = middle_of(piece);
+      const linear_form row = middle_of(piece);
       const double m = times(row, c), scale = 1 / (m * std::sqrt(m));
       std::array<double, 4> limit;
-      std::array<pace_row, 4> limit_by;
+      std::array<linear_form, 4> limit_by;
       for (std::size_t r = 0; r < 4; ++r) {
         const double p = times(piece.pace[r], c);
         limit[r] = (3 * m - p) * scale / 2;
@@ -136,31 +140,33 @@ private:
       const bool is_last = &piece == &bounds_.pieces.back();
       // At ends with a required velocity nothing remains to be optimised.
       for (std::size_t r = is_first && ends_[0] > 0; r + (is_last && ends_[1] > 0) < 10; ++r) {
-        f(pace_bound{2,
-                     {},
-                     piece.first,
-                     1,
-                     0,
-                     times(piece.square_rate[r], c),
-                     zero,
-                     zero,
-                     piece.square_rate[r]});
+        f(barrier_constraint{2,
+                             {},
+                             piece.first,
+                             1,
+                             0,
+                             times(piece.square_rate[r], c),
+                             zero,
+                             zero,
+                             piece.square_rate[r]});
       }
       for (std::size_t j = 0; j < joints; ++j, ++joint) {
         const double change = times(joint->beyond_acceleration, c);
         const double jerk = times(joint->beyond_jerk, c);
         for (std::size_t r = 0; r < 4; ++r) {
           const bool is_end = r == 0 || r == 3;
-          f(pace_bound{2, j, piece.first, 1, is_end ? 0 : change, times(joint->acceleration[r], c),
-                       zero, is_end ? zero : joint->beyond_acceleration, joint->acceleration[r]});
-          f(pace_bound{3, j, piece.first, limit[r], is_end ? 0 : jerk, times(joint->jerk[r], c),
-                       limit_by[r], is_end ? zero : joint->beyond_jerk, joint->jerk[r]});
+          f(barrier_constraint{2, j, piece.first, 1, is_end ? 0 : change,
+                               times(joint->acceleration[r], c), zero,
+                               is_end ? zero : joint->beyond_acceleration, joint->acceleration[r]});
+          f(barrier_constraint{3, j, piece.first, limit[r], is_end ? 0 : jerk,
+                               times(joint->jerk[r], c), limit_by[r],
+                               is_end ? zero : joint->beyond_jerk, joint->jerk[r]});
         }
       }
     }
   }
-  [[nodiscard]] static pace_row middle_of(const piece_bounds& piece) {
-    pace_row result;
+  [[nodiscard]] static linear_form middle_of(const piece_bounds& piece) {
+    linear_form result;
     for (std::size_t i = 0; i < 3; ++i) {
       result[i] =
           (piece.pace[0][i] + 3 * (piece.pace[1][i] + piece.pace[2][i]) + piece.pace[3][i]) / 8;
@@ -169,14 +175,14 @@ private:
   }
   void for_each_middle(const std::vector<double>& pace, const auto& f) const {
     for (const piece_bounds& piece : bounds_.pieces) {
-      const pace_row row = middle_of(piece);
+      const linear_form row = middle_of(piece);
       f(piece, row, times(row, &pace[piece.first]));
     }
   }
 
   [[nodiscard]] double time(const std::vector<double>& pace) const {
     double result = 0;
-    for_each_middle(pace, [&](const piece_bounds& piece, const pace_row&, double m) {
+    for_each_middle(pace, [&](const piece_bounds& piece, const linear_form&, double m) {
       result += piece.length / std::sqrt(m);
     });
     return result;
@@ -203,40 +209,41 @@ private:
       }
     };
     std::for_each(pace.begin(), pace.end(), take);
-    for_each_bound(pace, [&](const pace_bound& b) {
+    for_each_bound(pace, [&](const barrier_constraint& b) {
       const double limit = b.limit - b.beyond;
       is_inside = is_inside && limit > 0;
       take((limit - b.x) * (limit + b.x));
     });
-    for_each_middle(pace, [&](const piece_bounds&, const pace_row&, double m) {
+    for_each_middle(pace, [&](const piece_bounds&, const linear_form&, double m) {
       sum -= rooted_limits() * std::log(m);
     });
     return is_inside ? sum - std::log(product) : std::numeric_limits<double>::infinity();
   }
 
-  [[nodiscard]] pace_model model_of(aim weights) const {
-    pace_model result(pace_.size());
-    for (std::size_t i = 0; i < pace_.size(); ++i) {
-      const double inverse = 1 / pace_[i];
+  [[nodiscard]] barrier_newton_model model_of(aim weights) const {
+    barrier_newton_model result(squared_velocity_.size());
+    for (std::size_t i = 0; i < squared_velocity_.size(); ++i) {
+      const double inverse = 1 / squared_velocity_[i];
       result.gradient[i] -= inverse;
       result.matrix[i][0] += inverse * inverse;
     }
-    for_each_bound(pace_, [&](const pace_bound& b) {
+    for_each_bound(squared_velocity_, [&](const barrier_constraint& b) {
       const double limit = b.limit - b.beyond;
       for (const int sign : {-1, 1}) {
         const double inverse = 1 / (limit + sign * b.x);
-        pace_row by;
+        linear_form by;
         for (std::size_t i = 0; i < 3; ++i) {
           by[i] = b.limit_by[i] - b.beyond_by[i] + sign * b.x_by[i];
         }
         result.add(b.first, by, -inverse, inverse * inverse);
       }
     });
-    for_each_middle(pace_, [&](const piece_bounds& piece, const pace_row& row, double m) {
-      const double by_time = weights.time * piece.length / (2 * m * std::sqrt(m));
-      result.add(piece.first, row, -by_time - rooted_limits() / m,
-                 (1.5 * by_time + rooted_limits() / m) / m);
-    });
+    for_each_middle(squared_velocity_,
+                    [&](const piece_bounds& piece, const linear_form& row, double m) {
+                      const double by_time = weights.time * piece.length / (2 * m * std::sqrt(m));
+                      result.add(piece.first, row, -by_time - rooted_limits() / m,
+                                 (1.5 * by_time + rooted_limits() / m) / m);
+                    });
     for (std::size_t e = 0; e < 2; ++e) {
       if (is_slow(e)) {
         result.gradient[end_of(e)] -= weights.lift / ends_[e];
@@ -251,7 +258,7 @@ private:
   ///
   /// \return twice the decrease that the model predicts; 0 if no step is found
   double step(aim weights) {
-    pace_model here = model_of(weights);
+    barrier_newton_model here = model_of(weights);
     const std::vector<double> slope = here.gradient, way = here.solution();
     double fall = 0;
     for (std::size_t i = 0; i < way.size(); ++i) {
@@ -261,21 +268,21 @@ private:
     std::array<double, 2> arrival{2, 2};
     for (std::size_t e = 0; e < 2; ++e) {
       const std::size_t i = end_of(e);
-      if (is_slow(e) && pace_[i] + way[i] >= ends_[e]) {
-        arrival[e] = (ends_[e] - pace_[i]) / way[i];
+      if (is_slow(e) && squared_velocity_[i] + way[i] >= ends_[e]) {
+        arrival[e] = (ends_[e] - squared_velocity_[i]) / way[i];
       }
     }
-    const double before = value(pace_, weights);
+    const double before = value(squared_velocity_, weights);
     std::vector<double> next(way.size());
     for (double part = std::min({1.0, arrival[0], arrival[1]}); part > 1e-6; part /= 2) {
       for (std::size_t i = 0; i < way.size(); ++i) {
-        next[i] = pace_[i] + part * way[i];
+        next[i] = squared_velocity_[i] + part * way[i];
       }
       if (value(next, weights) < before - 1e-3 * part * fall) {
-        pace_ = next;
+        squared_velocity_ = next;
         for (std::size_t e = 0; e < 2; ++e) {
           if (part == arrival[e]) {
-            pace_[end_of(e)] = ends_[e];
+            squared_velocity_[end_of(e)] = ends_[e];
             is_kept_[e] = true;
           }
         }
@@ -285,19 +292,18 @@ private:
     return 0;
   }
 
-  const pace_bounds& bounds_;
+  const path_velocity_constraints& bounds_;
   std::array<double, 2> ends_;
   std::array<bool, 2> is_kept_{};
-  std::vector<double> pace_;
+  std::vector<double> squared_velocity_;
 };
 
 #ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION found_pace quickest_pace(const pace_bounds& bounds,
-                                                const std::array<double, 2>& ends,
-                                                double accuracy) {
-  pace_search search(bounds, ends);
-  found_pace result;
-  result.reached = search.reach_ends();
+DUET_COMPILED_FUNCTION path_velocity_result minimum_time_path_velocity(
+    const path_velocity_constraints& bounds, const std::array<double, 2>& ends, double accuracy) {
+  log_barrier_solver search(bounds, ends);
+  path_velocity_result result;
+  result.reached = search.find_feasible_start();
   result.nearest_joint = search.nearest_joint();
   result.coefficients = search.quickest(accuracy);
   return result;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/planning/branches/angle_pairs.hpp>
-#include <duet/planning/tip_place.hpp>
+#include <duet/planning/tip_pose.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <algorithm>
@@ -19,15 +19,15 @@ using vector3d = three_vector<double>;
 
 /// Vector R v + t with a rotation R by θ about a unit vector n: `along` + cos θ
 /// `across` + sin θ `beside`.
-struct turned_vector {
+struct rotating_vector {
   vector3d along{}, across{}, beside{};
 
-  turned_vector(const vector3d& n, const vector3d& v, const vector3d& t = {})
+  rotating_vector(const vector3d& n, const vector3d& v, const vector3d& t = {})
       : along(dot(n, v) * n), across(v - along), beside(cross(n, v)) {
     along = along + t;
   }
   /// Constant vector.
-  explicit turned_vector(const vector3d& t) : along(t) {}
+  explicit rotating_vector(const vector3d& t) : along(t) {}
 
   [[nodiscard]] vector3d at(double theta) const {
     return along + std::cos(theta) * across + std::sin(theta) * beside;
@@ -38,18 +38,20 @@ struct turned_vector {
 };
 
 /// Component n·v.
-[[nodiscard]] inline turning_value part_along(const vector3d& n, const turned_vector& v) {
+[[nodiscard]] inline first_harmonic part_along(const vector3d& n, const rotating_vector& v) {
   return {dot(n, v.along), dot(n, v.across), dot(n, v.beside)};
 }
 
 /// Angle of the rotation about n that maps u to v (Paden–Kahan subproblem 1), given n × u and
 /// n × v; 0 if these vanish.
-[[nodiscard]] inline double angle_across(const vector3d& n, const vector3d& u, const vector3d& v) {
+[[nodiscard]] inline double subproblem1_angle(const vector3d& n, const vector3d& u,
+                                              const vector3d& v) {
   return std::atan2(dot(n, cross(u, v)), dot(u, v));
 }
 /// Angle of the rotation about n that maps u to v (Paden–Kahan subproblem 1).
-[[nodiscard]] inline double angle_about(const vector3d& n, const vector3d& u, const vector3d& v) {
-  return angle_across(n, cross(n, u), cross(n, v));
+[[nodiscard]] inline double subproblem1_angle_about(const vector3d& n, const vector3d& u,
+                                                    const vector3d& v) {
+  return subproblem1_angle(n, cross(n, u), cross(n, v));
 }
 
 /// Rotation about an axis n that maps one vector, rotated by θ, to another, rotated by φ. Both must
@@ -58,16 +60,16 @@ struct turned_vector {
 /// A small angle is ill-conditioned as a function of its cosine. Near the axis the perpendiculars
 /// U = n × v are used instead: |U + U′t| = |V + V′t| along the line on which f = g has two
 /// solutions. They are close in θ and φ, but not in the angle of the rotation.
-class middle_turn {
+class connecting_rotation {
 public:
-  middle_turn(const vector3d& axis, const turned_vector& start, const turned_vector& end,
-              const turning_value& f, const turning_value& g)
+  connecting_rotation(const vector3d& axis, const rotating_vector& start,
+                      const rotating_vector& end, const first_harmonic& f, const first_harmonic& g)
       : axis_(axis), start_(start), end_(end), f_(f), g_(g),
         close_by_(reach * reach *
                   std::max(dot(start.across, start.across), dot(end.across, end.across))) {}
   /// Rotation to a constant vector, with φ = 0.
-  middle_turn(const vector3d& axis, const turned_vector& start, const vector3d& end)
-      : middle_turn(axis, start, turned_vector(end), {0, 0, 0}, {0, 0, 1}) {}
+  connecting_rotation(const vector3d& axis, const rotating_vector& start, const vector3d& end)
+      : connecting_rotation(axis, start, rotating_vector(end), {0, 0, 0}, {0, 0, 1}) {}
 
   /// Calls visit(θ, φ, rotation angle, multiplicity) for a θ and φ that solve both equations to
   /// round-off; near the axis for all solutions close to them that have not been visited before.
@@ -105,7 +107,7 @@ private:
     vector3d from, to;
     double square; ///< squared distance from the axis
 
-    ways(const middle_turn& turn, const place& x)
+    ways(const connecting_rotation& turn, const place& x)
         : from(cross(turn.axis_, turn.start_.at(x.theta))),
           to(cross(turn.axis_, turn.end_.at(x.phi))), square(dot(from, from)) {}
   };
@@ -120,7 +122,7 @@ private:
     double error = rounding; ///< error of U and V
     bool is_fold = false;    ///< f and g do not change to first order: `at` itself counts twice
 
-    beside(const middle_turn& turn, const place& x) : at(x) {
+    beside(const connecting_rotation& turn, const place& x) : at(x) {
       const double level = turn.f_.at(x.theta) - turn.g_.at(x.phi);
       const double by_theta = turn.f_.rate(x.theta), by_phi = -turn.g_.rate(x.phi);
       const double slope = by_theta * by_theta + by_phi * by_phi;
@@ -219,12 +221,12 @@ private:
                  const Visit& visit) {
     is_open_ = !(w.square > error * error);
     nearest_ = is_open_ ? 0 : std::min(nearest_, std::sqrt(w.square));
-    visit(x.theta, x.phi, angle_across(axis_, w.from, w.to), multiplicity);
+    visit(x.theta, x.phi, subproblem1_angle(axis_, w.from, w.to), multiplicity);
   }
 
   vector3d axis_;
-  turned_vector start_, end_;
-  turning_value f_, g_;
+  rotating_vector start_, end_;
+  first_harmonic f_, g_;
   double close_by_; ///< squared distance from the axis
   double nearest_ = HUGE_VAL;
   bool is_open_ = false;

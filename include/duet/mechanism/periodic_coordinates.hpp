@@ -15,11 +15,11 @@
 
 namespace duet::detail {
 
-struct coordinate_turns {
+struct periodic_coordinates {
   std::vector<bool> angles; ///< for each coordinate, true if a full turn of it changes no pose
   std::vector<int> vectors; ///< numbers of the first coordinates of rotation vectors
 
-  explicit coordinate_turns(const closed_chain_mechanism& of)
+  explicit periodic_coordinates(const closed_chain_mechanism& of)
       : angles(std::size_t(of.size()), false) {
     int i = 0;
     for (const tree_joint& each : of.tree().joints()) {

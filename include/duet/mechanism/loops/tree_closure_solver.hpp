@@ -3,14 +3,14 @@
 
 #include <duet/core/compiled.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/text/nearest_names.hpp>
+#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/mechanism/closed_loop.hpp>
 #include <duet/mechanism/closed_tree.hpp>
 #include <duet/mechanism/joint.hpp>
 #include <duet/mechanism/kinematic_tree.hpp>
-#include <duet/mechanism/loops/closing.hpp>
+#include <duet/mechanism/loops/loop_closure_solver.hpp>
 #include <duet/mechanism/tree_loop.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
@@ -60,7 +60,7 @@ closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
 DUET_COMPILED_FUNCTION Eigen::VectorXd
 closed_chain_mechanism::closed(const Eigen::VectorXd& guess, const std::vector<int>& held) const {
   detail::require(guess.allFinite(), "duet: closed_chain_mechanism: the guess is not finite");
-  const detail::closing found(*this, guess, detail::all_but(size(), held));
+  const detail::loop_closure_solver found(*this, guess, detail::all_but(size(), held));
   if (!found.has_closed()) {
     detail::raise(
         loop_closure_failure("duet: closed_chain_mechanism: no position near the guess: residual " +
@@ -97,7 +97,7 @@ closed_chain_mechanism::frame(std::size_t i, const constraint_frame& at) const {
       names.push_back(each.name);
     }
     detail::bad_loop(given_, i,
-                     "no link \"" + at.link + "\": " + detail::nearest_names(at.link, names));
+                     "no link \"" + at.link + "\": " + detail::closest_names(at.link, names));
   }
   const auto& [r, t] = at.offset;
   if (!std::isfinite(t[0] + t[1] + t[2]) || !std::isfinite(squared_norm(r))) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/planning/timing/pace_bounds.hpp>
+#include <duet/planning/timing/path_velocity_constraints.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -17,23 +17,23 @@ namespace duet::detail {
 /// Constraint |x| + beyond ≤ limit on a squared path velocity, with the derivatives of all three
 /// with respect to its coefficients from `first` on. `order` n: limit of the n-th time derivative,
 /// for velocities of their squares.
-struct pace_bound {
+struct barrier_constraint {
   int order;
   std::optional<std::size_t> joint; ///< joint, if the constraint is of a single joint
   std::size_t first;
   double limit, beyond, x;
-  const pace_row &limit_by, &beyond_by, &x_by;
+  const linear_form &limit_by, &beyond_by, &x_by;
 };
 
 /// Gradient of a function of the coefficients, and the band of its Hessian: (i, i), (i, i + 1) and
 /// (i, i + 2).
-struct pace_model {
+struct barrier_newton_model {
   std::vector<double> gradient;
-  std::vector<pace_row> matrix;
+  std::vector<linear_form> matrix;
 
-  explicit pace_model(std::size_t n) : gradient(n), matrix(n) {}
+  explicit barrier_newton_model(std::size_t n) : gradient(n), matrix(n) {}
   /// Adds a function f of a linear form of the coefficients, given f' and f''.
-  void add(std::size_t first, const pace_row& by, double slope, double curvature) {
+  void add(std::size_t first, const linear_form& by, double slope, double curvature) {
     for (std::size_t i = 0; i < 3; ++i) {
       gradient[first + i] += slope * by[i];
       for (std::size_t j = i; j < 3; ++j) {

@@ -3,8 +3,8 @@
 
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/planning/branches/angle_pairs.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/middle_turn.hpp>
+#include <duet/planning/branches/connecting_rotation.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -29,8 +29,8 @@ namespace duet::detail {
 }
 
 /// Product of the rotations by α and β about axes a and b.
-[[nodiscard]] inline quaternion<double> two_turns(const vector3d& a, double alpha,
-                                                  const vector3d& b, double beta) {
+[[nodiscard]] inline quaternion<double> rotation_product(const vector3d& a, double alpha,
+                                                         const vector3d& b, double beta) {
   const sines_at_once<2> halves(alpha / 2, beta / 2);
   return turn_about(a, halves.sine(0), halves.cosine(0)) *
          turn_about(b, halves.sine(1), halves.cosine(1));
@@ -38,7 +38,7 @@ namespace duet::detail {
 
 /// Two rotations, first by β about b, then by α about a, that map one unit vector to another:
 /// Paden–Kahan subproblem 2 for directions.
-class two_turns_between {
+class subproblem2 {
 public:
   struct solution {
     double alpha = 0, beta = 0;
@@ -48,10 +48,10 @@ public:
   /// Solves for both angles.
   ///
   /// \param error  error of the vectors, if it exceeds round-off
-  two_turns_between(const vector3d& a, const vector3d& b, const vector3d& from, const vector3d& to,
-                    double error = 0) {
-    const turned_vector by_b(b, from);
-    middle_turn first(a, by_b, to);
+  subproblem2(const vector3d& a, const vector3d& b, const vector3d& from, const vector3d& to,
+              double error = 0) {
+    const rotating_vector by_b(b, from);
+    connecting_rotation first(a, by_b, to);
     const bool has_beta = visit_zeros(
         {dot(a, by_b.along) - dot(a, to), dot(a, by_b.across), dot(a, by_b.beside)},
         [&](double near_beta, int near_multiplicity) {
@@ -86,13 +86,14 @@ private:
 /// \return the sine of the smallest angle between the last axis and the first; 0 if
 /// α or β is undetermined
 template <class Visit>
-double visit_three_turns(const loop_joint& a, const loop_joint& b, const loop_joint& c,
-                         const quaternion<double>& turn, const Visit& visit, double error = 0) {
+double for_each_three_axis_decomposition(const loop_joint& a, const loop_joint& b,
+                                         const loop_joint& c, const quaternion<double>& turn,
+                                         const Visit& visit, double error = 0) {
   // The last rotation leaves its axis invariant; the first one preserves the angle between that
   // axis and its own.
-  const two_turns_between both(a.axis, b.axis, c.axis, rotated(turn, c.axis), error);
+  const subproblem2 both(a.axis, b.axis, c.axis, rotated(turn, c.axis), error);
   for (const auto& [alpha, beta, multiplicity] : both) {
-    const quaternion<double> before = two_turns(a.axis, alpha, b.axis, beta);
+    const quaternion<double> before = rotation_product(a.axis, alpha, b.axis, beta);
     visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
   }
   return both.nearest();

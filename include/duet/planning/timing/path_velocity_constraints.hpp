@@ -3,7 +3,7 @@
 
 #include <duet/planning/joint_trajectory.hpp>
 #include <duet/planning/timing/piece_polynomial.hpp>
-#include <duet/planning/timing/reference_law.hpp>
+#include <duet/planning/timing/reference_parametrisation.hpp>
 
 #include <Eigen/Core>
 
@@ -22,18 +22,19 @@ namespace duet::detail {
 
 /// Linear form of the three B-spline coefficients of the squared path velocity that
 /// are active in a segment.
-using pace_row = std::array<double, 3>;
+using linear_form = std::array<double, 3>;
 
-[[nodiscard]] inline double times(const pace_row& row, const double* c) {
+[[nodiscard]] inline double times(const linear_form& row, const double* c) {
   return row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
 }
 
 /// Polynomial in τ − k, by its powers, of a squared path velocity in interval k. The latter is a
 /// quadratic B-spline whose outer coefficients are its values at the ends.
-[[nodiscard]] inline std::array<pace_row, 3> pace_powers(std::size_t k, std::size_t intervals) {
-  const pace_row start = k == 0 ? pace_row{1, 0, 0} : pace_row{.5, .5, 0};
-  const pace_row end = k + 1 == intervals ? pace_row{0, 0, 1} : pace_row{0, .5, .5};
-  std::array<pace_row, 3> result{start, {}, {}};
+[[nodiscard]] inline std::array<linear_form, 3> path_velocity_powers(std::size_t k,
+                                                                     std::size_t intervals) {
+  const linear_form start = k == 0 ? linear_form{1, 0, 0} : linear_form{.5, .5, 0};
+  const linear_form end = k + 1 == intervals ? linear_form{0, 0, 1} : linear_form{0, .5, .5};
+  std::array<linear_form, 3> result{start, {}, {}};
   for (std::size_t i = 0; i < 3; ++i) {
     const double middle = i == 1 ? 1 : 0;
     result[1][i] = 2 * (middle - start[i]);
@@ -46,8 +47,8 @@ using pace_row = std::array<double, 3>;
 /// by τ̇, by their four Bernstein coefficients in a segment. `beyond` c bounds the error of the
 /// middle two; the outer ones are values at the ends.
 struct joint_bounds {
-  std::array<pace_row, 4> acceleration{}, jerk{};
-  pace_row beyond_acceleration{}, beyond_jerk{};
+  std::array<linear_form, 4> acceleration{}, jerk{};
+  linear_form beyond_acceleration{}, beyond_jerk{};
 };
 
 /// Bernstein coefficients in a segment of the squared path velocity, and of the square of the
@@ -55,17 +56,17 @@ struct joint_bounds {
 struct piece_bounds {
   std::size_t first; ///< index of the coefficient that c[0] is
   double length;     ///< length of the segment in τ
-  std::array<pace_row, 4> pace{};
-  std::array<pace_row, 10> square_rate{};
+  std::array<linear_form, 4> pace{};
+  std::array<linear_form, 10> square_rate{};
 };
 
 /// Bernstein coefficients of p u² for cubic polynomials u and p given by theirs; those of p are
 /// linear forms.
-[[nodiscard]] inline std::array<pace_row, 10> times_square(const std::array<pace_row, 4>& p,
-                                                           const std::array<double, 4>& u) {
+[[nodiscard]] inline std::array<linear_form, 10> times_square(const std::array<linear_form, 4>& p,
+                                                              const std::array<double, 4>& u) {
   constexpr std::array<double, 4> of_3{1, 3, 3, 1}; // binomial coefficients
   constexpr std::array<double, 10> of_9{1, 9, 36, 84, 126, 126, 84, 36, 9, 1};
-  std::array<pace_row, 10> result{};
+  std::array<linear_form, 10> result{};
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < 4; ++b) {
       for (std::size_t r = 0; r < 4; ++r) {
@@ -87,7 +88,7 @@ struct piece_bounds {
 ///     q̈     = q'' s'² pace + q' change,            change = s̈ = s'' pace + s' pace' / 2
 ///     q⃛ / τ̇ = q''' s'³ pace + 3 q'' s' change + q' third,
 ///     third  = s''' pace + 3/2 s'' pace' + s' pace'' / 2
-struct pace_bounds {
+struct path_velocity_constraints {
   std::vector<piece_bounds> pieces;
   std::vector<joint_bounds> joints; ///< constraints of each segment, one per joint
 
@@ -95,8 +96,9 @@ struct pace_bounds {
   ///
   /// \param intervals  number of intervals of τ
   template <class V>
-  pace_bounds(const std::vector<joint_cubic<V>>& curve, const std::vector<reference_piece>& path,
-              std::size_t intervals, const V& velocity, const V& acceleration, const V& jerk) {
+  path_velocity_constraints(const std::vector<joint_cubic<V>>& curve,
+                            const std::vector<reference_piece>& path, std::size_t intervals,
+                            const V& velocity, const V& acceleration, const V& jerk) {
     pieces.reserve(path.size());
     joints.reserve(path.size() * std::size_t(velocity.size()));
     for (const reference_piece& piece : path) {
@@ -118,11 +120,11 @@ private:
     const polynomial half_square = .5 * (way * way);
 
     // Factors of p_0, p_1 and p_2; those of accelerations and jerks for each coefficient.
-    const std::array rates{near_cubic(slope), near_cubic(way * slope),
-                           near_cubic(half_square * slope)};
-    std::array<std::array<near_cubic, 3>, 3> changes, jerks;
+    const std::array rates{cubic_approximation(slope), cubic_approximation(way * slope),
+                           cubic_approximation(half_square * slope)};
+    std::array<std::array<cubic_approximation, 3>, 3> changes, jerks;
     piece_bounds bounds{piece.interval, l, {}, {}};
-    const auto b = pace_powers(piece.interval, intervals);
+    const auto b = path_velocity_powers(piece.interval, intervals);
     for (std::size_t i = 0; i < 3; ++i) {
       const double start = b[0][i] + f * (b[1][i] + f * b[2][i]);
       const double rise = b[1][i] + 2 * f * b[2][i], curvature = b[2][i];
@@ -136,10 +138,10 @@ private:
       const polynomial change = bend * pace + slope * half_rise;
       const polynomial both = 3 * (slope * change);
       const polynomial third = 6 * piece.c * pace + 3 * (bend * half_rise) + curvature * slope;
-      changes[i] = {near_cubic(change), near_cubic(square + way * change),
-                    near_cubic(way * square + half_square * change)};
-      jerks[i] = {near_cubic(third), near_cubic(both + way * third),
-                  near_cubic(slope * square + way * both + half_square * third)};
+      changes[i] = {cubic_approximation(change), cubic_approximation(square + way * change),
+                    cubic_approximation(way * square + half_square * change)};
+      jerks[i] = {cubic_approximation(third), cubic_approximation(both + way * third),
+                  cubic_approximation(slope * square + way * both + half_square * third)};
     }
     std::array<double, 4> largest_rate{};
     for (Eigen::Index j = 0; j < velocity.size(); ++j) {

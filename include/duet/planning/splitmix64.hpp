@@ -13,9 +13,9 @@ namespace duet::detail {
 /// Uniform random numbers from 0 to 1, identical on every machine: SplitMix64 (Steele, Lea, Flood,
 /// Fast splittable pseudorandom number generators, 2014). `<random>` would cost the compiler more
 /// than the search.
-class split_mix {
+class splitmix64 {
 public:
-  explicit split_mix(std::uint64_t seed) : state_(seed) {}
+  explicit splitmix64(std::uint64_t seed) : state_(seed) {}
 
   [[nodiscard]] double operator()() {
     std::uint64_t z = state_ += 0x9e3779b97f4a7c15;

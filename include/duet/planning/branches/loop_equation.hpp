@@ -30,11 +30,11 @@ struct loop_joint {
 };
 
 /// Inverse of the displacement x ↦ R x + t.
-[[nodiscard]] inline tip_place inverse_place(const tip_place& a) {
+[[nodiscard]] inline tip_pose inverse_pose(const tip_pose& a) {
   return {conj(a.rotation), -1 * rotated(conj(a.rotation), a.translation)};
 }
 
-[[nodiscard]] inline loop_joint displaced(const tip_place& by, const loop_joint& j) {
+[[nodiscard]] inline loop_joint displaced(const tip_pose& by, const loop_joint& j) {
   return {j.turns, rotated(by.rotation, j.axis), by.point(j.point)};
 }
 
@@ -48,21 +48,21 @@ using six_coordinates = Eigen::Matrix<double, 6, 1>;
 using six_columns = Eigen::Matrix<double, 6, 6>;
 
 /// Loop-closure equation exp(θ₁S₁) … exp(θ₆S₆) = closing, a product of exponentials.
-struct joint_loop {
+struct loop_equation {
   std::array<loop_joint, 6> joints{};
-  tip_place closing{quaternion<double>(1), {0, 0, 0}};
+  tip_pose closing{quaternion<double>(1), {0, 0, 0}};
 
   /// Loop that begins with the second joint: exp(θ₂S₂) … exp(θ₆S₆) exp(θ₁ Ad(closing⁻¹)S₁) is the
   /// same displacement.
-  [[nodiscard]] joint_loop shifted() const {
-    joint_loop result = *this;
+  [[nodiscard]] loop_equation shifted() const {
+    loop_equation result = *this;
     std::rotate(result.joints.begin(), result.joints.begin() + 1, result.joints.end());
-    result.joints[5] = displaced(inverse_place(closing), joints[0]);
+    result.joints[5] = displaced(inverse_pose(closing), joints[0]);
     return result;
   }
   /// Loop in reverse order, exp(−θ₆S₆) … exp(−θ₁S₁) = closing⁻¹.
-  [[nodiscard]] joint_loop reversed() const {
-    joint_loop result{joints, inverse_place(closing)};
+  [[nodiscard]] loop_equation reversed() const {
+    loop_equation result{joints, inverse_pose(closing)};
     std::reverse(result.joints.begin(), result.joints.end());
     for (loop_joint& j : result.joints) {
       j.axis = -1 * j.axis;
@@ -78,35 +78,35 @@ struct joint_loop {
 }
 
 /// Sines and cosines of half the coordinates.
-[[nodiscard]] inline sines_at_once<6> half_turns_of(const six_coordinates& theta) {
+[[nodiscard]] inline sines_at_once<6> half_angle_sincos_of(const six_coordinates& theta) {
   return sines_at_once<6>(theta[0] / 2, theta[1] / 2, theta[2] / 2, theta[3] / 2, theta[4] / 2,
                           theta[5] / 2);
 }
 
 /// Product of the displacements of `count` joints from joint `first` on (forward kinematics).
-[[nodiscard]] inline tip_place
-product_of_joints(const joint_loop& loop, const six_coordinates& theta, int first, int count) {
-  const auto halves = half_turns_of(theta);
-  tip_place result{quaternion<double>(1), {0, 0, 0}};
+[[nodiscard]] inline tip_pose
+product_of_joints(const loop_equation& loop, const six_coordinates& theta, int first, int count) {
+  const auto halves = half_angle_sincos_of(theta);
+  tip_pose result{quaternion<double>(1), {0, 0, 0}};
   for (int i = first; i < first + count; ++i) {
     const loop_joint& j = loop.joints[std::size_t(i)];
     const quaternion<double> q = turn_about(j.axis, halves.sine(i), halves.cosine(i));
-    result = result * (j.turns ? tip_place{q, j.point - rotated(q, j.point)}
-                               : tip_place{quaternion<double>(1), theta[i] * j.axis});
+    result = result * (j.turns ? tip_pose{q, j.point - rotated(q, j.point)}
+                               : tip_pose{quaternion<double>(1), theta[i] * j.axis});
   }
   return result;
 }
 
 /// Closure error of a loop: the twist [v; ω] that closes it, and the Jacobian of the six joints, in
 /// the frame of the axes.
-struct loop_gap {
+struct closure_error {
   six_coordinates twist;
   six_columns jacobian;
   double size = 1; ///< largest prismatic displacement, at least 1: round-off grows with it
 
-  loop_gap(const joint_loop& loop, const six_coordinates& theta) {
-    const auto halves = half_turns_of(theta);
-    tip_place link{quaternion<double>(1), {0, 0, 0}};
+  closure_error(const loop_equation& loop, const six_coordinates& theta) {
+    const auto halves = half_angle_sincos_of(theta);
+    tip_pose link{quaternion<double>(1), {0, 0, 0}};
     for (int column = 0; column < 6; ++column) {
       const loop_joint& j = loop.joints[std::size_t(column)];
       const three_vector<double> n = rotated(link.rotation, j.axis);
@@ -122,7 +122,7 @@ struct loop_gap {
           link.rotation * turn_about(j.axis, halves.sine(column), halves.cosine(column));
       link.translation = p - rotated(link.rotation, j.point);
     }
-    const tip_place left = loop.closing * inverse_place(link);
+    const tip_pose left = loop.closing * inverse_pose(link);
     const double twice = left.rotation.w() < 0 ? -2 : 2; // 2 sin(angle/2) rises up to half a turn
     twist << left.translation.x, left.translation.y, left.translation.z, twice * left.rotation.x(),
         twice * left.rotation.y(), twice * left.rotation.z();
@@ -132,11 +132,11 @@ struct loop_gap {
 /// Newton's method from an initial guess θ to a solution, accurate to round-off; near singularities
 /// by damped least squares (Levenberg–Marquardt).
 ///
-/// \param size_of_angles  divisor of angular errors, as `loop_gap::size` is of lengths, and at most
-/// that size: the default, which saves a step if many initial guesses are tried; or 1
-/// \return true if it converges
-[[nodiscard]] DUET_COMPILED_FUNCTION bool close_loop(const joint_loop& loop, six_coordinates& theta,
-                                                     double size_of_angles = HUGE_VAL);
+/// \param size_of_angles  divisor of angular errors, as `closure_error::size` is of lengths, and at
+/// most that size: the default, which saves a step if many initial guesses are tried; or 1 \return
+/// true if it converges
+[[nodiscard]] DUET_COMPILED_FUNCTION bool
+close_loop(const loop_equation& loop, six_coordinates& theta, double size_of_angles = HUGE_VAL);
 
 } // namespace duet::detail
 

@@ -5,8 +5,8 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
 #include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/loops/closing.hpp>
-#include <duet/mechanism/loops/ranked_matrix.hpp>
+#include <duet/mechanism/loops/loop_closure_solver.hpp>
+#include <duet/mechanism/loops/rank_revealing_svd.hpp>
 #include <duet/mechanism/loops/second_derivatives.hpp>
 #include <duet/mechanism/mobility.hpp>
 
@@ -25,14 +25,14 @@ namespace duet {
 namespace detail {
 
 /// Search around a configuration. Lengths are relative to that of the mechanism.
-class surroundings {
+class neighbourhood {
 public:
-  explicit surroundings(const closed_chain_mechanism& of) : of_(of) {}
+  explicit neighbourhood(const closed_chain_mechanism& of) : of_(of) {}
 
   /// True if one of the rates that fulfil the equations has an acceleration: a v in the kernel K of
   /// ∂F/∂q for which wᵀ ∂²F(v, v) = 0 for all w orthogonal to its image. By Newton's method on the
   /// unit sphere, from many starts.
-  [[nodiscard]] bool has_acceleration(const Eigen::VectorXd& q, const ranked_matrix& a) {
+  [[nodiscard]] bool has_acceleration(const Eigen::VectorXd& q, const rank_revealing_svd& a) {
     const Eigen::MatrixXd kernel = a.kernel();
     const Eigen::MatrixXd across = a.cokernel();
     const std::vector<Eigen::MatrixXd> forms = quadratic_forms(of_, q, across, kernel);
@@ -48,7 +48,8 @@ public:
   [[nodiscard]] std::optional<Eigen::VectorXd>
   position(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel, double far_away) {
     const Eigen::VectorXd way = kernel * direction(kernel.cols());
-    const closing found(of_, q + far_away * way.cwiseProduct(of_.units()), all_but(of_.size(), {}));
+    const loop_closure_solver found(of_, q + far_away * way.cwiseProduct(of_.units()),
+                                    all_but(of_.size(), {}));
     const double moved = (found.coordinates() - q).cwiseQuotient(of_.units()).norm();
     if (found.has_closed() && moved > far_away / 3 && moved < 3 * far_away) {
       return found.coordinates();
@@ -64,14 +65,15 @@ public:
     Eigen::MatrixXd ways(q.size(), count);
     for (Eigen::Index k = 0; k < count; ++k) {
       const Eigen::VectorXd way = kernel * direction(kernel.cols());
-      const closing found(of_, q + step * way.cwiseProduct(of_.units()), all_but(of_.size(), {}));
+      const loop_closure_solver found(of_, q + step * way.cwiseProduct(of_.units()),
+                                      all_but(of_.size(), {}));
       ways.col(k) = (found.coordinates() - q).cwiseQuotient(of_.units()) / step;
       if (!found.has_closed()) {
         ways.col(k).setZero();
       }
     }
     const Eigen::VectorXd spans =
-        ranked_matrix(kernel.transpose().lazyProduct(ways)).singular_values();
+        rank_revealing_svd(kernel.transpose().lazyProduct(ways)).singular_values();
     return int((spans.array() > .1).count());
   }
 
@@ -90,7 +92,7 @@ DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& me
   const double residual = mechanism.residuals(q).norm();
   detail::require(residual <= 1e-9, "duet: mobility: the loops are not closed: residual ",
                   residual);
-  const detail::ranked_matrix here = detail::linearised(mechanism, q);
+  const detail::rank_revealing_svd here = detail::linearised(mechanism, q);
   const int n = mechanism.size();
   mobility_result result;
   result.counted = n - mechanism.equations();
@@ -103,7 +105,7 @@ DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& me
     result.evidence = mobility_evidence::no_rates;
     return result;
   }
-  detail::surroundings around(mechanism);
+  detail::neighbourhood around(mechanism);
   result.mobility = 0;
   if (!around.has_acceleration(q, here)) {
     result.evidence = mobility_evidence::no_acceleration;
@@ -112,7 +114,7 @@ DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& me
   result.evidence = mobility_evidence::nearby_positions;
   for (int attempt = 0; attempt < 8; ++attempt) {
     if (const auto other = around.position(q, here.kernel(), .05)) {
-      const detail::ranked_matrix there = detail::linearised(mechanism, *other);
+      const detail::rank_revealing_svd there = detail::linearised(mechanism, *other);
       const int dimension = around.dimension(*other, there.kernel());
       if (dimension > result.mobility) {
         result.mobility = dimension;

@@ -21,7 +21,7 @@
 // Arms of which two joints slide along each other: poses that they reach have infinitely many
 // solutions, of which one stands for each that the turns can make; others have none, for certain.
 
-namespace test_planning_parallel_slides {
+namespace test_planning_parallel_prismatic {
 namespace {
 
 using namespace duet;
@@ -89,7 +89,8 @@ int count_of(const result& all, const arm_kind& kind, const vector& theta) {
 }
 
 /// By matrices, to 50 digits.
-double gap(const chain& arm, const vector& theta, const dual_quaternion<double>& goal) {
+double max_abs_difference(const chain& arm, const vector& theta,
+                          const dual_quaternion<double>& goal) {
   using wide = duet_test::real_50;
   const Eigen::Matrix<wide, Eigen::Dynamic, 1> exact = theta.cast<wide>();
   return double(
@@ -114,7 +115,7 @@ TEST_CASE("the turns that a goal is made of are found, once, and whatever a sear
       CHECK(all.complex_solutions == 0);
       CHECK(count_of(all, kind, theta) == 1);
       for (const auto& s : all.solutions) {
-        CHECK(gap(arm, s.joints, goal) < 1e-12);
+        CHECK(max_abs_difference(arm, s.joints, goal) < 1e-12);
         CHECK(s.smallest_singular_value < 1e-14);
         CHECK(count_of(all, kind, s.joints) == 1);
         CHECK(s.within_limits);
@@ -172,7 +173,7 @@ TEST_CASE("of all that the slides can do, what their limits allow") {
       const result all = all_inverse_kinematics(limited, goal);
       CHECK(count_of(all, kind, theta) == 1);
       for (const auto& s : all.solutions) {
-        CHECK(gap(limited, s.joints, goal) < 1e-12);
+        CHECK(max_abs_difference(limited, s.joints, goal) < 1e-12);
         within += s.within_limits && distance(kind, s.joints, theta) < 1e-7;
       }
     }
@@ -214,4 +215,4 @@ TEST_CASE("a slide of the tool along that of the base, for some goals") {
   CHECK(made > 4);
 }
 
-} // namespace test_planning_parallel_slides
+} // namespace test_planning_parallel_prismatic

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/planning/branches/joint_loop.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -22,21 +22,22 @@ struct loop_solution {
 
 /// Two prismatic joints that are parallel in every configuration: displacements by x of the first
 /// and by `second_way` x of the second leave the loop closed.
-struct slides_in_place {
+struct coupled_prismatic_pair {
   int first = 0, second = 0;
   double second_way = -1;
 };
 
 /// Solutions of a loop, and whether they are complete.
-struct loop_answer {
+struct loop_solution_set {
   std::vector<loop_solution> solutions;
   int complex_solutions = 0;
   bool is_complete = false;
-  std::optional<slides_in_place> in_place = {}; ///< if set, a solution represents all that it makes
+  std::optional<coupled_prismatic_pair> in_place =
+      {}; ///< if set, a solution represents all that it makes
 };
 
 /// Angle wrapped to (−π, π].
-[[nodiscard]] inline double turned_back(double x) {
+[[nodiscard]] inline double wrap_angle(double x) {
   constexpr double pi = std::numbers::pi, turn = 2 * pi;
   const double size = std::abs(x);
   // `std::remainder` alone gives the same, but takes twenty times as long.

@@ -17,7 +17,7 @@
 namespace duet::detail {
 
 /// Number of letters to insert, delete or change (Levenshtein distance).
-[[nodiscard]] inline std::size_t letters_apart(std::string_view a, std::string_view b) {
+[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   // distance of the letters of a so far to each prefix of b
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t(0));
@@ -33,7 +33,7 @@ namespace duet::detail {
 }
 
 /// `there are "a", "b" … and 7 more`, the most similar names first.
-[[nodiscard]] inline std::string nearest_names(std::string_view name,
+[[nodiscard]] inline std::string closest_names(std::string_view name,
                                                const std::vector<std::string>& names) {
   constexpr std::size_t most = 6;
   if (names.empty()) {
@@ -41,7 +41,7 @@ namespace duet::detail {
   }
   std::vector<std::pair<std::size_t, std::size_t>> order; // distance and index
   for (std::size_t i = 0; i < names.size(); ++i) {
-    order.emplace_back(letters_apart(name, names[i]), i);
+    order.emplace_back(edit_distance(name, names[i]), i);
   }
   std::sort(order.begin(), order.end());
   std::string text = "there are ";

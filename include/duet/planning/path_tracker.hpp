@@ -22,7 +22,7 @@ namespace duet::detail {
 
 /// Moves the joints along a path as far as possible without self-motions.
 template <int Room>
-class path_traveller {
+class path_tracker {
 public:
   using vector = small_vector<Room>;
   /// Gradient of the objective that the joints lower.
@@ -46,15 +46,14 @@ public:
   /// \param parameters  parameters that become waypoints, increasing; the first and the last are
   /// the ends of the path
   /// \param slope       gradient of the objective, or nothing
-  path_traveller(const planning_model<Room>& model, const place_function& path,
-                 std::vector<double> parameters, const plan_options& how,
-                 const slope_function& slope)
+  path_tracker(const planning_model<Room>& model, const tip_path& path,
+               std::vector<double> parameters, const plan_options& how, const slope_function& slope)
       : solver{model, model.tolerance(how.tolerance)}, target(path), stops(std::move(parameters)),
         options(how), length(stops.back() - stops.front()), iterations_left(how.max_iterations),
         deviation_(model.tolerance(how.deviation)), slope_(slope) {}
 
   pose_solver<Room> solver;
-  const place_function& target;
+  const tip_path& target;
   std::vector<double> stops;
   plan_options options;
   double length; ///< length of the path's parameter interval
@@ -68,14 +67,14 @@ public:
 
   /// Route continued as far as possible without self-motions.
   [[nodiscard]] route continued(route best) {
-    go_on(best);
+    advance(best);
     for (route before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
       before = before_singularity(before);
-      keep_better(best, undamped(before));
+      keep_furthest(best, undamped(before));
     }
     return best;
   }
-  static void keep_better(route& best, route other) {
+  static void keep_furthest(route& best, route other) {
     if (other.back().u > best.back().u) {
       best = std::move(other);
     }
@@ -83,8 +82,8 @@ public:
 
   /// Ratio of the tip's error to the deviation at a fraction `part` of the step between two
   /// waypoints.
-  [[nodiscard]] double excess_between(const waypoint& a, const waypoint& b,
-                                      double part = .5) const {
+  [[nodiscard]] double error_ratio_between(const waypoint& a, const waypoint& b,
+                                           double part = .5) const {
     const vector between = (1 - part) * a.state.theta + part * b.state.theta;
     const pose_error off =
         pose_error_between(solver.model.at(between).tip, target((1 - part) * a.u + part * b.u));
@@ -110,7 +109,7 @@ public:
     const pose_solver<Room> damped = solver;
     solver.without_damping();
     x.step = options.smallest_step;
-    go_on(x);
+    advance(x);
     solver.damped_below = damped.damped_below;
     solver.tolerance = damped.tolerance;
     return x;
@@ -127,29 +126,29 @@ public:
   ///
   /// \param part  fraction of the path that this counts for
   /// \return false if there is no continuation
-  [[nodiscard]] bool travel(route& x, double end, double part, const wishes& have);
+  [[nodiscard]] bool track(route& x, double end, double part, const wishes& have);
 
 private:
   /// Continues as far as possible without stopping.
-  void go_on(route& x) {
+  void advance(route& x) {
     for (const double stop : stops) {
-      if (stop > x.back().u && !travel(x, stop, (stop - x.back().u) / length, {.lowers = true})) {
+      if (stop > x.back().u && !track(x, stop, (stop - x.back().u) / length, {.lowers = true})) {
         return;
       }
     }
   }
 
   /// Descent step of the objectives.
-  [[nodiscard]] vector downhill(const vector& theta, double step) const {
+  [[nodiscard]] vector descent_step(const vector& theta, double step) const {
     const vector centre =
-        towards_middle(theta, solver.model.lower, solver.model.upper, options.centring * step);
+        joint_centring_step(theta, solver.model.lower, solver.model.upper, options.centring * step);
     return slope_ ? centre - step * slope_(theta) : centre;
   }
 
   /// True if the joints move far in a step along the path that is as short as that.
-  [[nodiscard]] bool is_swinging(const waypoint& at, double step) const {
+  [[nodiscard]] bool is_reorienting(const waypoint& at, double step) const {
     constexpr double least = 1e-12;
-    return solver.damped_below == swing_threshold && step > least &&
+    return solver.damped_below == undamped_threshold_near_singularity && step > least &&
            solver.way_to(at.state, target(std::min(at.u + step * length, stops.back()))) >
                least_swing;
   }
@@ -160,7 +159,7 @@ private:
 };
 
 template <int Room>
-bool path_traveller<Room>::travel(route& x, double end, double part, const wishes& have) {
+bool path_tracker<Room>::track(route& x, double end, double part, const wishes& have) {
   const double begin = x.back().u;
   double way = 0; // 1 at the end
   while (way < 1) {
@@ -169,7 +168,7 @@ bool path_traveller<Room>::travel(route& x, double end, double part, const wishe
     const double u = next == 1 ? end : begin + (end - begin) * next;
     const vector& theta = here.state.theta;
     const vector wish = have.aim != nullptr ? (next - way) / (1 - way) * (*have.aim - theta)
-                        : have.lowers       ? downhill(theta, (next - way) * part)
+                        : have.lowers       ? descent_step(theta, (next - way) * part)
                                             : vector{};
     auto there = solver.approach(here.state, target(u), wish);
     iterations_left -= there.iterations;
@@ -181,14 +180,15 @@ bool path_traveller<Room>::travel(route& x, double end, double part, const wishe
     double change = .25;
     if (there.is_within(solver.tolerance)) {
       const waypoint on{there.state, u, there.left, there.smallest_singular_value};
-      const double excess = excess_between(here, on);
+      const double excess = error_ratio_between(here, on);
       // The deviation between waypoints grows with the square of the step.
       change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
       if (x.step < options.smallest_step && norm(there.state.theta - theta) < least_swing) {
         change = .25;             // within tolerance of two parameters, but no progress
       } else if (excess <= .95 || // not quite largest half way
                  (excess <= 1 && there.smallest_singular_value < 3 * damping_threshold &&
-                  excess_between(here, on, .25) <= 1 && excess_between(here, on, .75) <= 1)) {
+                  error_ratio_between(here, on, .25) <= 1 &&
+                  error_ratio_between(here, on, .75) <= 1)) {
         // Near a singularity steps that are just allowed may lead straight on, shorter ones not.
         way = next;
         x.waypoints.push_back(on);
@@ -196,7 +196,7 @@ bool path_traveller<Room>::travel(route& x, double end, double part, const wishe
     }
     x.step = std::min(options.largest_step, x.step * change);
     if (way < 1 && (iterations_left <= 0 ||
-                    (x.step < options.smallest_step && !is_swinging(x.back(), x.step)))) {
+                    (x.step < options.smallest_step && !is_reorienting(x.back(), x.step)))) {
       return false;
     }
   }
@@ -204,8 +204,8 @@ bool path_traveller<Room>::travel(route& x, double end, double part, const wishe
 }
 
 #ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class path_traveller<8>;
-DUET_COMPILED_TEMPLATE class path_traveller<16>;
+DUET_COMPILED_TEMPLATE class path_tracker<8>;
+DUET_COMPILED_TEMPLATE class path_tracker<16>;
 #endif
 
 } // namespace duet::detail

@@ -20,23 +20,23 @@ namespace duet::detail {
 /// Configuration that can be reached, and its predecessor: one at the same parameter, by a
 /// self-motion, or one before.
 template <int Room>
-struct reachable {
+struct search_node {
   chain_state<Room> state;
   double u;
-  std::ptrdiff_t from;     ///< index of the predecessor, −1 for none
-  bool is_way_out = false; ///< true if the predecessor is singular, and this one near it
-  bool is_alone = false;   ///< true if it is an isolated component
+  std::ptrdiff_t from;              ///< index of the predecessor, −1 for none
+  bool escapes_singularity = false; ///< true if the predecessor is singular, and this one near it
+  bool is_isolated = false;         ///< true if it is an isolated component
 };
 
 /// Collects configurations, and with each the self-motion component that contains it.
 template <int Room>
-class self_motion_pieces {
+class self_motion_components {
 public:
   using vector = small_vector<Room>;
 
   /// \param spacing     joint step from one configuration of a component to the next
   /// \param iterations  maximum number of iterations of Newton's method
-  self_motion_pieces(const pose_solver<Room>& solver, double spacing, int iterations)
+  self_motion_components(const pose_solver<Room>& solver, double spacing, int iterations)
       : solver_(solver), spacing_(spacing), left_(iterations) {
     for (std::ptrdiff_t i = 0; i < solver.model.size; ++i) {
       is_endless_ = is_endless_ || solver.is_endless(i);
@@ -44,8 +44,8 @@ public:
   }
 
 protected:
-  [[nodiscard]] attempt<Room> tried(const chain_state<Room>& from, const tip_place& target,
-                                    const vector& wish) {
+  [[nodiscard]] step_result<Room> tried(const chain_state<Room>& from, const tip_pose& target,
+                                        const vector& wish) {
     auto result = solver_.approach(from, target, wish);
     left_ -= result.iterations;
     return result;
@@ -54,27 +54,27 @@ protected:
   [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {
     return std::any_of(found_.begin() + std::ptrdiff_t(first), found_.end(), [&](const auto& x) {
       // Two that part at a singularity are near each other at first.
-      return is_near(x.state.theta, theta, (x.is_alone ? 1e-4 : .5) * spacing_ * spacing_);
+      return is_near(x.state.theta, theta, (x.is_isolated ? 1e-4 : .5) * spacing_ * spacing_);
     });
   }
 
   /// Adds the component that contains found_[start], unless only the tolerance makes it one.
-  void follow(std::size_t start, const tip_place& target) {
+  void follow(std::size_t start, const tip_pose& target) {
     extend(start, target);
-    const bool is_alone =
+    const bool is_isolated =
         std::all_of(found_.begin() + std::ptrdiff_t(start), found_.end(), [&](const auto& x) {
           return norm(x.state.theta - found_[start].state.theta) < .1 * spacing_;
         });
-    if (is_alone) {
+    if (is_isolated) {
       found_.erase(found_.begin() + std::ptrdiff_t(start) + 1, found_.end());
-      found_[start].is_alone = true;
+      found_[start].is_isolated = true;
     }
   }
 
   const pose_solver<Room>& solver_;
   double spacing_;
   int left_;
-  std::vector<reachable<Room>> found_;
+  std::vector<search_node<Room>> found_;
 
 private:
   /// True if near each other except for full turns of joints without limits.
@@ -87,8 +87,8 @@ private:
 
   /// Adds the configurations on a curve with found_[start], alternately in both directions, so that
   /// those nearby come first.
-  void extend(std::size_t start, const tip_place& target) {
-    const vector along = motion_in_place(found_[start].state.jacobian).any_direction();
+  void extend(std::size_t start, const tip_pose& target) {
+    const vector along = self_motion_space(found_[start].state.jacobian).any_direction();
     front ends[2] = {{start, along, spacing_}, {start, -1 * along, spacing_}};
     bool is_open[2] = {norm(along) > 0, norm(along) > 0};
     for (int count = 0; (is_open[0] || is_open[1]) && left_ > 0; ++count) {
@@ -111,7 +111,7 @@ private:
   };
 
   /// Takes one step on; false at the end of the component.
-  bool slide(front& end, const tip_place& target) {
+  bool slide(front& end, const tip_pose& target) {
     const chain_state<Room>& here = found_[end.at].state;
     // As far as the limits allow.
     double reach = end.step;
@@ -127,7 +127,7 @@ private:
       const vector moved = next.state.theta - here.theta;
       if (next.is_within(solver_.tolerance) && norm(moved) < 2 * reach &&
           dot(moved, end.direction) > .7 * reach) {
-        const vector direction = motion_in_place(next.state.jacobian).direction(end.direction);
+        const vector direction = self_motion_space(next.state.jacobian).direction(end.direction);
         const bool is_turned = orientation(next.state.jacobian, direction) *
                                    orientation(here.jacobian, end.direction) <
                                0;

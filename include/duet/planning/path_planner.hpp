@@ -4,7 +4,7 @@
 #include <duet/core/compiled.hpp>
 #include <duet/planning/motion_plan.hpp>
 #include <duet/planning/path_step.hpp>
-#include <duet/planning/path_traveller.hpp>
+#include <duet/planning/path_tracker.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/planning/self_motion_search.hpp>
 
@@ -22,17 +22,16 @@ namespace duet::detail {
 
 /// Planner along a path, first without stopping; if that ends early, with self-motions.
 template <int Room>
-class path_follower {
+class path_planner {
 public:
-  using traveller = path_traveller<Room>;
+  using traveller = path_tracker<Room>;
   using vector = typename traveller::vector;
   using waypoint = typename traveller::waypoint;
   using route = typename traveller::route;
 
-  /// Arguments as in `path_traveller`.
-  path_follower(const planning_model<Room>& model, const place_function& target,
-                std::vector<double> stops, const plan_options& options,
-                const typename traveller::slope_function& slope)
+  /// Arguments as in `path_tracker`.
+  path_planner(const planning_model<Room>& model, const tip_path& target, std::vector<double> stops,
+               const plan_options& options, const typename traveller::slope_function& slope)
       : steps_(model, target, std::move(stops), options, slope) {}
 
   [[nodiscard]] route plan(const vector& start);
@@ -80,11 +79,12 @@ private:
     if (!free.is_at_end(end) && x.back().smallest_singular_value < damping_threshold) {
       end = free.undamped(steps_.before_singularity(x));
     }
-    return free.is_at_end(end) || leads_on_in_place(free, end.back(), beyond) ||
+    return free.is_at_end(end) || continues_after_self_motion(free, end.back(), beyond) ||
            (steps_.solver.model.size <= 6 &&
             !steps_.solver.is_within_limits(end.back().state.theta));
   }
-  [[nodiscard]] static bool leads_on_in_place(traveller free, const waypoint& from, double to) {
+  [[nodiscard]] static bool continues_after_self_motion(traveller free, const waypoint& from,
+                                                        double to) {
     free.solver.without_damping();
     self_motion_search search(free.solver, free.target, free.options.self_motion_step,
                               damping_threshold, to - from.u, free.iterations_left);
@@ -106,7 +106,7 @@ private:
     // for those that do not. Or they pass it so near that joints get to its other side; then search
     // with shorter steps.
     for (const auto& [singular, step] :
-         {std::pair(damping_threshold, whole), std::pair(no_singular_value, whole),
+         {std::pair(damping_threshold, whole), std::pair(singularity_threshold, whole),
           std::pair(damping_threshold, whole / 4), std::pair(damping_threshold, whole / 16)}) {
       self_motion_search search(steps_.solver, steps_.target, steps_.options.self_motion_step,
                                 singular, enough, steps_.iterations_left);
@@ -114,7 +114,7 @@ private:
       steps_.iterations_left = search.iterations_left();
       for (const auto& way : ways) {
         if (!steps_.is_at_end(best)) {
-          steps_.keep_better(best, along(begin, way));
+          steps_.keep_furthest(best, along(begin, way));
         }
       }
       if (best.back().u + enough >= ways.front().back().u) {
@@ -135,12 +135,12 @@ private:
       const auto go = [&](bool is_back) {
         x.step = steps_.options.search_step;
         return is_back
-                   ? travel_back(x, way[i])
-                   : steps_.travel(x, way[i].u, steps_.options.search_step, {&way[i].state.theta});
+                   ? track_backwards(x, way[i])
+                   : steps_.track(x, way[i].u, steps_.options.search_step, {&way[i].state.theta});
       };
-      if (!go(way[i].is_way_out)) {
+      if (!go(way[i].escapes_singularity)) {
         x.waypoints.erase(x.waypoints.begin() + std::ptrdiff_t(kept), x.waypoints.end());
-        if (!go(!way[i].is_way_out)) {
+        if (!go(!way[i].escapes_singularity)) {
           return x;
         }
       }
@@ -172,18 +172,19 @@ private:
 
   /// Continues to a configuration from the singular one before it: the path back from there is
   /// tracked and reversed, and a self-motion leads to where it ends.
-  [[nodiscard]] bool travel_back(route& x, const reachable<Room>& to) {
+  [[nodiscard]] bool track_backwards(route& x, const search_node<Room>& to) {
     route back({to.state, to.u, {}, smallest_singular_value_of(to.state.jacobian)});
     back.step = steps_.options.search_step;
     const double u = x.back().u;
-    if (!steps_.travel(back, u, steps_.options.search_step, {})) {
+    if (!steps_.track(back, u, steps_.options.search_step, {})) {
       return false;
     }
-    for (int round = 0; round < 5 && steps_.excess_between(x.back(), back.back()) > 1; ++round) {
-      arrive(x, back.back().state.theta);
-      arrive(back, x.back().state.theta);
+    for (int round = 0; round < 5 && steps_.error_ratio_between(x.back(), back.back()) > 1;
+         ++round) {
+      move_to(x, back.back().state.theta);
+      move_to(back, x.back().state.theta);
     }
-    if (steps_.excess_between(x.back(), back.back()) > 1) {
+    if (steps_.error_ratio_between(x.back(), back.back()) > 1) {
       return false;
     }
     x.waypoints.insert(x.waypoints.end(), back.waypoints.rbegin(), back.waypoints.rend());
@@ -192,11 +193,11 @@ private:
   }
 
   /// Self-motion to a configuration, or as near to it as the joints get.
-  void arrive(route& x, const vector& aim) {
+  void move_to(route& x, const vector& aim) {
     for (double before = std::numeric_limits<double>::infinity();;) {
       const double left = norm(aim - x.back().state.theta);
       if (left < 1e-9 || !(left < .9 * before) ||
-          !steps_.travel(x, x.back().u, steps_.options.search_step, {&aim})) {
+          !steps_.track(x, x.back().u, steps_.options.search_step, {&aim})) {
         return;
       }
       before = left;
@@ -207,7 +208,7 @@ private:
 };
 
 template <int Room>
-typename path_follower<Room>::route path_follower<Room>::plan(const vector& start) {
+typename path_planner<Room>::route path_planner<Room>::plan(const vector& start) {
   route best = steps_.continued(stay(start));
   // Search from where it got stuck, or else from the beginning, and there as far as possible.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
@@ -220,8 +221,8 @@ typename path_follower<Room>::route path_follower<Room>::plan(const vector& star
 }
 
 #ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class path_follower<8>;
-DUET_COMPILED_TEMPLATE class path_follower<16>;
+DUET_COMPILED_TEMPLATE class path_planner<8>;
+DUET_COMPILED_TEMPLATE class path_planner<16>;
 #endif
 
 } // namespace duet::detail

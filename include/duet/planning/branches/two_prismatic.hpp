@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/planning/branches/circle_roots.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/turns.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/subproblems.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
@@ -33,7 +33,7 @@ class two_prismatic {
   using complex = std::complex<double>;
 
 public:
-  explicit two_prismatic(const joint_loop& loop) : loop_(loop) {
+  explicit two_prismatic(const loop_equation& loop) : loop_(loop) {
     for (std::size_t i = 0, turns = 0, slides = 0; i < 6; ++i) {
       (loop.joints[i].turns ? turning_[turns++] : sliding_[slides++]) = i;
     }
@@ -121,7 +121,7 @@ private:
       const complex w = product(first, goal);
       across = 1 - (w * w).real();
       // b·R_γ d = w, a quadratic of z.
-      const turned_vector by_c(c.axis, d.axis);
+      const rotating_vector by_c(c.axis, d.axis);
       const complex cosine = dot(b.axis, by_c.across) / 2;
       const complex sine = complex(0, -.5) * dot(b.axis, by_c.beside);
       const complex constant = dot(b.axis, by_c.along) - w;
@@ -159,15 +159,15 @@ private:
   [[nodiscard]] complex gap(const std::array<matrix, 4>& turns) const {
     matrix link = matrix::Identity(), ways; // n₁, n₂, t
     vector at = vector::Zero();
-    for (std::size_t i = 0, turn_count = 0, slide_count = 0; i < 6; ++i) {
+    for (std::size_t i = 0, revolute_count = 0, prismatic_count = 0; i < 6; ++i) {
       const loop_joint& j = loop_.joints[i];
       if (j.turns) {
-        const matrix& by = turns[turn_count++];
+        const matrix& by = turns[revolute_count++];
         const vector p = Eigen::Vector3d(j.point).cast<complex>();
         at += link * (p - by * p);
         link = link * by;
       } else {
-        ways.col(Eigen::Index(slide_count++)) = link * Eigen::Vector3d(j.axis).cast<complex>();
+        ways.col(Eigen::Index(prismatic_count++)) = link * Eigen::Vector3d(j.axis).cast<complex>();
       }
     }
     ways.col(2) = Eigen::Vector3d(loop_.closing.translation).cast<complex>() - at;
@@ -181,13 +181,13 @@ private:
     const auto set = [&](std::size_t k, double x) { result[Eigen::Index(turning_[k])] = x; };
     const quaternion<double> rest =
         conj(turn_about(a.axis, std::sin(alpha / 2), std::cos(alpha / 2))) * loop_.closing.rotation;
-    const double beta =
-        angle_about(b.axis, turned_vector(c.axis, d.axis).at(gamma), rotated(rest, d.axis));
+    const double beta = subproblem1_angle_about(b.axis, rotating_vector(c.axis, d.axis).at(gamma),
+                                                rotated(rest, d.axis));
     set(0, alpha);
     set(1, beta);
     set(2, gamma);
-    set(3, angle_of(conj(two_turns(b.axis, beta, c.axis, gamma)) * rest, d.axis));
-    const loop_gap left(loop_, result);
+    set(3, angle_of(conj(rotation_product(b.axis, beta, c.axis, gamma)) * rest, d.axis));
+    const closure_error left(loop_, result);
     const auto rows = [](const auto& x) { return Eigen::Vector3d(x.template head<3>()); };
     const auto way = [&](std::size_t k) {
       return rows(left.jacobian.col(Eigen::Index(sliding_[k])));
@@ -202,7 +202,7 @@ private:
     return result;
   }
 
-  joint_loop loop_;
+  loop_equation loop_;
   std::array<std::size_t, 4> turning_{};
   std::array<std::size_t, 2> sliding_{};
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/compiled.hpp>
-#include <duet/planning/timing/pace_bounds.hpp>
+#include <duet/planning/timing/path_velocity_constraints.hpp>
 
 #include <array>
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace duet::detail {
 
 /// Squared path velocity within limits, by the coefficients of its B-spline.
-struct found_pace {
+struct path_velocity_result {
   std::vector<double> coefficients;
   std::array<double, 2> reached{}; ///< fraction of the required value attained at each end
   std::size_t nearest_joint = 0;   ///< joint whose acceleration and jerk limits are the nearest
@@ -25,12 +25,11 @@ struct found_pace {
 ///
 /// \param ends  squared path velocities required at the ends, where joint velocities satisfy their
 /// limits; 0: free
-[[nodiscard]] DUET_COMPILED_FUNCTION found_pace quickest_pace(const pace_bounds& bounds,
-                                                              const std::array<double, 2>& ends,
-                                                              double accuracy);
+[[nodiscard]] DUET_COMPILED_FUNCTION path_velocity_result minimum_time_path_velocity(
+    const path_velocity_constraints& bounds, const std::array<double, 2>& ends, double accuracy);
 
 } // namespace duet::detail
 
 #ifndef DUET_COMPILED
-#include <duet/planning/timing/pace_search.hpp>
+#include <duet/planning/timing/log_barrier_solver.hpp>
 #endif

@@ -28,13 +28,13 @@ struct speed_bound {
 
 /// Interval of the y between `least` and `most` that satisfy all constraints for a given x, from
 /// the value of one line at x to that of another.
-struct next_speeds {
+struct feasible_path_velocities {
   struct line {
     double at_zero, slope, value;
   };
   line least, most;
 
-  next_speeds(std::span<const speed_bound> bounds, double x, double from, double to)
+  feasible_path_velocities(std::span<const speed_bound> bounds, double x, double from, double to)
       : least{from, 0, from}, most{to, 0, to} {
     for (const auto& [slope, reach] : bounds) {
       const double middle = -slope * x;
@@ -55,7 +55,7 @@ struct next_speeds {
 [[nodiscard]] inline double nearest_speed(std::span<const speed_bound> bounds, double x,
                                           double least, double most) {
   for (double direction = 0;;) {
-    const next_speeds y(bounds, x, least, most);
+    const feasible_path_velocities y(bounds, x, least, most);
     if (y.least.value <= y.most.value) {
       return x;
     }
@@ -146,7 +146,7 @@ private:
 };
 
 /// Infeasible boundary velocity: the end of the path, and the largest ṡ² that is feasible there.
-struct speed_refusal {
+struct infeasible_boundary {
   bool at_start = false, at_end = false;
   double largest = 0;
 };
@@ -156,8 +156,9 @@ struct speed_refusal {
 /// this range and the constraints admit.
 ///
 /// \param refusal  set if a boundary velocity is infeasible; then the result has no meaning
-[[nodiscard]] inline std::vector<double> path_speeds(const path_bounds& path, double first,
-                                                     double last, speed_refusal& refusal) {
+[[nodiscard]] inline std::vector<double> phase_plane_velocities(const path_bounds& path,
+                                                                double first, double last,
+                                                                infeasible_boundary& refusal) {
   const std::size_t n = path.size();
   const auto cap = [&](std::size_t i) {
     return std::min(i < n ? path.before[i] : path.after[n - 1],
@@ -178,8 +179,9 @@ struct speed_refusal {
   const auto forwards = [&] {
     speeds[0] = first;
     for (std::size_t i = 0; i < n; ++i) {
-      speeds[i + 1] =
-          std::max(0.0, next_speeds(path.of(i), speeds[i], least[i + 1], most[i + 1]).most.value);
+      speeds[i + 1] = std::max(
+          0.0,
+          feasible_path_velocities(path.of(i), speeds[i], least[i + 1], most[i + 1]).most.value);
     }
     return speeds[n];
   };

@@ -3,11 +3,11 @@
 
 #include <duet/core/config.hpp>
 #include <duet/planning/branches/general_loop.hpp>
-#include <duet/planning/branches/joint_loop.hpp>
-#include <duet/planning/branches/loop_answer.hpp>
+#include <duet/planning/branches/loop_equation.hpp>
+#include <duet/planning/branches/loop_solution_set.hpp>
 #include <duet/planning/branches/orthonormalise.hpp>
-#include <duet/planning/branches/turns.hpp>
-#include <duet/planning/branches/two_slides.hpp>
+#include <duet/planning/branches/subproblems.hpp>
+#include <duet/planning/branches/two_prismatic.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
@@ -29,16 +29,17 @@
 namespace duet::detail {
 
 /// Loop that begins with one of two such prismatic joints.
-struct parallel_slides {
-  joint_loop loop;
+struct parallel_prismatic {
+  loop_equation loop;
   std::size_t first;  ///< index of that joint in the given loop
   std::size_t second; ///< index of the other one in this loop
 };
 
 /// Pair of such prismatic joints, if only rotations about their common direction are between them,
 /// in one direction of the loop or the other.
-[[nodiscard]] inline std::optional<parallel_slides> parallel_slides_of(const joint_loop& loop) {
-  joint_loop from = loop;
+[[nodiscard]] inline std::optional<parallel_prismatic>
+parallel_prismatic_of(const loop_equation& loop) {
+  loop_equation from = loop;
   for (std::size_t first = 0; first < 6; ++first) {
     const loop_joint& slide = from.joints[0];
     std::size_t k = 1;
@@ -46,7 +47,7 @@ struct parallel_slides {
       ++k;
     }
     if (!slide.turns && k < 6 && !from.joints[k].turns && is_on(slide.axis, from.joints[k].axis)) {
-      return parallel_slides{from, first, k};
+      return parallel_prismatic{from, first, k};
     }
     from = from.shifted();
   }
@@ -56,11 +57,11 @@ struct parallel_slides {
 /// Gauss–Newton method for all coordinates except one, which is fixed.
 ///
 /// \return true if it closes the loop
-[[nodiscard]] inline bool close_with_held(const joint_loop& loop, Eigen::Index held,
+[[nodiscard]] inline bool close_with_held(const loop_equation& loop, Eigen::Index held,
                                           six_coordinates& theta) {
   constexpr double rounding = 1e-12;
   for (int k = 0; k < 6; ++k) {
-    const loop_gap gap(loop, theta);
+    const closure_error gap(loop, theta);
     Eigen::Matrix<double, 6, 5> moving;
     moving << gap.jacobian.leftCols(held), gap.jacobian.rightCols(5 - held);
     Eigen::Matrix<double, 5, 5> inverse = Eigen::Matrix<double, 5, 5>::Identity(); // R⁻¹ of Q R
@@ -69,19 +70,19 @@ struct parallel_slides {
     theta.head(held) += step.head(held);
     theta.tail(5 - held) += step.tail(5 - held);
   }
-  const loop_gap left(loop, theta);
+  const closure_error left(loop, theta);
   return left.twist.norm() <= rounding * left.size;
 }
 
 /// Solutions in which the second of the prismatic joints is at 0.
-[[nodiscard]] inline loop_answer solve_parallel_slides(const parallel_slides& slides) {
+[[nodiscard]] inline loop_solution_set solve_parallel_prismatic(const parallel_prismatic& slides) {
   const auto held = Eigen::Index(slides.second);
   const Eigen::Vector3d n = slides.loop.joints[slides.second].axis, u = n.unitOrthogonal();
-  joint_loop across = slides.loop; // no known arm has an axis in that direction
+  loop_equation across = slides.loop; // no known arm has an axis in that direction
   across.joints[slides.second].axis =
       components(Eigen::Vector3d(std::cos(.7) * u + std::sin(.7) * n.cross(u)));
-  const loop_answer all = solve_general_loop<two_prismatic>(across);
-  loop_answer result;
+  const loop_solution_set all = solve_general_loop<two_prismatic>(across);
+  loop_solution_set result;
   for (loop_solution each : all.solutions) {
     constexpr double close_to_zero = 1e-5; // double solutions are less accurate
     const bool is_unused = std::abs(each.theta[held]) < close_to_zero;

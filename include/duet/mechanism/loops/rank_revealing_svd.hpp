@@ -13,9 +13,9 @@ namespace duet::detail {
 
 /// Singular value decomposition of a matrix with its numerical rank: the dependent
 /// rows and columns.
-class ranked_matrix {
+class rank_revealing_svd {
 public:
-  explicit ranked_matrix(const Eigen::MatrixXd& a)
+  explicit rank_revealing_svd(const Eigen::MatrixXd& a)
       : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
         v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
     if (a.size() > 0) { // Eigen has no singular values of empty matrices
