@@ -1,9 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
+
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/compiled.hpp>
-#include <duet/core/config.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/planning/planning_model.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -133,8 +134,8 @@ struct closure_error {
 /// by damped least squares (Levenberg–Marquardt).
 ///
 /// \param size_of_angles  divisor of angular errors, as `closure_error::size` is of lengths, and at
-/// most that size: the default, which saves a step if many initial guesses are tried; or 1 \return
-/// true if it converges
+/// most that size: the default, which saves a step if many initial guesses are tried; or 1
+/// \return true if it converges
 [[nodiscard]] DUET_COMPILED_FUNCTION bool
 close_loop(const loop_equation& loop, six_coordinates& theta, double size_of_angles = HUGE_VAL);
 
