@@ -23,19 +23,19 @@ elseif(includes MATCHES "duet/")
   message(FATAL_ERROR "it still includes what is duet's: ${includes}")
 endif()
 
-# README as far as a heading, with the one header.
-function(write_document path end)
-  file(READ ${source}/README.md text)
+# A page as far as a heading, with the one header.
+function(write_document path page end)
+  file(READ ${source}/${page} text)
   string(FIND "${text}" "${end}" position)
   if(position EQUAL -1)
-    message(FATAL_ERROR "README.md has no '${end}'")
+    message(FATAL_ERROR "${page} has no '${end}'")
   endif()
   string(SUBSTRING "${text}" 0 ${position} text)
   string(REPLACE "#include <duet/duet.hpp>" "#include \"duet_core.hpp\"" text "${text}")
   file(WRITE ${path} "${text}")
 endfunction()
-write_document(${folder}/first.md "\n## Two commands")
-write_document(${folder}/layers.md "\n**Curves** through")
+write_document(${folder}/first.md README.md "\nA robot arm")
+write_document(${folder}/layers.md docs/tour.md "\n## Curves")
 
 # Of the flags those that lead to Eigen and Boost, and not to duet.
 list(POP_FRONT compile compiler)
