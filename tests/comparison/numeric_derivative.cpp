@@ -64,12 +64,12 @@ TEST_CASE("extrapolated central differences know their error") {
 }
 
 TEST_CASE("central differences of results of any shape") {
-  const auto turn = [](const auto& t) {
+  const auto rotation_at = [](const auto& t) {
     using T = std::decay_t<decltype(t)>;
     return duet::exp(duet::vector3<T>(t, t * t, T(0.3)));
   };
-  const auto reference = derivative(turn, 0.4).derivative;
-  const auto numeric = central_difference_derivative(turn, 0.4);
+  const auto reference = derivative(rotation_at, 0.4).derivative;
+  const auto numeric = central_difference_derivative(rotation_at, 0.4);
   CHECK(norm(numeric.derivative - reference) < 1e-11);
 }
 

@@ -66,13 +66,13 @@ TEST_CASE("as many digits as show where the sides differ") {
   c.simplest = duet::counterexample{"x = 1", {0.5}, {0.5}, 1.25e-30};
   CHECK(to_text(c).ends_with("    automatic:   0.5\n    closed form: 0.5\n"
                              "    difference:  1.25e-30\n"));
-  const comparison found = duet::compare<float, double>(
+  const comparison result = duet::compare<float, double>(
       "in double", [](auto x) { return x; },
       [](auto x) { return decltype(x)(x * (1 + decltype(x)(1e-13))); },
       duet::sampler(duet::real_numbers{1, 3}));
-  CHECK(found.outcome == verdict::loses_precision);
-  CHECK(to_text(found).ends_with("    automatic:   1\n    closed form: 1.0000000000001\n"));
-  CHECK(found.simplest->difference == doctest::Approx(1e-13).epsilon(1e-2));
+  CHECK(result.outcome == verdict::loses_precision);
+  CHECK(to_text(result).ends_with("    automatic:   1\n    closed form: 1.0000000000001\n"));
+  CHECK(result.simplest->difference == doctest::Approx(1e-13).epsilon(1e-2));
 }
 
 TEST_CASE("what fewer digits than the arguments' were compared") {
@@ -107,9 +107,9 @@ TEST_CASE("for programs") {
 
 TEST_CASE("a run says how far it is, and may be ended") {
   const std::size_t all = duet::sampler(duet::real_numbers{}).points(29, 1).size();
-  std::size_t told = 0, last = all;
+  std::size_t calls = 0, last = all;
   const auto report = [&](const duet::progress& p) {
-    CHECK(p.done == ++told);
+    CHECK(p.done == ++calls);
     CHECK(p.count == all);
     return p.done < last;
   };
@@ -119,12 +119,12 @@ TEST_CASE("a run says how far it is, and may be ended") {
         duet::sampler(duet::real_numbers{}), {.samples = 29, .report = report});
   };
   CHECK(run());
-  CHECK(told == all);
-  told = 0;
+  CHECK(calls == all);
+  calls = 0;
   last = 7;
   const std::string message = "duet: cancelled with 7 of " + std::to_string(all) + " elements done";
   CHECK_THROWS_WITH_AS(static_cast<void>(run()), message.c_str(), duet::cancelled);
-  CHECK(told == 7);
+  CHECK(calls == 7);
 }
 
 } // namespace test_comparison_reports

@@ -392,8 +392,8 @@ TEST_CASE("components that are not finite do not hide the others") {
 
 TEST_CASE("0, 1, 2, 3, … 9, -1, 1/2: the simplest input") {
   const auto right = [](auto x) { return x; };
-  const auto simplest = [&](double lower, double upper, double least, double largest) {
-    const auto wrong = [&](auto x) { return x >= least && x <= largest ? x + 1 : x; };
+  const auto simplest = [&](double lower, double upper, double smallest, double largest) {
+    const auto wrong = [&](auto x) { return x >= smallest && x <= largest ? x + 1 : x; };
     return compare<double>("x", right, wrong, sampler(real_numbers{lower, upper}))
         .simplest.value()
         .input;
@@ -571,10 +571,10 @@ TEST_CASE("a right formula, beside a derivative at a constant of double, agrees 
             .note.starts_with("both functions returned float where their arguments were"));
 
   if (long_double_is_longer) {
-    const comparison turning = compare("turning", at_zero, right, inputs);
-    CHECK(turning);
-    CHECK(turning.note == note_of_first);
-    CHECK(turning.errors[1].compared_digits == 15);
+    const comparison rotating = compare("turning", at_zero, right, inputs);
+    CHECK(rotating);
+    CHECK(rotating.note == note_of_first);
+    CHECK(rotating.errors[1].compared_digits == 15);
   }
   CHECK(compare("turning", at_zero, wrong_sign, inputs).outcome == verdict::disagrees);
 }

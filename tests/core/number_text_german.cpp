@@ -13,11 +13,11 @@
 namespace test_core_number_text_german {
 
 TEST_CASE("the German C locale changes nothing") {
-  bool found = false;
+  bool has_locale = false;
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
-    found = found || std::setlocale(LC_ALL, name) != nullptr;
+    has_locale = has_locale || std::setlocale(LC_ALL, name) != nullptr;
   }
-  if (!found) {
+  if (!has_locale) {
     duet_test::skip("the locale de_DE.UTF-8 is not installed");
     return;
   }

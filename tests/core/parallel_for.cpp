@@ -98,19 +98,19 @@ TEST_CASE("progress grows up to everything, told by one thread at a time") {
   for (const std::size_t count : {1, 3, 127, 1000, 10007}) {
     for (const unsigned threads : {1U, 2U, 5U}) {
       std::vector<int> visits(count, 0);
-      std::vector<std::size_t> told; // not guarded: ThreadSanitizer watches
+      std::vector<std::size_t> reports; // not guarded: ThreadSanitizer watches
       const auto report = [&](const duet::progress& p) {
         CHECK(p.count == count);
-        told.push_back(p.done);
-        if (told.size() > 1) {
-          CHECK(told[told.size() - 2] < p.done);
+        reports.push_back(p.done);
+        if (reports.size() > 1) {
+          CHECK(reports[reports.size() - 2] < p.done);
         }
         CHECK((p.share() == 1) == (p.done == count));
       };
       duet::parallel_for(
           count, [&](std::size_t i) { ++visits[i]; }, duet::execution{threads, report});
-      CHECK(told.back() == count);
-      CHECK(told.size() >= std::min<std::size_t>(count, 128));
+      CHECK(reports.back() == count);
+      CHECK(reports.size() >= std::min<std::size_t>(count, 128));
       CHECK(visits == std::vector<int>(count, 1));
     }
   }
@@ -124,11 +124,11 @@ TEST_CASE("a run is cancelled between blocks, and what is done has no gaps") {
     for (const std::size_t wanted : {1U, 30U, 500U}) {
       std::vector<int> visits(1000, 0);
       std::size_t calls_after = 0;
-      bool asked = false;
+      bool has_cancelled = false;
       const auto report = [&](const duet::progress& p) {
-        calls_after += asked;
-        asked = asked || p.done >= wanted;
-        return !asked;
+        calls_after += has_cancelled;
+        has_cancelled = has_cancelled || p.done >= wanted;
+        return !has_cancelled;
       };
       std::size_t completed = 0;
       try {
@@ -209,7 +209,7 @@ TEST_CASE("another thread cancels") {
 }
 
 TEST_CASE("exceptions of the callback end the run, and it is called once") {
-  int worst_calls = 0, most_visits = 0;
+  int worst_calls = 0, max_visits = 0;
   bool has_thrown = true;
   for (int run = 0; run < 2000; ++run) {
     std::atomic<int> visits = 0;
@@ -228,11 +228,11 @@ TEST_CASE("exceptions of the callback end the run, and it is called once") {
     }
     has_thrown = has_thrown && message == "enough";
     worst_calls = std::max(worst_calls, calls);
-    most_visits = std::max(most_visits, visits.load());
+    max_visits = std::max(max_visits, visits.load());
   }
   CHECK(has_thrown);
   CHECK(worst_calls == 1);
-  CHECK(most_visits <= 5); // one for each thread
+  CHECK(max_visits <= 5); // one for each thread
 }
 
 TEST_CASE("an error of the work goes before a wish to end") {

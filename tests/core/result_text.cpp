@@ -110,10 +110,10 @@ TEST_CASE("enumerations, lists of results, results in results") {
                          "smallest_clearance: inf\n"
                          "iterations: 0\n"
                          "reason: singular\n");
-  const auto found = duet::inverse_kinematics_result<2>{
+  const auto result = duet::inverse_kinematics_result<2>{
       Eigen::Vector2d(1, 2), {0.25, 0.5}, 3, 1, duet::stop_reason::reached};
-  CHECK(to_text(found) == "joints: (1, 2)\ndeviation.translation: 0.25\ndeviation.rotation: 0.5\n"
-                          "iterations: 3\nrestarts: 1\nreason: reached\n");
+  CHECK(to_text(result) == "joints: (1, 2)\ndeviation.translation: 0.25\ndeviation.rotation: 0.5\n"
+                           "iterations: 3\nrestarts: 1\nreason: reached\n");
 }
 
 } // namespace test_core_result_text

@@ -41,13 +41,13 @@ std::vector<double> moderate_inputs() {
   // The double below 8e5 that is nearest to a multiple of π/2.
   const real_50 half_pi = boost::math::constants::half_pi<real_50>();
   double nearest = 1;
-  real_50 least = 1;
+  real_50 smallest = 1;
   const double parts[] = {double(half_pi), double(real_50(half_pi - double(half_pi)))};
   for (double n = 1; n < 509295; ++n) {
     const double x = n * parts[0];
     const double distance = std::abs(std::fma(n, parts[0], -x) + n * parts[1]);
-    if (distance < least) {
-      least = distance;
+    if (distance < smallest) {
+      smallest = distance;
       nearest = x;
     }
   }
@@ -70,8 +70,8 @@ void check_lanes() {
     const real_50 s = sin(real_50(x[1])), c = cos(real_50(x[1]));
     // In units of the last place of this very value.
     const auto error = [](double computed, const real_50& exact) {
-      const double place = std::nextafter(std::abs(computed), 2.0) - std::abs(computed);
-      return double(real_50(abs(real_50(computed - exact)) / place));
+      const double unit = std::nextafter(std::abs(computed), 2.0) - std::abs(computed);
+      return double(real_50(abs(real_50(computed - exact)) / unit));
     };
     sines.add(error(y.sine[1], s), x[1]);
     cosines.add(error(y.cosine[1], c), x[1]);

@@ -28,10 +28,11 @@ namespace {
 template <class T>
 quaternion<T> motion(const T& t) {
   using std::sin;
-  const auto turn = [](double x, double y, double z, const T& angle) {
+  const auto rotation_about = [](double x, double y, double z, const T& angle) {
     return duet::exp(vector3<T>(x * angle, y * angle, z * angle));
   };
-  return turn(0.3, -0.2, 0.9, t) * turn(-0.5, 1, 0.1, T(t * t)) * turn(1, 0.4, -0.7, T(sin(2 * t)));
+  return rotation_about(0.3, -0.2, 0.9, t) * rotation_about(-0.5, 1, 0.1, T(t * t)) *
+         rotation_about(1, 0.4, -0.7, T(sin(2 * t)));
 }
 
 /// Zero where q is the motion: three residuals, linear in the rows of the matrices.

@@ -48,14 +48,14 @@ double max_abs_difference(const A& a, const B& b) {
 } // namespace
 
 TEST_CASE("a vector turned by a rotation") {
-  const auto turn = [](const auto& x) { return duet::rotate(x, v); };
+  const auto rotated = [](const auto& x) { return duet::rotate(x, v); };
   const matrix R = rotation_matrix(q);
-  const auto [y, J] = jacobian(turn, q, spatial);
+  const auto [y, J] = jacobian(rotated, q, spatial);
   static_assert(decltype(J)::RowsAtCompileTime == 3 && decltype(J)::ColsAtCompileTime == 3);
   CHECK(max_abs_difference(y, R * v) < 1e-15);
   CHECK(max_abs_difference(J, -hat(R * v)) < 1e-15);
-  CHECK(max_abs_difference(jacobian(turn, q, body).jacobian, -R * hat(v)) < 1e-15);
-  CHECK(jacobian(turn, q, duet::frame::hybrid).jacobian == J);
+  CHECK(max_abs_difference(jacobian(rotated, q, body).jacobian, -R * hat(v)) < 1e-15);
+  CHECK(jacobian(rotated, q, duet::frame::hybrid).jacobian == J);
 }
 
 TEST_CASE("rotations to rotations") {
@@ -89,16 +89,17 @@ TEST_CASE("vectors to rotations: Euler rates and the exponential's Jacobian") {
   const auto exponential = [](const auto& w) { return duet::from_rotation_vector(w); };
   const vector w(0.8, -0.3, 1.1);
   const double t = w.norm();
-  const matrix left = matrix::Identity() + (1 - std::cos(t)) / (t * t) * hat(w) +
-                      (t - std::sin(t)) / (t * t * t) * hat(w) * hat(w);
-  CHECK(max_abs_difference(jacobian(exponential, w, spatial).jacobian, left) < 1e-15);
-  CHECK(max_abs_difference(jacobian(exponential, w, body).jacobian, left.transpose()) < 1e-15);
+  const matrix left_jacobian = matrix::Identity() + (1 - std::cos(t)) / (t * t) * hat(w) +
+                               (t - std::sin(t)) / (t * t * t) * hat(w) * hat(w);
+  CHECK(max_abs_difference(jacobian(exponential, w, spatial).jacobian, left_jacobian) < 1e-15);
+  CHECK(max_abs_difference(jacobian(exponential, w, body).jacobian, left_jacobian.transpose()) <
+        1e-15);
   CHECK(max_abs_difference(jacobian(exponential, vector(0, 0, 0), body).jacobian,
                            matrix::Identity()) == 0);
   // And back: the logarithm's is the inverse.
   const auto logarithm = [](const auto& x) { return duet::rotation_vector(x); };
   CHECK(max_abs_difference(jacobian(logarithm, duet::from_rotation_vector(w), spatial).jacobian,
-                           left.inverse()) < 1e-14);
+                           left_jacobian.inverse()) < 1e-14);
 }
 
 TEST_CASE("scalars, arrays and tuples on either side") {
@@ -152,7 +153,7 @@ TEST_CASE("more coordinates than one pass takes") {
 }
 
 TEST_CASE("a vector whose size is known at run time, in several passes") {
-  const auto turned = [](const auto& x) {
+  const auto rotated = [](const auto& x) {
     using T = std::decay_t<decltype(x[0] * 1.)>;
     T sum(0);
     for (int i = 0; i < 40; ++i) {
@@ -161,7 +162,7 @@ TEST_CASE("a vector whose size is known at run time, in several passes") {
     return duet::from_rotation_vector(duet::vector3<T>(T(0), T(0), sum));
   };
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(40, -1, 1);
-  const auto J = jacobian(turned, x, body).jacobian;
+  const auto J = jacobian(rotated, x, body).jacobian;
   REQUIRE(J.cols() == 40);
   for (int i = 0; i < 40; ++i) {
     CHECK(max_abs_difference(J.col(i), vector(0, 0, .02 * (i + 1) * x[i])) < 1e-14);
@@ -170,7 +171,7 @@ TEST_CASE("a vector whose size is known at run time, in several passes") {
   const Eigen::VectorXd two = Eigen::Vector2d(2, 3);
   CHECK(gradient(product, two, body).gradient == Eigen::Vector2d(9, 12));
   CHECK(hessian(product, two, body).hessian == (Eigen::Matrix2d() << 0, 6, 6, 4).finished());
-  CHECK_THROWS_AS((void)jacobian(turned, Eigen::VectorXd(), body), duet::invalid_input);
+  CHECK_THROWS_AS((void)jacobian(rotated, Eigen::VectorXd(), body), duet::invalid_input);
 }
 
 TEST_CASE("gradients and Hessians: the squared distance of rotations") {
@@ -206,8 +207,10 @@ TEST_CASE("gradients and Hessians: the squared distance of rotations") {
 
 TEST_CASE("inside another differentiation") {
   const auto trace = [](auto t) {
-    const auto turn = [t](const auto& x) { return (duet::rotate(x, vector(0, 0, 1)) * t).eval(); };
-    return jacobian(turn, duet::from_rotation_vector(vector(0, 0, 1)), spatial).jacobian(0, 1);
+    const auto rotated = [t](const auto& x) {
+      return (duet::rotate(x, vector(0, 0, 1)) * t).eval();
+    };
+    return jacobian(rotated, duet::from_rotation_vector(vector(0, 0, 1)), spatial).jacobian(0, 1);
   };
   CHECK(duet::derivative(trace, 2.0).value == doctest::Approx(2).epsilon(1e-15));
   CHECK(duet::derivative(trace, 2.0).derivative == doctest::Approx(1).epsilon(1e-15));

@@ -404,14 +404,14 @@ TEST_CASE("on cuts the derivative is that of the side of the zero's sign") {
                       C(0.0, -2), C(-0.0, -2), C(0.5, -0.0), C(-0.25, 0.0)}) {
       CAPTURE(name);
       CAPTURE(v);
-      const double beside = 1e-9;
-      const C near_cut(v.real() == 0 ? std::copysign(beside, v.real()) : v.real(),
-                       v.imag() == 0 ? std::copysign(beside, v.imag()) : v.imag());
+      const double offset = 1e-9;
+      const C near_cut(v.real() == 0 ? std::copysign(offset, v.real()) : v.real(),
+                       v.imag() == 0 ? std::copysign(offset, v.imag()) : v.imag());
       for (const C d : {C(1, 0), C(0, 1)}) {
-        const auto there = derivatives_of(f(along(v, d, series::variable(0))));
-        const auto close = derivatives_of(f(along(near_cut, d, series::variable(0))));
+        const auto on_cut = derivatives_of(f(along(v, d, series::variable(0))));
+        const auto beside_cut = derivatives_of(f(along(near_cut, d, series::variable(0))));
         for (std::size_t k = 1; k <= 3; ++k) {
-          CHECK(std::abs(there[k] - close[k]) <= 1e-5 * (1 + std::abs(close[k])));
+          CHECK(std::abs(on_cut[k] - beside_cut[k]) <= 1e-5 * (1 + std::abs(beside_cut[k])));
         }
       }
     }

@@ -44,17 +44,19 @@ bool near(const auto& a, const auto& b) { return (a - b).norm() <= 1e-14 * (1 + 
 } // namespace
 
 TEST_CASE("angle and axis") {
-  const Eigen::AngleAxis<D> turn(angle, axis.cast<D>());
-  const DMatrix r = turn.toRotationMatrix();
+  const Eigen::AngleAxis<D> angle_axis(angle, axis.cast<D>());
+  const DMatrix r = angle_axis.toRotationMatrix();
   CHECK(near(values(r), rotation));
   CHECK(near(slopes(r), rate));
   CHECK(values(r) == rotation);
-  CHECK(near(slopes((turn * turn).toRotationMatrix()), rate * rotation + rotation * rate));
-  CHECK(near(slopes((turn * turn.inverse()).toRotationMatrix()), Matrix3d::Zero().eval()));
-  CHECK(slopes((turn * DVector(1, 2, 3)).eval()).isApprox(rate * Vector3d(1, 2, 3)));
-  CHECK(turn.cast<double>().angle() == 0.7);
-  CHECK(Eigen::AngleAxis<D>(Eigen::AngleAxisd(rotation)).isApprox(turn));
-  CHECK(slopes((Eigen::Quaternion<D>::Identity() * turn).toRotationMatrix()).isApprox(rate));
+  CHECK(near(slopes((angle_axis * angle_axis).toRotationMatrix()),
+             rate * rotation + rotation * rate));
+  CHECK(near(slopes((angle_axis * angle_axis.inverse()).toRotationMatrix()),
+             Matrix3d::Zero().eval()));
+  CHECK(slopes((angle_axis * DVector(1, 2, 3)).eval()).isApprox(rate * Vector3d(1, 2, 3)));
+  CHECK(angle_axis.cast<double>().angle() == 0.7);
+  CHECK(Eigen::AngleAxis<D>(Eigen::AngleAxisd(rotation)).isApprox(angle_axis));
+  CHECK(slopes((Eigen::Quaternion<D>::Identity() * angle_axis).toRotationMatrix()).isApprox(rate));
   CHECK(Eigen::AngleAxis<D>::Identity().toRotationMatrix() == DMatrix::Identity());
 }
 

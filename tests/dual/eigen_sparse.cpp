@@ -25,9 +25,9 @@ TEST_CASE("sparse Cholesky") {
       a.insert(i, i) = dual<double>(4 + random.unit(), random.uniform(-1, 1));
       b[i] = dual<double>(random.uniform(-1, 1), random.uniform(-1, 1));
       if (i > 0) {
-        const dual<double> beside(random.uniform(-1, 1), random.uniform(-1, 1));
-        a.insert(i, i - 1) = beside;
-        a.insert(i - 1, i) = beside;
+        const dual<double> off_diagonal(random.uniform(-1, 1), random.uniform(-1, 1));
+        a.insert(i, i - 1) = off_diagonal;
+        a.insert(i - 1, i) = off_diagonal;
       }
     }
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<dual<double>>> ldlt(a);

@@ -201,9 +201,9 @@ TEST_CASE("remainders") {
       inputs, 1);
   inputs.insert(inputs.end(), {{5, 2}, {3, 2}}); // ties to even
   const auto nearest_even = [](const R& q) -> R {
-    const R whole = round(q);
+    const R nearest = round(q);
     const bool tie = abs(R(q - trunc(q))) == 0.5;
-    return tie ? R(2 * round(R(q / 2))) : whole;
+    return tie ? R(2 * round(R(q / 2))) : nearest;
   };
   const auto slopes = [&](const wide<2>& a) -> wide<2> {
     return {R(1), R(-nearest_even(R(a[0] / a[1])))};
@@ -271,10 +271,10 @@ TEST_CASE("hypot and atan2 of arguments decades apart, to the fourth derivative"
     using D = duet::second_order_dual<double, 2>;
     const auto u = D::variable(x, 0), v = D::variable(y, 1);
     const D h = hypot(u, v), theta = atan2(u, v);
-    const R corner = -wide_x * wide_y / (r * square), turn = (s - t) / (square * square);
-    worst_mixed.add(ulps(h.second_partial(0, 1), corner, corner), "hypot", x, y);
+    const R hypot_xy = -wide_x * wide_y / (r * square), atan2_xy = (s - t) / (square * square);
+    worst_mixed.add(ulps(h.second_partial(0, 1), hypot_xy, hypot_xy), "hypot", x, y);
     worst_mixed.add(ulps(h.second_partial(0, 0), length[2], length[2]), "hypot", x, y);
-    worst_mixed.add(ulps(theta.second_partial(0, 1), turn, turn), "atan2", x, y);
+    worst_mixed.add(ulps(theta.second_partial(0, 1), atan2_xy, atan2_xy), "atan2", x, y);
     worst_mixed.add(ulps(theta.second_partial(0, 0), angle[2], angle[2]), "atan2", x, y);
   }
   CHECK_MESSAGE(worst_hypot <= 16, worst_hypot);

@@ -115,13 +115,13 @@ TEST_CASE("the larger, the smaller, the positive difference") {
 TEST_CASE("integer and fraction") {
   for (const double x : inputs) {
     CAPTURE(x);
-    double whole = 0;
-    const double fraction = modf(x, &whole);
+    double integer_part = 0;
+    const double fraction = modf(x, &integer_part);
     dual<double> integer;
     const auto y = modf(dual<double>(x, 3), &integer);
     CHECK(identical(y.value(), fraction));
     CHECK(y.epsilon() == 3);
-    CHECK(identical(integer.value(), whole));
+    CHECK(identical(integer.value(), integer_part));
     CHECK(integer.epsilon() == 0);
   }
 }

@@ -59,16 +59,16 @@ constexpr bool meets_in() {
 
 // To g++ a function that is refused is there: std::pow, in a namespace of these types.
 #ifdef __clang__
-constexpr bool refused_are_there = false;
+constexpr bool deleted_functions_are_found = false;
 #else
-constexpr bool refused_are_there = true;
+constexpr bool deleted_functions_are_found = true;
 #endif
 
 template <class A, class B>
 constexpr bool never_meet() {
   return !Promotable<A, B> && !Promotable<B, A> && !CanAdd<A, B> && !CanAdd<B, A> &&
          !CanMultiply<A, B> && !CanMultiply<B, A> && !CanCompare<A, B> && !CanCompare<B, A> &&
-         (refused_are_there || !CanTakePower<A, B>)&&!std::constructible_from<A, B> &&
+         (deleted_functions_are_found || !CanTakePower<A, B>)&&!std::constructible_from<A, B> &&
          !std::constructible_from<B, A>;
 }
 

@@ -152,9 +152,9 @@ TEST_CASE_TEMPLATE("the conditional operator and several returns", D, DUET_EVERY
   const auto ramp = [](auto a) { return a > 0 ? a * a : 0.0; };
   CHECK(is(ramp(x), 4, 4));
   CHECK(is(ramp(-x), 0, 0));
-  const auto whole = [](auto a) { return a > 0 ? 1 : a * a; };
-  CHECK(is(whole(x), 1, 0));
-  CHECK(is(whole(-x), 4, 4));
+  const auto one_or_square = [](auto a) { return a > 0 ? 1 : a * a; };
+  CHECK(is(one_or_square(x), 1, 0));
+  CHECK(is(one_or_square(-x), 4, 4));
   const auto by_reference = [](const auto& a) { return a > 1 ? a * a : a; };
   CHECK(is(by_reference(x), 4, 4));
   CHECK(is(by_reference(x / 4), 0.5, 0.25));

@@ -24,42 +24,43 @@ namespace {
 using duet_fuzz::require;
 
 void try_fit_trajectory(int argc, char** argv) {
-  if (const auto given = fit_trajectory::parse_options(argc, argv)) {
-    require(given->rows_per_knot >= 1, "a row for each knot");
-    for (const double x : {given->length, given->outlier}) {
+  if (const auto options = fit_trajectory::parse_options(argc, argv)) {
+    require(options->rows_per_knot >= 1, "a row for each knot");
+    for (const double x : {options->length, options->outlier}) {
       require(x >= 0 && std::isfinite(x), "positive numbers");
     }
   }
 }
 void try_screw_motion(int argc, char** argv) {
-  if (auto given = screw_motion::parse_options(argc, argv)) {
-    require(given->steps >= 1, "a step");
-    given->file.reset(); // is read by others
+  if (auto options = screw_motion::parse_options(argc, argv)) {
+    require(options->steps >= 1, "a step");
+    options->file.reset(); // is read by others
     for (const auto& pose :
-         {screw_motion::poses(*given).first, screw_motion::poses(*given).second}) {
+         {screw_motion::poses(*options).first, screw_motion::poses(*options).second}) {
       require(std::abs(norm(duet::rotation(pose)) - 1) < 1e-12, "rotations");
     }
   }
 }
 void try_tolerance_study(int argc, char** argv) {
-  if (const auto given = tolerance_study::parse_options(argc, argv)) {
-    require(given->samples >= 2 && given->samples <= 10'000'000, "samples");
-    require(given->tolerance > 0 && given->tolerance <= .05, "tolerance");
-    require(given->lowest < given->highest, "travel");
-    require(given->rows >= 2 && given->rows <= 1000, "rows");
-    require(given->threads.value_or(0) <= 1024, "threads");
+  if (const auto options = tolerance_study::parse_options(argc, argv)) {
+    require(options->samples >= 2 && options->samples <= 10'000'000, "samples");
+    require(options->tolerance > 0 && options->tolerance <= .05, "tolerance");
+    require(options->lowest < options->highest, "travel");
+    require(options->rows >= 2 && options->rows <= 1000, "rows");
+    require(options->threads.value_or(0) <= 1024, "threads");
   }
 }
 void try_path_following(int argc, char** argv) {
-  if (const auto given = path_following::parse_options(argc, argv)) {
-    require(given->start.size() == given->arm.size() && given->start.allFinite(), "joints");
-    require(given->radius >= 0 && given->turns > 0 && std::isfinite(given->pitch), "a helix");
+  if (const auto options = path_following::parse_options(argc, argv)) {
+    require(options->start.size() == options->arm.size() && options->start.allFinite(), "joints");
+    require(options->radius >= 0 && options->turns > 0 && std::isfinite(options->pitch), "a helix");
   }
 }
 void try_wheel_carrier(int argc, char** argv) {
-  if (const auto given = wheel_carrier::parse_options(argc, argv)) {
-    require(given->rows.value_or(3) >= 3, "rows");
-    require(!given->rates || (given->rates->start.allFinite() && given->rates->end.allFinite()),
+  if (const auto options = wheel_carrier::parse_options(argc, argv)) {
+    require(options->rows.value_or(3) >= 3, "rows");
+    require(!options->rates ||
+                (options->rates->start.allFinite() && options->rates->end.allFinite()),
             "rates");
   }
 }

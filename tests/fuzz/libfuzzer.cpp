@@ -15,7 +15,7 @@ void target(const std::string& input);
 
 extern "C" {
 
-std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
+std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   DUET_FUZZ_TARGET::target(std::string(data, data + size));
@@ -23,15 +23,15 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
 }
 
 // Now and then a seed takes the input's place.
-std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most,
+std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                     unsigned number) {
   static const std::vector<std::string> seeds = DUET_FUZZ_TARGET::seeds();
   if (size <= 1 || number % 1024 == 0) {
     const std::string& seed = seeds[number / 1024 % seeds.size()];
-    size = std::min(seed.size(), most);
+    size = std::min(seed.size(), max_size);
     std::copy_n(seed.begin(), size, data);
   }
-  return LLVMFuzzerMutate(data, size, most);
+  return LLVMFuzzerMutate(data, size, max_size);
 }
 
 } // extern "C"

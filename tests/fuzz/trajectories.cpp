@@ -58,9 +58,9 @@ void target(const std::string& input) {
   require(times.size() == poses.size() && times.size() == r.lines.size(), "a line for each row");
   require(std::isfinite(r.start) && times.front() == 0, "times begin at 0");
   duet_fuzz::require_message(r.remark, "");
-  for (const auto& fault : r.faults) {
-    require(fault.line >= 1, "lines of faults");
-    duet_fuzz::require_message(fault.reason, "");
+  for (const auto& issue : r.faults) {
+    require(issue.line >= 1, "lines of faults");
+    duet_fuzz::require_message(issue.reason, "");
   }
   for (std::size_t i = 0; i < times.size(); ++i) {
     require(r.lines[i] >= 1 && std::isfinite(times[i]), "lines and times");

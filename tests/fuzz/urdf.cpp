@@ -79,7 +79,7 @@ Eigen::VectorXd coordinates_of(const Robot& robot, const std::vector<std::string
 
 /// Calls `read`, which may say that it does not.
 template <class Read>
-void read_or_told(const Read& read) {
+void require_result_or_message(const Read& read) {
   try {
     read();
   } catch (const duet::invalid_input& error) {
@@ -90,11 +90,11 @@ void read_or_told(const Read& read) {
 void target(const std::string& input) {
   const std::string path = "fuzz_urdf.urdf";
   std::ofstream(path, std::ios::binary) << input;
-  read_or_told([&] {
+  require_result_or_message([&] {
     const auto chain = duet::read_urdf(path, "a", "c");
     require_pose(chain.pose(coordinates_of(chain, chain.joint_names())));
   });
-  read_or_told([&] {
+  require_result_or_message([&] {
     const auto tree = duet::read_urdf_tree(path);
     const auto poses = tree.poses(coordinates_of(tree, tree.coordinate_names()));
     duet_fuzz::require(poses.size() == tree.links().size(), "as many poses as links");

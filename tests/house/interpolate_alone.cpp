@@ -33,13 +33,14 @@ int main() {
   const std::vector<double> u{0, 1, 2, 3, 4, 5};
   const vector3<double> omega(0, 0, 1);
   const vector6<double> twist = vector6<double>::Zero();
-  const std::vector turns(u.size(), from_axis_angle(omega, .1));
-  const std::vector poses(u.size(), pose(turns[0], omega));
-  interpolate_all(u, turns, omega);
+  const std::vector rotations(u.size(), from_axis_angle(omega, .1));
+  const std::vector poses(u.size(), pose(rotations[0], omega));
+  interpolate_all(u, rotations, omega);
   interpolate_all(u, poses, twist);
 
   interpolation_report report;
-  const auto curve = interpolate<rotation_vector_spline<double>>(u, turns, natural{}, report);
-  const motion<double> there = curve.motion(.5, frame::spatial);
-  static_cast<void>(hermite_spline(u, turns, std::vector(u.size(), there.velocity), frame::body));
+  const auto curve = interpolate<rotation_vector_spline<double>>(u, rotations, natural{}, report);
+  const motion<double> midpoint_motion = curve.motion(.5, frame::spatial);
+  static_cast<void>(
+      hermite_spline(u, rotations, std::vector(u.size(), midpoint_motion.velocity), frame::body));
 }

@@ -45,9 +45,9 @@ int main() {
 
   const std::vector<Eigen::VectorXd> configurations(10, Eigen::VectorXd::Zero(3));
   std::vector<dual_quaternion<double>> tips(configurations.size());
-  std::vector<Eigen::MatrixXd> jacobians_there(configurations.size());
+  std::vector<Eigen::MatrixXd> hybrid_jacobians(configurations.size());
   poses(read, configurations, tips, all_cores);
-  jacobians(read, configurations, frame::hybrid, jacobians_there, all_cores);
+  jacobians(read, configurations, frame::hybrid, hybrid_jacobians, all_cores);
 
   const auto bars = [](const auto& x, const auto& crank) {
     return make_vector(.2 * cos(crank) + .5 * cos(x[0]) - .55 - .4 * cos(x[1]),

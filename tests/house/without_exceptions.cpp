@@ -78,9 +78,9 @@ void check_arms() {
   const auto by_duals = jacobian([&](const auto& x) { return arm.pose(x); }, theta, frame::hybrid);
   check(are_close(J, by_duals.jacobian), "Jacobian");
   const auto goal = arm.pose(theta) * pose(from_euler<xyz>(0, .2, 0), vector3<double>(0, 0, .05));
-  const auto found = inverse_kinematics(arm, goal, theta);
-  check(found.reason == stop_reason::reached, "inverse kinematics");
-  check((translation(arm.pose(found.joints)) - translation(goal)).norm() < 1e-6,
+  const auto result = inverse_kinematics(arm, goal, theta);
+  check(result.reason == stop_reason::reached, "inverse kinematics");
+  check((translation(arm.pose(result.joints)) - translation(goal)).norm() < 1e-6,
         "pose of the joints found");
 }
 

@@ -142,9 +142,9 @@ TEST_CASE("rotations and poses are states with vector_space_algebra") {
         rate = quaternion_rate(at, omega, duet::frame::body);
       },
       q, 0.0, 1.0, 1e-3);
-  const auto turned = duet::rotation_vector(normalized(q));
-  CHECK(std::abs(turned[2].value() - 2) <= 1e-12);
-  CHECK(std::abs(turned[2].partial(0) - 1) <= 1e-12);
+  const auto vector = duet::rotation_vector(normalized(q));
+  CHECK(std::abs(vector[2].value() - 2) <= 1e-12);
+  CHECK(std::abs(vector[2].partial(0) - 1) <= 1e-12);
 
   using pose = duet::dual_quaternion<double>;
   pose a(1.0);

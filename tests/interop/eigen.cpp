@@ -67,10 +67,10 @@ TEST_CASE("axis and angle agree") {
     const auto d = random.direction<3>();
     const Eigen::Vector3d n = Eigen::Vector3d(d[0], d[1], d[2]);
     const double angle = random.uniform(-6, 6);
-    const Eigen::AngleAxisd turn(angle, n);
-    CHECK(norm(duet::from_eigen(turn) - duet::from_axis_angle(n, angle)) <= 1e-15);
-    CHECK(norm(duet::from_eigen(turn) - duet::from_rotation_vector(Eigen::Vector3d(angle * n))) <=
-          1e-15);
+    const Eigen::AngleAxisd angle_axis(angle, n);
+    CHECK(norm(duet::from_eigen(angle_axis) - duet::from_axis_angle(n, angle)) <= 1e-15);
+    CHECK(norm(duet::from_eigen(angle_axis) -
+               duet::from_rotation_vector(Eigen::Vector3d(angle * n))) <= 1e-15);
   }
 }
 

@@ -400,12 +400,13 @@ TEST_CASE("end points of domains") {
 
 TEST_CASE("spherical harmonics of orders whose factorials leave the range") {
   using D = duet::dual<double>;
-  struct place {
+  struct harmonic {
     unsigned l, m;
     double theta;
   };
-  for (const auto [l, m, theta] : {place{100, 100, pi_half}, place{100, 99, 1.1}, place{60, 7, 1.1},
-                                   place{60, 60, 2.0}, place{40, 33, 0.7}, place{5, 0, 0.4}}) {
+  for (const auto [l, m, theta] :
+       {harmonic{100, 100, pi_half}, harmonic{100, 99, 1.1}, harmonic{60, 7, 1.1},
+        harmonic{60, 60, 2.0}, harmonic{40, 33, 0.7}, harmonic{5, 0, 0.4}}) {
     const D y = sph_legendre(l, m, D::variable(theta));
     const double value = std::sph_legendre(l, m, theta);
     CHECK(y.value() == doctest::Approx(value).epsilon(1e-11).scale(0));

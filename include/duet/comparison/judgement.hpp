@@ -33,22 +33,22 @@ struct suspect {
 /// first and the last of them; the one with the largest error if there are several.
 [[nodiscard]] inline std::optional<suspect> suspected(std::span<const difference> differences) {
   const difference& last = differences.back();
-  std::optional<suspect> found;
+  std::optional<suspect> result;
   for (std::size_t i = 0; i < last.errors.size(); ++i) {
     const double error = last.errors[i];
     const bool fails =
         std::all_of(differences.begin(), differences.end(), [&](const difference& d) {
           return i < d.errors.size() && d.errors[i] > d.allowed;
         });
-    if (fails && error >= differences.front().errors[i] / 2 && (!found || error > found->error)) {
-      found = {i, error, last.allowed, differences.size() > 1 && last.ulps_in_shorter > 1};
+    if (fails && error >= differences.front().errors[i] / 2 && (!result || error > result->error)) {
+      result = {i, error, last.allowed, differences.size() > 1 && last.ulps_in_shorter > 1};
     }
   }
-  if (found && found->is_short) {
-    found->may_be_rounding =
+  if (result && result->is_short) {
+    result->may_be_rounding =
         last.common_ulps() < std::pow(10.0, std::min(last.digits[0], last.digits[1]) / 2.0);
   }
-  return found;
+  return result;
 }
 
 /// True if all components are finite in both results or in neither, in every precision.

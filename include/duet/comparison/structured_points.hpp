@@ -107,7 +107,7 @@ public:
   }
 
   /// Minimum number of structured points: four of each kind.
-  [[nodiscard]] std::size_t least_count() const {
+  [[nodiscard]] std::size_t min_count() const {
     return std::min<std::size_t>(4 * recipes_.size(), 256);
   }
 
@@ -137,8 +137,8 @@ private:
   ///
   /// \param u  in [0, 1)
   [[nodiscard]] static double distance(double u, double largest) {
-    const double least = 1e-12 * std::min(largest, 1.0);
-    return least * std::pow(largest / least, u);
+    const double smallest = 1e-12 * std::min(largest, 1.0);
+    return smallest * std::pow(largest / smallest, u);
   }
   /// Spread evenly over [0, 1), for the first few k as for many, and each i.
   [[nodiscard]] static double even(const recipe& r, std::size_t k, std::size_t i = 0) {

@@ -133,9 +133,9 @@ void parallel_for_blocks(std::size_t count, const Body& body, execution how = al
   const std::size_t wanted =
       how.threads > 0 ? how.threads : std::max(1U, std::thread::hardware_concurrency());
   const std::size_t blocks_for_threads = wanted == 1 ? 1 : 32 * wanted;
-  const std::size_t least =
+  const std::size_t min_blocks =
       how.report ? std::max<std::size_t>(128, blocks_for_threads) : blocks_for_threads;
-  const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, count / least);
+  const std::size_t size = block > 0 ? block : std::max<std::size_t>(1, count / min_blocks);
   detail::block_queue queue(count, size, how.report);
   std::vector<std::thread> helpers;
   const std::size_t blocks = count / size + (count % size > 0 ? 1 : 0);

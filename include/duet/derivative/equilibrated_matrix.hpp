@@ -66,7 +66,7 @@ private:
   /// becomes that of the unit matrix, which is then the inverse's.
   void eliminate() {
     std::array<int, std::size_t(N)> rows{}, columns{};
-    double largest = 0, least = HUGE_VAL;
+    double largest = 0, smallest = HUGE_VAL;
     determinant_ = 1;
     for (int k = 0; k < N; ++k) {
       int row = k, column = k;
@@ -90,8 +90,8 @@ private:
       }
       determinant_ *= (row != k) == (column != k) ? pivot : -pivot;
       largest = std::max(largest, std::abs(pivot));
-      if (!(std::abs(pivot) >= least)) { // or not a number
-        least = std::abs(pivot);
+      if (!(std::abs(pivot) >= smallest)) { // or not a number
+        smallest = std::abs(pivot);
       }
       inverse_(k, k) = 1;
       inverse_.row(k) /= pivot;
@@ -107,7 +107,7 @@ private:
       exchange(inverse_.col(k), inverse_.col(rows[std::size_t(k)]));
       exchange(inverse_.row(k), inverse_.row(columns[std::size_t(k)]));
     }
-    is_invertible_ = least > N * std::numeric_limits<double>::epsilon() * largest;
+    is_invertible_ = smallest > N * std::numeric_limits<double>::epsilon() * largest;
   }
 
   template <class Line>

@@ -36,9 +36,9 @@ template <class X>
 using own_t = typename own<X>::type;
 
 /// The tag of a driver: the caller's, or the differentiated function.
-template <class Given, class F>
-using tag_for = std::conditional_t<std::is_void_v<Given>, derivative_tag<std::decay_t<F>>,
-                                   derivative_tag<Given>>;
+template <class Chosen, class F>
+using tag_for = std::conditional_t<std::is_void_v<Chosen>, derivative_tag<std::decay_t<F>>,
+                                   derivative_tag<Chosen>>;
 
 /// A parameter that holds real numbers alone.
 template <class A>

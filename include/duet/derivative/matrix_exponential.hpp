@@ -41,16 +41,16 @@ template <class A>
   const A scaled = a * ldexp(R(1), -exponent);
   A power = scaled;
   norm = norm_1(scaled);
-  R least = norm;
+  R smallest = norm;
   for (int p = 2; p <= 5; ++p) {
     power = power.lazyProduct(scaled).eval();
     const R next = pow(norm_1(power), 1 / R(p));
-    least = std::min(least, std::max(norm, next));
+    smallest = std::min(smallest, std::max(norm, next));
     norm = next;
   }
   int more = 0;
-  static_cast<void>(frexp(least, &more));
-  return least > 0 ? std::max(0, exponent + more + 1) : 0;
+  static_cast<void>(frexp(smallest, &more));
+  return smallest > 0 ? std::max(0, exponent + more + 1) : 0;
 }
 
 /// Number of terms that make the series of exp at 1/2, and its derivatives up to `order`, exact to

@@ -37,14 +37,14 @@ singular_value_decomposition(U, Values, V) -> singular_value_decomposition<U, Va
 namespace detail {
 
 /// The smaller of two sizes at compile time.
-[[nodiscard]] constexpr int least_size(int a, int b) {
+[[nodiscard]] constexpr int min_size(int a, int b) {
   return a == Eigen::Dynamic || b == Eigen::Dynamic ? Eigen::Dynamic : std::min(a, b);
 }
 
 /// The thin decomposition of a real matrix of size Rows × Columns.
 template <class R, int Rows, int Columns>
 struct real_svd {
-  static constexpr int rank = least_size(Rows, Columns);
+  static constexpr int rank = min_size(Rows, Columns);
   template <int Size>
   using vectors =
       Eigen::Matrix<R, Size, rank, Size == 1 && rank != 1 ? Eigen::RowMajor : Eigen::ColMajor>;

@@ -52,7 +52,7 @@ struct cylinder : rule_by_boost<cylinder<Kind>> {
     if (x == 0) {
       return at_zero<T>();
     }
-    if (Kind == bessel::y && order < 0 && is_whole()) { // Boost has another sign for small x
+    if (Kind == bessel::y && order < 0 && is_integer()) { // Boost has another sign for small x
       const T y = cylinder(-order).plain(x);
       return std::fmod(order, 2) == 0 ? y : T(-y);
     }
@@ -87,14 +87,14 @@ struct cylinder : rule_by_boost<cylinder<Kind>> {
   }
 
 private:
-  [[nodiscard]] bool is_whole() const { return std::trunc(order) == order; }
+  [[nodiscard]] bool is_integer() const { return std::trunc(order) == order; }
   /// Y_−½, Y_−3/2, …, which are ±J_½, ±J_3/2, …
   [[nodiscard]] bool is_of_first_kind() const {
     return !is_second ||
-           (Kind == bessel::y && order < 0 && !is_whole() && cylinder(order + 0.5).is_whole());
+           (Kind == bessel::y && order < 0 && !is_integer() && cylinder(order + 0.5).is_integer());
   }
   /// True if it is not a power series at 0.
-  [[nodiscard]] bool has_branch_point() const { return is_second || !is_whole(); }
+  [[nodiscard]] bool has_branch_point() const { return is_second || !is_integer(); }
   /// True if `above` is the larger of the two terms of the slope near 0.
   [[nodiscard]] bool is_larger_above() const {
     return is_second && (order > 0 || is_of_first_kind());
@@ -116,7 +116,7 @@ private:
       const bool is_positive = order < 0 && std::fmod(std::floor(size + 0.5), 2) == 1;
       return is_positive ? infinity : T(-infinity);
     } else {
-      if (order > 0 || (order != 0 && is_whole())) {
+      if (order > 0 || (order != 0 && is_integer())) {
         return T(0);
       }
       return order == 0 ? T(1) : is_odd ? T(-infinity) : infinity; // (x/2)^ν/Γ(ν + 1)

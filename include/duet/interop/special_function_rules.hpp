@@ -153,11 +153,11 @@ template <class D>
   if (innermost(s) < real(-0.25)) {
     // 2 (2π)^(s−1) sin(πs/2) Γ(1 − s) ζ(1 − s); whole periods are removed first, and Γ, which would
     // overflow, is computed in halves: Γ(x) = 2^(x−1)/√π Γ(x/2) Γ((x + 1)/2).
-    const real whole = 4 * std::floor(innermost(s) / 4);
+    const real periods = 4 * std::floor(innermost(s) / 4);
     const D other = 1 - s;
     const real pi = constant::pi<real>();
     return pow(pi, D(-other - real(0.5))) * tgamma(D(other / 2)) * tgamma(D((other + 1) / 2)) *
-           sin(D((s - whole) * (pi / 2))) * zeta_of(other);
+           sin(D((s - periods) * (pi / 2))) * zeta_of(other);
   }
   constexpr int terms = 8;
   const real n(terms);

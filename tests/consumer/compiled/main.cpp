@@ -36,8 +36,8 @@ void move_an_arm() {
   const auto arm = duet::robots::panda();
   Eigen::Matrix<double, 7, 1> start;
   start << 0, -.4, .2, -2, .1, 1.7, .3;
-  const auto turn = duet::from_axis_angle(duet::vector3<double>(.6, 0, .8), .5);
-  const auto goal = duet::pose(turn, duet::vector3<double>(.05, .1, -.1)) * arm.pose(start);
+  const auto displacement = duet::from_axis_angle(duet::vector3<double>(.6, 0, .8), .5);
+  const auto goal = duet::pose(displacement, duet::vector3<double>(.05, .1, -.1)) * arm.pose(start);
   const auto found = duet::inverse_kinematics(arm, goal, start);
   print(duet::to_text(found.reason), found.joints, 7);
   const auto plan = duet::plan_screw_motion(arm, start, goal);
@@ -68,19 +68,19 @@ void move_a_mechanism() {
   // A parallelogram.
   const duet::closed_chain_mechanism mechanism(
       tree, {{{duet::constraint_kind::revolute, {"coupler", at(.8)}, {"rocker", at(.3)}}}});
-  const auto ways =
+  const auto assemblies =
       duet::find_assembly_configurations(mechanism, {0}, Eigen::VectorXd::Constant(1, 1));
-  for (const duet::assembly_configuration& each : ways.positions) {
+  for (const duet::assembly_configuration& each : assemblies.positions) {
     std::printf("found %d times, mobility %d\n", each.found,
                 duet::mobility(mechanism, each.coordinates).mobility);
     print("position", each.coordinates, 3);
     const duet::driven_motion motion(mechanism, each.coordinates, {0});
     print("on", motion(1.3), 3);
-    const auto whole = duet::trace(motion);
-    print("traced", whole.positions.back(), 3);
-    std::printf("%d dead points\n", int(whole.dead_points.size()));
+    const auto curve = duet::trace(motion);
+    print("traced", curve.positions.back(), 3);
+    std::printf("%d dead points\n", int(curve.dead_points.size()));
   }
-  print("independent", mechanism.independent_coordinates(ways.positions[0].coordinates), 1);
+  print("independent", mechanism.independent_coordinates(assemblies.positions[0].coordinates), 1);
 }
 
 void draw_curves() {

@@ -38,7 +38,7 @@ struct square {
   auto operator()(const auto& y, const auto& z) const { return y.transpose() * z; }
 };
 template <int>
-struct turned {
+struct rotated {
   auto operator()(const auto& r) const { return duet::rotate(r, t) + t; }
 };
 template <int>
@@ -65,7 +65,7 @@ int main() {
   static_cast<void>(directional_derivative(of_scalar<2>(), 1.0, 2.0)); // mistake
   static_cast<void>(jacobian(moved<1>(), x));                          // mistake
   static_cast<void>(jacobian_into(moved<2>(), x, m));                  // mistake
-  static_cast<void>(jacobian(turned<0>(), q, frame::body));            // mistake
+  static_cast<void>(jacobian(rotated<0>(), q, frame::body));           // mistake
   static_cast<void>(gradient(square<0>(), x));                         // mistake
   static_cast<void>(gradient_into(square<1>(), x, g));                 // mistake
   static_cast<void>(gradient(size<0>(), q, frame::body));              // mistake

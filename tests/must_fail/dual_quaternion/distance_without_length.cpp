@@ -6,11 +6,11 @@
 int main() {
   const duet::dual_quaternion<double> a(1);
 #ifdef DUET_MUST_FAIL
-  const double here = distance(a, a);           // mistake
+  const double length = distance(a, a);         // mistake
   const double square = squared_distance(a, a); // mistake
 #else
-  const double here = distance(a, a, 0.5);
+  const double length = distance(a, a, 0.5);
   const double square = squared_distance(a, a, 0.5);
 #endif
-  return here == 0 && square == 0 ? 0 : 1;
+  return length == 0 && square == 0 ? 0 : 1;
 }

@@ -16,7 +16,7 @@ int main() {
 #if DUET_MUST_FAIL == 1
   std::cout << rotate(v, q) << "\n";
 #elif DUET_MUST_FAIL == 2
-  const auto turn = from_axis_angle(0.5, v);
+  const auto rotation_by_half = from_axis_angle(0.5, v);
 #elif DUET_MUST_FAIL == 3
   std::cout << slerp(p, q) << "\n";
 #elif DUET_MUST_FAIL == 4

@@ -2,7 +2,7 @@
 
 # Runs ../check.cmake on a snippet that it must not pass.
 #
-# cmake -Dcompile=<…> -Dsnippet=<file> -Dcomplaint=<regex> -P check_complains.cmake
+# cmake -Dcompile=<…> -Dsnippet=<file> -Derror_message=<regex> -P check_complains.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -12,7 +12,7 @@ execute_process(
   RESULT_VARIABLE result ERROR_VARIABLE log)
 if(result EQUAL 0)
   message(FATAL_ERROR "the check passes ${snippet}")
-elseif(NOT log MATCHES "${complaint}")
+elseif(NOT log MATCHES "${error_message}")
   message("${log}")
-  message(FATAL_ERROR "the check does not say: ${complaint}")
+  message(FATAL_ERROR "the check does not say: ${error_message}")
 endif()

@@ -24,13 +24,13 @@ int main() {
   const auto arm = robots::panda();
   const Eigen::Matrix<double, 7, 1> start = Eigen::Matrix<double, 7, 1>::Zero();
   const auto goal = arm.pose(start);
-  const posture wish{start};
+  const posture preference{start};
 #ifdef DUET_MUST_FAIL
   const auto square = [](const auto& theta) { return theta.transpose() * theta; };
   const auto path = [&](double) { return goal; };
-  static_cast<void>(plan_screw_motion(arm, start, goal, {}, wish));   // mistake
-  static_cast<void>(follow_path(arm, start, path, 0, 1, {}, square)); // mistake
+  static_cast<void>(plan_screw_motion(arm, start, goal, {}, preference)); // mistake
+  static_cast<void>(follow_path(arm, start, path, 0, 1, {}, square));     // mistake
 #else
-  static_cast<void>(plan_screw_motion(arm, start, goal, {}, wish));
+  static_cast<void>(plan_screw_motion(arm, start, goal, {}, preference));
 #endif
 }

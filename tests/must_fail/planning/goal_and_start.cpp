@@ -16,7 +16,7 @@ int main() {
 #if DUET_MUST_FAIL == 1
   std::cout << inverse_kinematics(arm, goal).joints << "\n";
 #elif DUET_MUST_FAIL == 2
-  const auto found = inverse_kinematics(arm, start, goal);
+  const auto result = inverse_kinematics(arm, start, goal);
 #elif DUET_MUST_FAIL == 3
   std::cout << inverse_kinematics(arm, q, start).joints << "\n";
 #else

@@ -16,7 +16,7 @@ int main() {
   const Eigen::Matrix<double, 7, 1> start = Eigen::Matrix<double, 7, 1>::Zero();
   const Eigen::Isometry3d goal = Eigen::Isometry3d::Identity();
 #if DUET_MUST_FAIL == 1
-  const auto found = duet::inverse_kinematics(arm, goal, start);
+  const auto result = duet::inverse_kinematics(arm, goal, start);
 #elif DUET_MUST_FAIL == 2
   std::cout << duet::inverse_kinematics(arm, goal, start).joints << "\n";
 #else

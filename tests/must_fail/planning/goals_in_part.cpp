@@ -15,7 +15,7 @@ int main() {
 #if DUET_MUST_FAIL == 1
   std::cout << inverse_kinematics(arm, position, start).joints << "\n";
 #elif DUET_MUST_FAIL == 2
-  const auto found = inverse_kinematics(arm, duet::quaternion<double>(1), start);
+  const auto result = inverse_kinematics(arm, duet::quaternion<double>(1), start);
 #elif DUET_MUST_FAIL == 3
   std::cout << inverse_kinematics(arm, duet::position_goal(position)).joints << "\n";
 #else

@@ -17,7 +17,7 @@ int main() {
   const Eigen::Vector3d v(1, 2, 3);
   const quaternion<double> q(1);
 #if DUET_MUST_FAIL == 1
-  const Eigen::Vector3d turned = rotate(p, v);
+  const Eigen::Vector3d rotated = rotate(p, v);
 #elif DUET_MUST_FAIL == 2
   std::cout << rotate(p, v) << "\n";
 #elif DUET_MUST_FAIL == 3

@@ -15,7 +15,7 @@ int main() {
 #if DUET_MUST_FAIL == 1
   std::cout << q * v << "\n";
 #elif DUET_MUST_FAIL == 2
-  const Eigen::Vector3d turned = q * v;
+  const Eigen::Vector3d rotated = q * v;
 #elif DUET_MUST_FAIL == 3
   std::cout << q * (v + v) << "\n";
 #elif DUET_MUST_FAIL == 4
@@ -25,7 +25,7 @@ int main() {
 #elif DUET_MUST_FAIL == 6
   std::cout << q * r << "\n";
 #elif DUET_MUST_FAIL == 7
-  const Eigen::Matrix3d turned = r * q;
+  const Eigen::Matrix3d rotated = r * q;
 #else
   std::cout << rotate(q, v) << transform_point(a, v) << rotation_matrix(q) * r << "\n";
 #endif

@@ -7,13 +7,13 @@
 
 int main() {
   using namespace duet;
-  const auto turn = [](double u) {
+  const auto matrix_at = [](double u) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(u, Eigen::Vector3d::UnitX()));
   };
 #ifdef DUET_MUST_FAIL
-  static_cast<void>(adaptive_table<cumulative_bspline<double, 4>>(turn, 0, 1, 1e-3));
+  static_cast<void>(adaptive_table<cumulative_bspline<double, 4>>(matrix_at, 0, 1, 1e-3));
 #else
-  const auto rotation = [&](double u) { return from_eigen(turn(u)); };
+  const auto rotation = [&](double u) { return from_eigen(matrix_at(u)); };
   static_cast<void>(adaptive_table<cumulative_bspline<double, 4>>(rotation, 0, 1, 1e-3));
 #endif
 }

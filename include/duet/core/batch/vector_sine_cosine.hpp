@@ -159,13 +159,13 @@ private:
   static constexpr std::size_t vectors = (Count + lanes - 1) / lanes;
   /// Maximum number of vectors computed inline: more code would exceed the instructions that
   /// processors keep decoded.
-  static constexpr std::size_t most_in_line = 8;
+  static constexpr std::size_t max_inline = 8;
   using packet = vector_of<double, lanes>;
 
   template <std::size_t... K>
   DUET_ALWAYS_INLINE void take(const std::array<double, lanes * vectors>& x,
                                std::index_sequence<K...>) {
-    if constexpr (vectors > most_in_line) {
+    if constexpr (vectors > max_inline) {
       for (std::size_t k = 0; k < vectors; ++k) {
         values_[k] = vector_sine_and_cosine(packet_of(x, k));
       }

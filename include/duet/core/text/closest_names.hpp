@@ -35,7 +35,7 @@ namespace duet::detail {
 /// `there are "a", "b" … and 7 more`, the most similar names first.
 [[nodiscard]] inline std::string closest_names(std::string_view name,
                                                const std::vector<std::string>& names) {
-  constexpr std::size_t most = 6;
+  constexpr std::size_t max_shown = 6;
   if (names.empty()) {
     return "there are none";
   }
@@ -45,11 +45,12 @@ namespace duet::detail {
   }
   std::sort(order.begin(), order.end());
   std::string text = "there are ";
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(max_shown, names.size()); ++i) {
     text += (i > 0 ? ", \"" : "\"") + names[order[i].second] + "\"";
   }
-  return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more"
-                             : text;
+  return names.size() > max_shown
+             ? text + " and " + std::to_string(names.size() - max_shown) + " more"
+             : text;
 }
 
 } // namespace duet::detail

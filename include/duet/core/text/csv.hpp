@@ -34,8 +34,8 @@ public:
   /// \throws file_error
   explicit csv_file(const std::string& path, std::size_t columns = 0) {
     std::vector<std::string_view> cells;
-    detail::for_each_line(path, [&](std::size_t line, std::string_view whole) {
-      detail::split_cells(detail::split_line(whole).text, cells);
+    detail::for_each_line(path, [&](std::size_t line, std::string_view text) {
+      detail::split_cells(detail::split_line(text).text, cells);
       if (cells.empty()) {
         return;
       }
@@ -53,10 +53,10 @@ public:
           row.name = cells[i];
           continue;
         }
-        const std::string fault =
+        const std::string error_message =
             detail::read_cell(path, line, "column " + std::to_string(i + 1), cells[i], number);
-        if (!fault.empty()) {
-          detail::raise(file_error(path, line, fault));
+        if (!error_message.empty()) {
+          detail::raise(file_error(path, line, error_message));
         }
         row.numbers.push_back(number);
       }

@@ -84,11 +84,11 @@ private:
 ///
 /// \throws file_error if it exists and is not a file, or may not be written
 [[nodiscard]] inline std::filesystem::path link_target(const std::string& path) {
-  constexpr int most_links = 40;
+  constexpr int max_links = 40;
   std::filesystem::path result(path);
   std::error_code error;
   for (int links = 0; is_symlink(std::filesystem::symlink_status(result, error)); ++links) {
-    if (links == most_links) {
+    if (links == max_links) {
       raise(cannot_write(path, ELOOP));
     }
     const std::filesystem::path next = std::filesystem::read_symlink(result, error);

@@ -22,8 +22,8 @@ inline void commit_both(const std::string& path, file_draft& first, file_draft& 
   const fs::path target = link_target(path);
   file_draft before(path);
   std::error_code error;
-  const bool was_there = exists(fs::status(target, error));
-  if (was_there) {
+  const bool existed = exists(fs::status(target, error));
+  if (existed) {
     fs::copy_file(target, before.name(), fs::copy_options::overwrite_existing, error);
     if (error) {
       raise(cannot_write(path, error.value()));
@@ -32,7 +32,7 @@ inline void commit_both(const std::string& path, file_draft& first, file_draft& 
   first.commit();
   catching<void>([&] { second.commit(); },
                  [&] {
-                   if (was_there) {
+                   if (existed) {
                      before.commit();
                    } else {
                      fs::remove(target, error);
@@ -69,11 +69,11 @@ inline void write_files(const std::string& first, const std::string& first_conte
     draft.commit();
     return;
   }
-  const auto place = [](const std::string& path) {
+  const auto real_path = [](const std::string& path) {
     return std::filesystem::weakly_canonical(detail::link_target(path));
   };
   file_draft other(second);
-  if (place(first) == place(second)) {
+  if (real_path(first) == real_path(second)) {
     detail::raise(file_error(second, "is the same file as " + first));
   }
   other.write(second_content);

@@ -68,16 +68,16 @@ namespace duet::detail {
     return {first + start + length, std::errc()};
   }
 
-  const std::size_t whole = count_of_digits(text.substr(start));
-  std::string digits(text.substr(start, whole));
-  std::size_t end = start + whole;
+  const std::size_t integer_digits = count_of_digits(text.substr(start));
+  std::string digits(text.substr(start, integer_digits));
+  std::size_t end = start + integer_digits;
   long long exponent = 0;
   if (end < text.size() && text[end] == '.') {
-    const std::size_t part = count_of_digits(text.substr(end + 1));
-    if (whole + part > 0) {
-      digits += text.substr(end + 1, part);
-      exponent = -static_cast<long long>(part);
-      end += 1 + part;
+    const std::size_t fraction_digits = count_of_digits(text.substr(end + 1));
+    if (integer_digits + fraction_digits > 0) {
+      digits += text.substr(end + 1, fraction_digits);
+      exponent = -static_cast<long long>(fraction_digits);
+      end += 1 + fraction_digits;
     }
   }
   if (digits.empty()) {

@@ -49,10 +49,10 @@ namespace detail {
 /// and without terminal commands. Control characters and invalid UTF-8 bytes become `\n`, `\t`,
 /// `\r` or `\x1b`; of more than 1000 bytes the middle is omitted.
 [[nodiscard]] inline std::string printable(std::string_view text) {
-  constexpr std::size_t most = 1000;
-  if (text.size() > most) {
-    return printable(text.substr(0, most / 2)) + " ... " +
-           printable(text.substr(text.size() - most / 2));
+  constexpr std::size_t max_size = 1000;
+  if (text.size() > max_size) {
+    return printable(text.substr(0, max_size / 2)) + " ... " +
+           printable(text.substr(text.size() - max_size / 2));
   }
   constexpr std::string_view digits = "0123456789abcdef";
   std::string result;

@@ -43,19 +43,19 @@ template <class X>
 /// The first and the last of more than eight numbers, or of more than two of other things.
 template <class X>
 [[nodiscard]] std::string list_text(const X& x) {
-  constexpr std::size_t most = std::is_arithmetic_v<std::decay_t<decltype(x[0])>> ? 8 : 2;
+  constexpr std::size_t max_shown = std::is_arithmetic_v<std::decay_t<decltype(x[0])>> ? 8 : 2;
   std::string text = "(";
   const auto size = std::size_t(x.size());
   for (std::size_t i = 0; i < size; ++i) {
-    if (size > most && i == most / 2) {
-      i = size - most / 2;
+    if (size > max_shown && i == max_shown / 2) {
+      i = size - max_shown / 2;
       text += ", ... ";
     } else if (i > 0) {
       text += ", ";
     }
     text += field_text(x[i]);
   }
-  return text + ")" + (size > most ? message(" of ", size) : "");
+  return text + ")" + (size > max_shown ? message(" of ", size) : "");
 }
 
 /// (x, y, z) of a column, [a, b; c, d] of another matrix of Eigen.

@@ -177,9 +177,9 @@ template <RealInfinitesimal D>
 template <RealInfinitesimal D>
 [[nodiscard]] D modf(const D& x, D* integer) {
   using std::modf;
-  real_type_t<D> whole;
-  const real_type_t<D> fraction = modf(innermost(x), &whole);
-  *integer = D(whole);
+  real_type_t<D> integer_part;
+  const real_type_t<D> fraction = modf(innermost(x), &integer_part);
+  *integer = D(integer_part);
   return detail::with_innermost(x, fraction);
 }
 

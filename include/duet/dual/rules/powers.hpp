@@ -154,7 +154,7 @@ namespace duet::detail {
 
 /// x^n by products.
 template <class T>
-[[nodiscard]] T whole_power(T x, int n) {
+[[nodiscard]] T integer_power(T x, int n) {
   T result(integer<T>(1));
   for (int k = std::abs(n); k > 0; k /= 2) {
     if (k % 2 == 1) {
@@ -166,7 +166,7 @@ template <class T>
 }
 
 /// Integer exponents up to this one are computed by products in slopes of complex powers.
-inline constexpr int whole_power_limit = 64;
+inline constexpr int integer_power_limit = 64;
 
 template <class T, class Exponent>
 [[nodiscard]] T power_in_slope(const T& x, const Exponent& p) {
@@ -181,8 +181,8 @@ template <class T, class Exponent>
     return lift(rule::power<Exponent>{p}, x);
   } else {
     const auto& real = real_part(p);
-    if (p == real && fabs(real) <= whole_power_limit && trunc(real) == real) {
-      return whole_power(x, int(real));
+    if (p == real && fabs(real) <= integer_power_limit && trunc(real) == real) {
+      return integer_power(x, int(real));
     }
     return complex_power_of_constants<T>(x, p);
   }

@@ -24,7 +24,7 @@ template <class T>
 
 /// π cot πx. The tangent has a pole at the zeros of the cotangent, where derivatives would be lost.
 template <class T>
-[[nodiscard]] T cotangent_of_half_turns(const T& x) {
+[[nodiscard]] T pi_cotangent_pi(const T& x) {
   using std::cos;
   using std::round;
   using std::sin;
@@ -42,7 +42,7 @@ template <class T>
   using std::log;
   using real = real_type_t<T>;
   if (quiet_less(innermost(argument), 0.5)) {
-    return digamma(T(1 - argument)) - cotangent_of_half_turns(argument);
+    return digamma(T(1 - argument)) - pi_cotangent_pi(argument);
   }
   // B₂ₖ = numerator/denominator; the first term left out, B₃₆/(36 x³⁶), is below the last digit.
   constexpr std::array<std::array<long long, 2>, 17> bernoulli{{{1, 6},
