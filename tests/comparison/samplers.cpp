@@ -101,10 +101,10 @@ TEST_CASE("few special points come in all combinations, of many some, and each i
   CHECK(has(many, coordinates(9, 0.0)));
   for (const coordinates& special : rotations{}.special_points()) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto is_there = [&](const coordinates& p) {
+      const auto has_special = [&](const coordinates& p) {
         return std::equal(special.begin(), special.end(), p.begin() + std::ptrdiff_t(3 * i));
       };
-      CHECK(std::any_of(many.begin(), many.end(), is_there));
+      CHECK(std::any_of(many.begin(), many.end(), has_special));
     }
   }
 }
@@ -114,9 +114,9 @@ namespace {
 /// Are there points at distances from `centre` of every decade from 1e-12 to 1e-3, at both sides,
 /// as far as both are in the domain?
 template <class Domain>
-void check_beside(const Domain& domain, const coordinates& centre, int sides = 2) {
+void check_decades_near(const Domain& domain, const coordinates& centre, int sides = 2) {
   for (const std::uint64_t seed : {1, 2, 3}) {
-    std::array<std::array<int, 2>, 9> found{};
+    std::array<std::array<int, 2>, 9> counts{};
     for (const coordinates& p : sampler(domain).points(1000, seed)) {
       double distance = 0, projection = 0;
       for (std::size_t i = 0; i < p.size(); ++i) {
@@ -124,10 +124,10 @@ void check_beside(const Domain& domain, const coordinates& centre, int sides = 2
         projection += (p[i] - centre[i]) * (p.size() == 1 || i != 1 ? 1 : 0.7);
       }
       if (distance >= 1e-12 && distance < 1e-3) {
-        ++found[std::size_t(12 + std::floor(std::log10(distance)))][projection < 0 ? 1 : 0];
+        ++counts[std::size_t(12 + std::floor(std::log10(distance)))][projection < 0 ? 1 : 0];
       }
     }
-    for (const auto& decade : found) {
+    for (const auto& decade : counts) {
       CHECK(decade[0] + decade[1] >= 2);
       CHECK(std::min(decade[0], decade[1]) >= (sides == 2 ? 1 : 0));
     }
@@ -150,15 +150,15 @@ void check_near(const Domain& domain, const coordinates& centre) {
 } // namespace
 
 TEST_CASE("inputs beside zero, at distances of every size down to 1e-12") {
-  check_beside(real_numbers{-2, 2}, {0});
-  check_beside(real_numbers{-1e3, 1e3}, {0});
-  check_beside(real_numbers{0, 2}, {0}, 1);
-  check_beside(real_numbers{-2, 2}.without(0), {0});
-  check_beside(vectors<2>{}, {0, 0});
-  check_beside(vectors<3>{5}, {0, 0, 0});
-  check_beside(rotations{}, {0, 0, 0});
-  check_beside(quaternions{}, {0, 0, 0, 0});
-  check_beside(arrays<1, vectors<2>>{}, {0, 0});
+  check_decades_near(real_numbers{-2, 2}, {0});
+  check_decades_near(real_numbers{-1e3, 1e3}, {0});
+  check_decades_near(real_numbers{0, 2}, {0}, 1);
+  check_decades_near(real_numbers{-2, 2}.without(0), {0});
+  check_decades_near(vectors<2>{}, {0, 0});
+  check_decades_near(vectors<3>{5}, {0, 0, 0});
+  check_decades_near(rotations{}, {0, 0, 0});
+  check_decades_near(quaternions{}, {0, 0, 0, 0});
+  check_decades_near(arrays<1, vectors<2>>{}, {0, 0});
 }
 
 TEST_CASE("inputs beside the other special points") {
@@ -253,9 +253,9 @@ TEST_CASE("equal, nearly equal and opposite arguments, however many there are") 
     const double lengths = a.norm() * b.norm();
     return lengths > 1e-3 ? std::abs(a.dot(b)) / lengths : 1.0;
   };
-  const auto among = [&](const auto& f, double least, double largest) {
+  const auto among = [&](const auto& f, double smallest, double largest) {
     return std::count_if(pairs.begin(), pairs.end(),
-                         [&](const coordinates& p) { return f(p) >= least && f(p) < largest; });
+                         [&](const coordinates& p) { return f(p) >= smallest && f(p) < largest; });
   };
   CHECK(among(sine, 0, 1e-15) > 5);
   CHECK(among(sine, 1e-12, 1e-4) > 5);
@@ -308,10 +308,10 @@ TEST_CASE("exclusions that cannot be") {
       "duet: sampler: 1000 random inputs in a row are excluded, the last a = 1, b = 2",
       duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(vectors<3>{}.without({0, 0})),
-                       "duet: sampler: a point of 2 coordinates, but the arguments have 3",
+                       "duet: sampler: the point has 2 coordinates, but the arguments have 3",
                        duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(sampler(real_numbers{}).without({0}, -1)),
-                       "duet: sampler: a radius of -1", duet::invalid_input);
+                       "duet: sampler: the radius is not a number >= 0: -1", duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(sampler(real_numbers{}.without(0)).including({0})),
                        "duet: sampler: the point (0) is outside the domain of the arguments",
                        duet::invalid_input);
@@ -332,7 +332,7 @@ TEST_CASE("points of the caller come first") {
   CHECK(x == 1.5);
   CHECK(v == Eigen::Vector2d(0.25, 0.75));
   CHECK_THROWS_WITH_AS(static_cast<void>(inputs.including({1.5})),
-                       "duet: sampler: a point of 1 coordinates, but the arguments have 3",
+                       "duet: sampler: the point has 1 coordinates, but the arguments have 3",
                        duet::invalid_input);
   CHECK_THROWS_WITH_AS(
       static_cast<void>(inputs.including({2.5, 0, 0})),

@@ -50,7 +50,7 @@ bool have_same_bits(double a, double b) {
          (std::isnan(a) && std::isnan(b) && std::signbit(a) == std::signbit(b));
 }
 
-void check_beside_library(std::string_view text) {
+void check_against_library(std::string_view text) {
   const reading ours = read(text);
   const reading library = read_by_library(text);
   INFO("\"", std::string(text), "\"");
@@ -126,15 +126,15 @@ TEST_CASE("numbers that are read, as far as they go") {
   };
   for (const row& expected : table) {
     INFO("\"", std::string(expected.text), "\"");
-    const reading found = read(expected.text);
-    CHECK(found.error == expected.error);
-    CHECK(found.length == expected.length);
-    CHECK(have_same_bits(found.value, expected.value));
-    check_beside_library(expected.text);
+    const reading result = read(expected.text);
+    CHECK(result.error == expected.error);
+    CHECK(result.length == expected.length);
+    CHECK(have_same_bits(result.value, expected.value));
+    check_against_library(expected.text);
   }
   for (const std::string_view text : {"nan", "-NaN", "nan(a_1)", "nan(", "nan(-)"}) {
     CHECK(std::isnan(read(text).value));
-    check_beside_library(text);
+    check_against_library(text);
   }
   CHECK(read("nan(a_1)").length == 8);
   CHECK(read("nan(-)").length == 3);
@@ -150,10 +150,10 @@ TEST_CASE("texts at random are read as the library reads them") {
   constexpr std::string_view letters = "0123456789012345678901234567890...eE+--inafx(),";
   for (int i = 0; i < 20000; ++i) {
     std::string text;
-    for (std::uint64_t left = random() % 14; left > 0; --left) {
+    for (std::uint64_t remaining = random() % 14; remaining > 0; --remaining) {
       text += letters[random() % letters.size()];
     }
-    check_beside_library(text);
+    check_against_library(text);
   }
 }
 

@@ -58,8 +58,8 @@ std::string message(const std::string& path) {
 } // namespace
 
 TEST_CASE("a file is replaced as a whole and keeps its permissions") {
-  const playground here("whole");
-  const std::string path = here.at("a.csv");
+  const playground folder("whole");
+  const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
   CHECK(content_of(path) == "first\n");
   fs::permissions(path, fs::perms(0600));
@@ -68,12 +68,12 @@ TEST_CASE("a file is replaced as a whole and keeps its permissions") {
   CHECK(fs::status(path).permissions() == fs::perms(0600));
   write_file(path, "");
   CHECK(content_of(path).empty());
-  CHECK(here.count() == 1);
+  CHECK(folder.count() == 1);
 }
 
 TEST_CASE("who may not read a file may not read its draft") {
-  const playground here("private");
-  const std::string path = here.at("a.csv");
+  const playground folder("private");
+  const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
   for (const auto permissions : {fs::perms(0600), fs::perms(0666)}) {
     fs::permissions(path, permissions);
@@ -86,10 +86,10 @@ TEST_CASE("who may not read a file may not read its draft") {
 }
 
 TEST_CASE("drafts are removed while others come and go") {
-  const playground here("many");
+  const playground folder("many");
   std::thread other([&] {
     for (int i = 0; i < 200; ++i) {
-      const duet::file_draft draft(here.at("a.csv"));
+      const duet::file_draft draft(folder.at("a.csv"));
     }
   });
   for (int i = 0; i < 200; ++i) {
@@ -99,13 +99,13 @@ TEST_CASE("drafts are removed while others come and go") {
   { // more than the list holds, and more than once: none is left in it
     std::vector<std::unique_ptr<duet::file_draft>> drafts;
     for (int i = 0; i < 100; ++i) {
-      drafts.push_back(std::make_unique<duet::file_draft>(here.at("a.csv")));
+      drafts.push_back(std::make_unique<duet::file_draft>(folder.at("a.csv")));
     }
-    CHECK(here.count() == 100);
+    CHECK(folder.count() == 100);
     duet::remove_drafts();
-    CHECK(here.count() == 100 - 64);
+    CHECK(folder.count() == 100 - 64);
   }
-  CHECK(here.count() == 0);
+  CHECK(folder.count() == 0);
 }
 
 TEST_CASE("what was printed to a pipe comes before what is written to it by name") {
@@ -133,28 +133,28 @@ TEST_CASE("what was printed to a pipe comes before what is written to it by name
 }
 
 TEST_CASE("a draft that is given up leaves what was there") {
-  const playground here("draft");
-  const std::string path = here.at("a.csv");
+  const playground folder("draft");
+  const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
   {
     const duet::file_draft draft(path);
     draft.write("second\n");
-    CHECK(here.count() == 2);
+    CHECK(folder.count() == 2);
     CHECK(content_of(draft.name()) == "second\n");
   }
-  CHECK(here.count() == 1);
+  CHECK(folder.count() == 1);
   // So does a signal that comes meanwhile.
   duet::file_draft draft(path);
   draft.write("second\n");
   duet::remove_drafts();
-  CHECK(here.count() == 1);
+  CHECK(folder.count() == 1);
   CHECK_THROWS_AS(draft.commit(), duet::file_error);
   CHECK(content_of(path) == "first\n");
 }
 
 TEST_CASE("writers of one file do not mix") {
-  const playground here("writers");
-  const std::string path = here.at("a.csv");
+  const playground folder("writers");
+  const std::string path = folder.at("a.csv");
   const std::string a(200000, 'a'), b(100000, 'b');
   const auto write_often = [&](const std::string& text) {
     for (int i = 0; i < 20; ++i) {
@@ -163,41 +163,41 @@ TEST_CASE("writers of one file do not mix") {
   };
   std::thread other([&] { write_often(a); });
   write_often(b);
-  const std::string found = content_of(path);
-  CHECK((found == a || found == b));
+  const std::string content = content_of(path);
+  CHECK((content == a || content == b));
   other.join();
-  CHECK(here.count() == 1);
+  CHECK(folder.count() == 1);
 }
 
 TEST_CASE("links are followed") {
-  const playground here("links");
-  fs::create_directory(here.at("far"));
-  write_file(here.at("far/a.csv"), "first\n");
-  fs::create_symlink("a.csv", here.at("far/second"));
-  fs::create_symlink("far/second", here.at("link"));
-  write_file(here.at("link"), "second\n");
-  CHECK(fs::is_symlink(here.at("link")));
-  CHECK(fs::is_symlink(here.at("far/second")));
-  CHECK(content_of(here.at("far/a.csv")) == "second\n");
+  const playground folder("links");
+  fs::create_directory(folder.at("far"));
+  write_file(folder.at("far/a.csv"), "first\n");
+  fs::create_symlink("a.csv", folder.at("far/second"));
+  fs::create_symlink("far/second", folder.at("link"));
+  write_file(folder.at("link"), "second\n");
+  CHECK(fs::is_symlink(folder.at("link")));
+  CHECK(fs::is_symlink(folder.at("far/second")));
+  CHECK(content_of(folder.at("far/a.csv")) == "second\n");
   // To a file that is not there yet.
-  fs::create_symlink(here.at("far/new.csv"), here.at("dangling"));
-  duet::require_writable(here.at("dangling"));
-  CHECK(!fs::exists(here.at("far/new.csv")));
-  write_file(here.at("dangling"), "new\n");
-  CHECK(fs::is_symlink(here.at("dangling")));
-  CHECK(content_of(here.at("far/new.csv")) == "new\n");
-  CHECK(here.count() == 3);
+  fs::create_symlink(folder.at("far/new.csv"), folder.at("dangling"));
+  duet::require_writable(folder.at("dangling"));
+  CHECK(!fs::exists(folder.at("far/new.csv")));
+  write_file(folder.at("dangling"), "new\n");
+  CHECK(fs::is_symlink(folder.at("dangling")));
+  CHECK(content_of(folder.at("far/new.csv")) == "new\n");
+  CHECK(folder.count() == 3);
   // To nowhere, and round and round.
-  fs::create_symlink("none/new.csv", here.at("nowhere"));
-  CHECK(message(here.at("nowhere")) ==
-        "duet: " + here.at("nowhere") + ": cannot be written: No such file or directory");
-  fs::create_symlink("round", here.at("round"));
-  CHECK(message(here.at("round")).find("round: cannot be written: ") != std::string::npos);
+  fs::create_symlink("none/new.csv", folder.at("nowhere"));
+  CHECK(message(folder.at("nowhere")) ==
+        "duet: " + folder.at("nowhere") + ": cannot be written: No such file or directory");
+  fs::create_symlink("round", folder.at("round"));
+  CHECK(message(folder.at("round")).find("round: cannot be written: ") != std::string::npos);
 }
 
 TEST_CASE("devices and pipes are written to and stay what they are") {
-  const playground here("special");
-  const std::string pipe = here.at("pipe");
+  const playground folder("special");
+  const std::string pipe = folder.at("pipe");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
   duet::require_writable(pipe); // does not wait for a reader
   std::string received;
@@ -206,42 +206,42 @@ TEST_CASE("devices and pipes are written to and stay what they are") {
   reader.join();
   CHECK(received == "through\n");
   CHECK(fs::is_fifo(pipe));
-  CHECK(here.count() == 1);
+  CHECK(folder.count() == 1);
 
   if (fs::is_character_file("/dev/full") && fs::is_character_file("/dev/null")) {
     write_file("/dev/null", "gone\n");
     CHECK(message("/dev/full") == "duet: /dev/full: cannot be written: No space left on device");
-    fs::create_symlink("/dev/full", here.at("full"));
-    CHECK(message(here.at("full")) ==
-          "duet: " + here.at("full") + ": cannot be written: No space left on device");
+    fs::create_symlink("/dev/full", folder.at("full"));
+    CHECK(message(folder.at("full")) ==
+          "duet: " + folder.at("full") + ": cannot be written: No space left on device");
     CHECK(fs::is_character_file("/dev/full"));
     CHECK(fs::is_character_file("/dev/null"));
   }
 }
 
 TEST_CASE("what cannot be written is found before") {
-  const playground here("errors");
-  const auto asked = [](const std::string& path) {
+  const playground folder("errors");
+  const auto check_message = [](const std::string& path) {
     return duet_test::message_of<duet::file_error>([&] { duet::require_writable(path); });
   };
-  CHECK(asked(here.at("a.csv")).empty());
+  CHECK(check_message(folder.at("a.csv")).empty());
   for (const auto& [path, reason] :
-       {std::pair(here.at("none/a.csv"), "No such file or directory"),
-        std::pair(here.at(std::string(300, 'x')), "File name too long")}) {
-    CHECK(asked(path) == message(path));
+       {std::pair(folder.at("none/a.csv"), "No such file or directory"),
+        std::pair(folder.at(std::string(300, 'x')), "File name too long")}) {
+    CHECK(check_message(path) == message(path));
     CHECK(message(path) == "duet: " + path + ": cannot be written: " + reason);
   }
-  CHECK(asked(here.at("")) == "duet: " + here.at("") + ": is a folder, not a file");
-  CHECK(message(here.at("")) == asked(here.at("")));
-  CHECK(here.count() == 0);
-  CHECK(message(here.at("none\n\x1b[2J/a.csv")) ==
-        "duet: " + here.at("none\\n\\x1b[2J/a.csv") +
+  CHECK(check_message(folder.at("")) == "duet: " + folder.at("") + ": is a folder, not a file");
+  CHECK(message(folder.at("")) == check_message(folder.at("")));
+  CHECK(folder.count() == 0);
+  CHECK(message(folder.at("none\n\x1b[2J/a.csv")) ==
+        "duet: " + folder.at("none\\n\\x1b[2J/a.csv") +
             ": cannot be written: No such file or directory");
 }
 
 TEST_CASE("two files are written, or neither") {
-  const playground here("pair");
-  const std::string a = here.at("a.csv"), b = here.at("b.csv");
+  const playground folder("pair");
+  const std::string a = folder.at("a.csv"), b = folder.at("b.csv");
   const auto error_message = [](const std::string& first, const std::string& second) {
     return duet_test::message_of<duet::file_error>(
         [&] { duet::write_files(first, "1\n", second, "2\n"); });
@@ -250,22 +250,22 @@ TEST_CASE("two files are written, or neither") {
   CHECK(content_of(a) == "1\n");
   CHECK(content_of(b) == "2\n");
   write_file(a, "before\n");
-  const std::string far = here.at("none/b.csv");
+  const std::string far = folder.at("none/b.csv");
   CHECK(error_message(a, far) == "duet: " + far + ": cannot be written: No such file or directory");
   CHECK(error_message(far, a) == error_message(a, far));
-  CHECK(error_message(a, here.at("./a.csv")) ==
-        "duet: " + here.at("./a.csv") + ": is the same file as " + a);
-  fs::create_symlink("a.csv", here.at("link"));
-  CHECK(error_message(here.at("link"), a) ==
-        "duet: " + a + ": is the same file as " + here.at("link"));
-  const std::string none = here.at("new.csv"); // not there yet
-  CHECK(error_message(none, here.at("./new.csv")).ends_with(": is the same file as " + none));
+  CHECK(error_message(a, folder.at("./a.csv")) ==
+        "duet: " + folder.at("./a.csv") + ": is the same file as " + a);
+  fs::create_symlink("a.csv", folder.at("link"));
+  CHECK(error_message(folder.at("link"), a) ==
+        "duet: " + a + ": is the same file as " + folder.at("link"));
+  const std::string none = folder.at("new.csv"); // not there yet
+  CHECK(error_message(none, folder.at("./new.csv")).ends_with(": is the same file as " + none));
   CHECK(content_of(a) == "before\n");
-  CHECK(here.count() == 3);
+  CHECK(folder.count() == 3);
 
   // The second finds a folder in its place at last.
-  for (const std::string& first : {a, none, here.at("link")}) {
-    const std::string second = here.at("late.csv");
+  for (const std::string& first : {a, none, folder.at("link")}) {
+    const std::string second = folder.at("late.csv");
     {
       duet::file_draft one(first), two(second);
       one.write("1\n");
@@ -277,8 +277,8 @@ TEST_CASE("two files are written, or neither") {
     }
     fs::remove(second);
     CHECK(content_of(a) == "before\n");
-    CHECK(fs::is_symlink(here.at("link")));
-    CHECK(here.count() == 3);
+    CHECK(fs::is_symlink(folder.at("link")));
+    CHECK(folder.count() == 3);
   }
 
   if (fs::is_character_file("/dev/full") && fs::is_character_file("/dev/null")) {
@@ -296,18 +296,18 @@ TEST_CASE("files and folders without permission") {
     MESSAGE("not tested: root may write everywhere");
     return;
   }
-  const playground here("permissions");
-  const std::string path = here.at("a.csv");
+  const playground folder("permissions");
+  const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
   fs::permissions(path, fs::perms(0400));
   CHECK(message(path) == "duet: " + path + ": cannot be written: Permission denied");
   fs::permissions(path, fs::perms(0600));
-  fs::permissions(here.at(""), fs::perms(0500));
+  fs::permissions(folder.at(""), fs::perms(0500));
   CHECK(message(path) == "duet: " + path + ": cannot be written: Permission denied");
-  CHECK(message(here.at("new.csv")).find("Permission denied") != std::string::npos);
-  fs::permissions(here.at(""), fs::perms(0700));
+  CHECK(message(folder.at("new.csv")).find("Permission denied") != std::string::npos);
+  fs::permissions(folder.at(""), fs::perms(0700));
   CHECK(content_of(path) == "first\n");
-  CHECK(here.count() == 1);
+  CHECK(folder.count() == 1);
 }
 
 } // namespace test_core_file

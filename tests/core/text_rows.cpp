@@ -81,10 +81,10 @@ TEST_CASE("what is no file of rows says why") {
   CHECK(error_message(path) == "duet: " + path + ": holds no rows");
   write("\xff\xfe"
         "1\n");
-  CHECK(error_message(path) == "duet: " + path + ": is UTF-16: UTF-8 expected");
+  CHECK(error_message(path) == "duet: " + path + ": is UTF-16 (expected UTF-8)");
   write("1,2\n" + std::string(2'000'000, '1'));
   CHECK(error_message(path) ==
-        "duet: " + path + ":2: more than a million characters: no file of rows");
+        "duet: " + path + ":2: the line has more than a million characters (expected a table)");
   write("1,1e400\n");
   CHECK(error_message(path) ==
         "duet: " + path + ":1: column 2 is 1e400, beyond the range of a double");
@@ -99,7 +99,7 @@ TEST_CASE("what is no file of rows says why") {
   for (const char* text : {"1,2;3\n", "1,5;2,5\n", "+1,5e3;1\n"}) {
     write(text);
     CHECK(error_message(path).starts_with("duet: " + path + ":1: column 1 is not a number: '"));
-    CHECK(error_message(path).ends_with("': decimals come after a point"));
+    CHECK(error_message(path).ends_with("' (expected a decimal point, not a comma)"));
   }
   write("1;2\n3;1,2,3\n");
   CHECK(error_message(path) == "duet: " + path + ":2: column 2 is not a number: '1,2,3'");

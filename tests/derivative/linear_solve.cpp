@@ -245,13 +245,11 @@ TEST_CASE("what cannot be solved is refused") {
   CHECK(message(MatrixXd(0, 0), VectorXd(0)) == "duet: solve: A is empty");
   CHECK(message(MatrixXd(2, 2), b) == "duet: solve: A has 2 rows, but b 3");
   MatrixXd a{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};
-  CHECK(message(a, b).find("duet: solve: A is singular: of pivot 3 of 3 nothing but rounding "
-                           "remains, ") == 0);
+  CHECK(message(a, b).find("duet: solve: A is singular: pivot 3 of 3 is only round-off: ") == 0);
   a.col(1).setZero();
-  CHECK(message(a, b) ==
-        "duet: solve: A is singular: of pivot 2 of 3 nothing but rounding remains, 0");
+  CHECK(message(a, b) == "duet: solve: A is singular: pivot 2 of 3 is only round-off: 0");
   CHECK(message(a.cast<dual<float>>(), b) ==
-        "duet: solve: A is singular: of pivot 2 of 3 nothing but rounding remains, 0");
+        "duet: solve: A is singular: pivot 2 of 3 is only round-off: 0");
   a(2, 1) = std::numeric_limits<double>::quiet_NaN();
   CHECK(message(a, b) == "duet: solve: entry (2, 1) of A is not finite");
   // Nearly singular is another thing.

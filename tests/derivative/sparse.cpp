@@ -178,13 +178,13 @@ TEST_CASE("a row that is full takes as many passes as a dense Jacobian") {
 TEST_CASE("what the structure does not have is noticed") {
   const std::vector<double> x{0.3, 0.5, 0.7, 0.9, 1.1};
   CHECK_THROWS_WITH_AS(static_cast<void>(sparse_jacobian(neighbours{}, x, band_of_rows(5, 2))),
-                       "duet: sparse_jacobian: row 0 has entries that the structure has not",
+                       "duet: sparse_jacobian: row 0 has entries outside the sparsity pattern",
                        duet::invalid_input);
   const pairs p = grid(3);
   matrix without = structure_of(p, true);
   without.prune([](int i, int j, double) { return !(i == 4 && j == 5) && !(i == 5 && j == 4); });
   CHECK_THROWS_WITH_AS(static_cast<void>(sparse_hessian(sum_over_pairs{&p}, point(9), without)),
-                       "duet: sparse_hessian: row 4 has entries that the structure has not",
+                       "duet: sparse_hessian: row 4 has entries outside the sparsity pattern",
                        duet::invalid_input);
 }
 

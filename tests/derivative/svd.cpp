@@ -214,7 +214,7 @@ TEST_CASE("nearest_rotation: at the identity its derivative is the skew part") {
 
 TEST_CASE("nearest_rotation: where several are nearest it says so") {
   const std::string several =
-      "duet: nearest_rotation: more than one rotation is nearest, as the least two singular "
+      "duet: nearest_rotation: the nearest rotation is not unique: the smallest two singular "
       "values, the last with the sign of det A, add up to ";
   for (const Matrix3d& a : {Matrix3d(Matrix3d::Zero()), Matrix3d(-Matrix3d::Identity()),
                             diagonal(3, 0, 0), diagonal(3, 2, -2)}) {

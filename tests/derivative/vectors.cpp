@@ -137,9 +137,9 @@ TEST_CASE("a vector without components is refused") {
   CHECK_THROWS_WITH_AS(
       static_cast<void>(gradient(
           [](const auto& x) { return typename std::decay_t<decltype(x)>::Scalar(1); }, none)),
-      "duet: gradient of a function of no variables", duet::invalid_input);
+      "duet: gradient: the function has no variables", duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(jacobian([](const auto& x) { return x; }, none)),
-                       "duet: jacobian of a function of no variables", duet::invalid_input);
+                       "duet: jacobian: the function has no variables", duet::invalid_input);
 }
 
 TEST_CASE("rows, expressions, maps, arrays and integers") {
@@ -281,7 +281,7 @@ TEST_CASE("Hessians of any size, in blocks of eight") {
   check_fixed_hessian<32>();
   check_fixed_hessian<33>();
   CHECK_THROWS_WITH_AS(static_cast<void>(hessian(quadratic{}, std::vector<double>{})),
-                       "duet: hessian of a function of no variables", duet::invalid_input);
+                       "duet: hessian: the function has no variables", duet::invalid_input);
 }
 
 TEST_CASE("how often a Hessian evaluates its function") {

@@ -70,7 +70,7 @@ TEST_CASE("the screw's infinitesimal is outermost") {
   static_assert(is_outside<screw_tag, derivative_tag<>>());
   static_assert(!is_outside<derivative_tag<>, screw_tag>());
   static_assert(is_outside<screw_tag, derivative_tag<derivative_tag<my_tag>>>());
-  static_assert(duet::detail::tags_can_be_told_apart<my_tag, other_tag>());
+  static_assert(duet::detail::tags_are_distinguishable<my_tag, other_tag>());
   static_assert(is_outside<my_tag, other_tag>() != is_outside<other_tag, my_tag>());
 }
 

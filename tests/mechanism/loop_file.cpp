@@ -97,7 +97,7 @@ TEST_CASE("what is wrong with a file of loops, and where") {
   CHECK(fault("hinge a 0 0") == "1: z on \"a\" is missing");
   CHECK(fault("hinge a 0 0 b 0 0 0") == "1: z on \"a\" is not a number: 'b'");
   CHECK(fault("hinge a 0 0,5 0 b 0 0 0") ==
-        "1: y on \"a\" is not a number: '0,5': decimals come after a point");
+        "1: y on \"a\" is not a number: '0,5' (expected a decimal point, not a comma)");
   CHECK(fault("hinge a 0 0 0 b 0 inf 0") == "1: y on \"b\" is inf");
   CHECK(fault("hinge a 0 0 0 b 0 1e999 0") ==
         "1: y on \"b\" is 1e999, beyond the range of a double");

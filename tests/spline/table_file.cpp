@@ -577,7 +577,7 @@ TEST_CASE("bad files are named, with line, column and value") {
   CHECK(error_message("") == " holds no rows");
   CHECK(error_message("# nothing\n\n") == " holds no rows");
   CHECK(error_message("u,x,y,z,qw,qx,qy,qz\n") == " holds no rows");
-  CHECK(error_message("\xff\xfeu") == " is UTF-16: UTF-8 expected");
+  CHECK(error_message("\xff\xfeu") == " is UTF-16 (expected UTF-8)");
   CHECK(error_message(row + "1 nan 2 3 0 0 0 1\n") == "2: tx is nan");
   CHECK(error_message(row + "1 1 2 inf 0 0 0 1\n") == "2: tz is inf");
   CHECK(error_message(row + "1 1 2 3 0 0 1e-400 1\n") ==
@@ -610,7 +610,7 @@ TEST_CASE("bad files are named, with line, column and value") {
   CHECK(error_message(header_of_euroc + "1,1,2,3,0,5,0,0,1\n") ==
         "1: the comment names 8 columns, the rows have 9");
   CHECK(error_message("u;x;y;z;qw;qx;qy;qz\n0;1;2,5;3;1;0;0;0\n") ==
-        "2: y is not a number: '2,5': decimals come after a point");
+        "2: y is not a number: '2,5' (expected a decimal point, not a comma)");
   CHECK(error_message("0,5;1,0;2,5;3,5;1,0;0,0;0,0;0,0\n").find(" 8 columns, and no header") !=
         std::string::npos);
 

@@ -143,13 +143,13 @@ template <class Pair>
   std::vector<sample> suspects;
   bool rounds = false; // by more than is allowed, in the first precision
   std::vector<difference> shorter(differences.size()); // measured with fewer digits, if decisive
-  const auto count = [&](verdict found, const sample& s) {
-    sample& w = worst[std::size_t(found)];
-    w = ++result.counts[std::size_t(found)] == 1 || s.ulps > w.ulps ? s : w;
+  const auto count = [&](verdict judgement, const sample& s) {
+    sample& w = worst[std::size_t(judgement)];
+    w = ++result.counts[std::size_t(judgement)] == 1 || s.ulps > w.ulps ? s : w;
   };
   for (std::size_t i = 0; i < points.size(); ++i) {
     pair.measure_at(points[i], differences);
-    sample here{i, 0, {}};
+    sample current{i, 0, {}};
     for (std::size_t k = 0; k < differences.size(); ++k) {
       worst_errors& largest = result.errors[k];
       largest.absolute = std::max(largest.absolute, differences[k].absolute);
@@ -158,22 +158,22 @@ template <class Pair>
         largest.ulps = differences[k].ulps;
         largest.input = pair.describe(points[i]);
       }
-      here.ulps = std::max(here.ulps, differences[k].common_ulps());
+      current.ulps = std::max(current.ulps, differences[k].common_ulps());
       if (differences[k].ulps_in_shorter > 1 && differences[k].ulps > options.tolerance) {
         shorter[k] = differences[k];
       }
     }
-    const verdict found = judged(differences, options.tolerance);
-    if (found == verdict::disagrees) {
-      here.error = *suspected(differences);
-      suspects.push_back(here);
+    const verdict judgement = judged(differences, options.tolerance);
+    if (judgement == verdict::disagrees) {
+      current.error = *suspected(differences);
+      suspects.push_back(current);
     }
-    rounds = rounds || (found == verdict::loses_precision &&
+    rounds = rounds || (judgement == verdict::loses_precision &&
                         differences.front().common_ulps() > options.tolerance);
     if (!all_finite(differences)) {
-      count(verdict::not_finite, here);
-    } else if (found != verdict::disagrees) {
-      count(found, here);
+      count(verdict::not_finite, current);
+    } else if (judgement != verdict::disagrees) {
+      count(judgement, current);
     }
     const progress now{i + 1, points.size()};
     if (options.report && !options.report(now) && now.done < now.count) {
@@ -186,10 +186,10 @@ template <class Pair>
   // The largest first, until one is a slip: then all are that cannot be round-off.
   std::stable_sort(suspects.begin(), suspects.end(),
                    [](const sample& a, const sample& b) { return a.ulps > b.ulps; });
-  bool is_found = false;
+  bool has_slip = false;
   for (const sample& s : suspects) {
-    const bool is_slip = is_found ? !s.error.may_be_rounding : is_slip_at(points[s.point], s.error);
-    is_found = is_found || is_slip;
+    const bool is_slip = has_slip ? !s.error.may_be_rounding : is_slip_at(points[s.point], s.error);
+    has_slip = has_slip || is_slip;
     rounds = rounds || !is_slip;
     count(is_slip ? verdict::disagrees : verdict::loses_precision, s);
   }
@@ -260,14 +260,15 @@ template <class... T, class F, class G, class Inputs>
 }
 
 template <class... T, class F, class G, InputDomain Inputs>
-DUET_REFUSED("compare: arguments come from a sampler: compare(label, f, g, sampler(real_numbers{0, "
-             "1}))")
+DUET_REFUSED(
+    "compare: the arguments must come from a sampler: compare(label, f, g, sampler(real_numbers{0, "
+    "1}))")
 comparison
     compare(const std::string&, const F&, const G&, const Inputs&, const comparison_options& = {});
 template <class... T, class F, class G, class... Domains>
   requires(!detail::takes_inputs<F, sampler<Domains...>, T..., double> ||
            !detail::takes_inputs<G, sampler<Domains...>, T..., double>)
-DUET_REFUSED("compare: both functions take what the sampler gives, an argument of each domain: "
+DUET_REFUSED("compare: both functions must take one argument of each domain of the sampler: "
              "f(v, t) with sampler(vectors<3>{1.0}, real_numbers{0, 1})")
 comparison compare(const std::string&, const F&, const G&, const sampler<Domains...>&,
                    const comparison_options& = {});

@@ -101,7 +101,7 @@ void for_each_shaped(const Y& y, const Visit& visit) {
 ///
 /// \param found  becomes its makeup, but keeps fewer digits if it had them
 template <class T, class Y>
-[[nodiscard]] std::vector<T> components_of(const Y& y, makeup& found) {
+[[nodiscard]] std::vector<T> components_of(const Y& y, makeup& properties) {
   std::vector<T> components;
   for_each_shaped(y, [&](const auto& x) {
     const std::size_t first = components.size();
@@ -112,9 +112,9 @@ template <class T, class Y>
                         "duet: compare: a compared function must return plain numbers; take the "
                         "derivative out of what the driver returned");
           if constexpr (Real<scalar>) { // integers are exact
-            if (std::numeric_limits<scalar>::digits10 < found.digits) {
-              found.digits = std::numeric_limits<scalar>::digits10;
-              found.epsilon = static_cast<double>(std::numeric_limits<scalar>::epsilon());
+            if (std::numeric_limits<scalar>::digits10 < properties.digits) {
+              properties.digits = std::numeric_limits<scalar>::digits10;
+              properties.epsilon = static_cast<double>(std::numeric_limits<scalar>::epsilon());
             }
           }
           components.push_back(T(s));
@@ -122,9 +122,9 @@ template <class T, class Y>
         },
         x));
     if constexpr (EigenMatrix<std::decay_t<decltype(x)>>) {
-      found.append({x.rows(), x.cols()});
+      properties.append({x.rows(), x.cols()});
     } else if constexpr (!std::is_same_v<Y, T>) {
-      found.append({Eigen::Index(components.size() - first), 0});
+      properties.append({Eigen::Index(components.size() - first), 0});
     }
   });
   return components;
@@ -139,8 +139,9 @@ template <class T, class Y>
 /// f at the point, in the precision of T.
 template <class T, class F, class Inputs>
 [[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
-                                         std::span<const double> point, makeup& found) {
-  return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))), found);
+                                         std::span<const double> point, makeup& properties) {
+  return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))),
+                          properties);
 }
 template <class T, class F, class Inputs>
 [[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
@@ -228,19 +229,20 @@ template <class T, class F, class G, class Inputs>
 [[nodiscard]] difference measure(const std::string& label, const F& automatic, const G& closed_form,
                                  const Inputs& inputs, std::span<const double> point,
                                  double tolerance) {
-  std::array found = {makeup_of<T>(), makeup_of<T>()};
-  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point, found[0]);
-  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point, found[1]);
+  std::array properties = {makeup_of<T>(), makeup_of<T>()};
+  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point, properties[0]);
+  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point, properties[1]);
   require(a.size() == b.size(), "duet: compare \"", label, "\": the automatic result has ",
           a.size(), " components, the closed form ", b.size());
-  if (!fit(found[0], found[1])) {
-    raise(
-        invalid_input(message("duet: compare \"", label, "\": the automatic result is ",
-                              shapes_text(found[0]), ", the closed form ", shapes_text(found[1]))));
+  if (!fit(properties[0], properties[1])) {
+    raise(invalid_input(message("duet: compare \"", label, "\": the automatic result is ",
+                                shapes_text(properties[0]), ", the closed form ",
+                                shapes_text(properties[1]))));
   }
   difference result;
-  result.digits = {found[0].digits, found[1].digits};
-  result.ulps_in_shorter = std::max(found[0].epsilon, found[1].epsilon) / makeup_of<T>().epsilon;
+  result.digits = {properties[0].digits, properties[1].digits};
+  result.ulps_in_shorter =
+      std::max(properties[0].epsilon, properties[1].epsilon) / makeup_of<T>().epsilon;
   const std::vector<T> errors = errors_of(a, b);
   result.is_finite = std::all_of(errors.begin(), errors.end(), [](const T& e) { return e >= 0; });
   const T d = largest(errors);

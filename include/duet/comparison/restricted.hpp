@@ -41,9 +41,9 @@ namespace detail {
 ///   NaN
 [[nodiscard]] inline std::function<bool(std::span<const double>)>
 beyond(coordinates centre, double radius, std::size_t size) {
-  require(centre.size() == size, "duet: sampler: a point of ", centre.size(),
+  require(centre.size() == size, "duet: sampler: the point has ", centre.size(),
           " coordinates, but the arguments have ", size);
-  require(radius >= 0, "duet: sampler: a radius of ", radius);
+  require(radius >= 0, "duet: sampler: the radius is not a number >= 0: ", radius);
   return [centre = std::move(centre), radius](std::span<const double> point) {
     double distance = 0;
     for (std::size_t i = 0; i < centre.size(); ++i) {

@@ -56,7 +56,7 @@ public:
   ///
   /// \throws invalid_input if their number is wrong or one is out of range
   [[nodiscard]] sampler including(const coordinates& point) const {
-    detail::require(point.size() == size(), "duet: sampler: a point of ", point.size(),
+    detail::require(point.size() == size(), "duet: sampler: the point has ", point.size(),
                     " coordinates, but the arguments have ", size());
     detail::require(contains(point), "duet: sampler: the point ", detail::tuple_text(point),
                     " is outside the domain of the arguments");
@@ -123,8 +123,8 @@ public:
     const auto is_excluded = [this](const coordinates& point) { return !contains(point); };
     std::erase_if(result, is_excluded);
     detail::structured_points structured(arguments(random), random);
-    const std::size_t beside = std::max((count + 1) / 2, structured.least_count());
-    for (std::size_t k = 0; k < beside; ++k) {
+    const std::size_t structured_count = std::max((count + 1) / 2, structured.min_count());
+    for (std::size_t k = 0; k < structured_count; ++k) {
       coordinates point = random_point(random);
       structured.put_into(point);
       result.push_back(is_excluded(point) ? random_point(random) : std::move(point));

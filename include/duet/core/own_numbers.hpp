@@ -40,11 +40,11 @@ inline constexpr bool refers_elsewhere = [] {
   } else if constexpr (requires(const X& x) { as_eigen(x); }) {
     return !requires(const X& x) { as_plain(x); };
   } else if constexpr (requires { typename X::value_type; }) {
-    using held = typename X::value_type;
-    if constexpr (std::is_same_v<held, X>) { // as for the numbers of Boost.Multiprecision
+    using element = typename X::value_type;
+    if constexpr (std::is_same_v<element, X>) { // as for the numbers of Boost.Multiprecision
       return false;
     } else {
-      return refers_elsewhere<held>;
+      return refers_elsewhere<element>;
     }
   } else {
     return false;
@@ -63,7 +63,7 @@ template <class X>
 constexpr void require_owning_result() {
   static_assert(!refers_elsewhere<X>,
                 "duet: a function returns an expression of Eigen, which refers to variables that "
-                "are gone by then: return (...).eval(), or say what it returns: "
+                "are gone by then: return (...).eval(), or declare the type of the result: "
                 "[](const auto& x) -> duet::vector3<...> { ... }");
 }
 

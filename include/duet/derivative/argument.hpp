@@ -214,11 +214,12 @@ concept VectorLike = Variables<X> && !detail::is_tuple<X>;
   __VA_ARGS__ driver(F&&, const X&);                                                               \
   template <class Tag = void, detail::FunctionOfAny F, class A, class B, class... More>            \
     requires(!FrameConstant<B> && !HasOwnJacobian<F>)                                              \
-  DUET_REFUSED("several arguments are given as a tuple: " #driver "(f, std::tuple(a, b))")         \
+  DUET_REFUSED("pass several arguments as a tuple: " #driver "(f, std::tuple(a, b))")              \
   __VA_ARGS__ driver(F&&, const A&, const B&, const More&...);                                     \
   template <class Tag = void, detail::FunctionOfAny F, class X>                                    \
     requires((Scalar<X> || Arithmetic<X>)&&!HasOwnJacobian<F>)                                     \
-  DUET_REFUSED(#driver " is by a vector, by one number there is " of_one)                          \
+  DUET_REFUSED(#driver                                                                             \
+               " differentiates with respect to a vector; with respect to one number use " of_one) \
   __VA_ARGS__ driver(F&&, const X&);
 
 /// Rejects matrices for a `driver` with more arguments, `rest` in the message.

@@ -88,12 +88,12 @@ std::array<double, std::size_t(K) + 1> derivatives(F&&, X&&...);
 template <class Tag = void, detail::FunctionOfAny F, class X>
   requires(!Scalar<X> && !Arithmetic<X>)
 DUET_REFUSED(
-    "derivative is by one number; by vectors, rotations and poses there are gradient(f, x) "
-    "and jacobian(f, x)")
+    "derivative differentiates with respect to one number; with respect to vectors, rotations "
+    "and poses use gradient(f, x) or jacobian(f, x)")
 value_and_derivative<double, double> derivative(F&&, const X&);
 template <class Tag = void, detail::FunctionOfAny F, class A, class B, class... More>
-DUET_REFUSED("derivative is by one number; of several arguments there are gradient(f, "
-             "std::tuple(a, b)) and jacobian(f, std::tuple(a, b))")
+DUET_REFUSED("derivative differentiates with respect to one number; for several arguments use "
+             "gradient(f, std::tuple(a, b)) or jacobian(f, std::tuple(a, b))")
 value_and_derivative<double, double> derivative(F&&, const A&, const B&, const More&...);
 
 } // namespace duet

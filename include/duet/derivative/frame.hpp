@@ -50,7 +50,7 @@ template <class Frame>
 template <class Frame>
 [[nodiscard]] constexpr bool is_spatial(Frame) {
   static_assert(std::is_same_v<Frame, spatial_frame> || std::is_same_v<Frame, body_frame>,
-                "duet: an angular velocity is given in frame::spatial or frame::body");
+                "duet: an angular velocity is expressed in frame::spatial or frame::body");
   return std::is_same_v<Frame, spatial_frame>;
 }
 

@@ -82,13 +82,13 @@ struct value_gradient_and_hessian {
 /// Example: `Eigen::VectorXd g(n); const double y = gradient_into<16>(f, x, g);`
 template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X, class G>
 [[nodiscard]] auto gradient_into(F&& f, const X& x, G&& gradient) {
-  static_assert(Chunk >= 0, "duet: gradient_into<Chunk> needs a number of partials");
+  static_assert(Chunk >= 0, "duet: gradient_into<Chunk>: Chunk must not be negative");
   using tag = detail::tag_for<Tag, F>;
   using output = std::decay_t<decltype(detail::result_of_call(
       detail::call(f, detail::constants_of_pass<tag, Chunk>(x))))>;
   static_assert(Scalar<output>, "duet: gradient_into needs a function that returns a scalar");
   const Eigen::Index size = detail::vector_argument<X>::size(x);
-  detail::require(size > 0, "duet: gradient_into of a function of no variables");
+  detail::require(size > 0, "duet: gradient_into: the function has no variables");
   detail::require_size("gradient_into", gradient, size, 1);
   decltype(detail::part<tag>(std::declval<const output&>(), 0)) value(0);
   detail::for_each_pass<tag, Chunk>(f, x,
@@ -117,12 +117,12 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
       detail::call(f, detail::constants_of_pass<tag, 0>(x))))>;
   static_assert(
       Scalar<output>,
-      "duet: gradient needs a function that returns a scalar, f(x) of a vector; of several "
-      "arguments it is gradient(f, std::tuple(x, y))");
+      "duet: gradient needs a function that returns a scalar, f(x) of a vector; for several "
+      "arguments use gradient(f, std::tuple(x, y))");
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   using vector = Eigen::Matrix<S, argument::size_at_compile_time, 1>;
   value_and_gradient<S, vector> result{S(0), vector(argument::size(x))};
-  detail::require(argument::size(x) > 0, "duet: gradient of a function of no variables");
+  detail::require(argument::size(x) > 0, "duet: gradient: the function has no variables");
   result.value = gradient_into<0, std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
       f, x, result.gradient);
   return result;
@@ -220,7 +220,7 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
   using S = decltype(detail::part<tag>(std::declval<const output&>(), 0));
   constexpr int rows = is_single_pass ? n : Eigen::Dynamic;
   const Eigen::Index size = argument::size(x);
-  detail::require(size > 0, "duet: hessian of a function of no variables");
+  detail::require(size > 0, "duet: hessian: the function has no variables");
   value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, rows, rows>> result{
       S(0), Eigen::Matrix<S, n, 1>(size), Eigen::Matrix<S, rows, rows>(size, size)};
   if constexpr (is_single_pass) {

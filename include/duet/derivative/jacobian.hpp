@@ -91,14 +91,14 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
   using output = std::decay_t<decltype(detail::result_of_call(
       detail::call(f, detail::constants_of_pass<tag, 0>(x))))>;
   static_assert(VectorLike<output>,
-                "duet: jacobian needs a function that returns a vector; where it returns a "
-                "rotation, say the frame: jacobian(f, x, frame::body)");
+                "duet: jacobian needs a function that returns a vector; if it returns a "
+                "rotation, pass the frame: jacobian(f, x, frame::body)");
   using value = std::decay_t<decltype(detail::parts<tag>(std::declval<const output&>(), 0))>;
   using S = typename detail::vector_argument<value>::scalar;
   value_and_jacobian<value, Eigen::Matrix<S, detail::vector_argument<output>::size_at_compile_time,
                                           argument::size_at_compile_time>>
       result{};
-  detail::require(argument::size(x) > 0, "duet: jacobian of a function of no variables");
+  detail::require(argument::size(x) > 0, "duet: jacobian: the function has no variables");
   result.value =
       detail::write_jacobian<tag, 0, output>(f, x, result.jacobian, [&](Eigen::Index rows) {
         result.jacobian.resize(rows, argument::size(x));
@@ -112,13 +112,13 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X>
 /// \return f(x)
 template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X, class J>
 [[nodiscard]] auto jacobian_into(F&& f, const X& x, J&& jacobian) {
-  static_assert(Chunk >= 0, "duet: jacobian_into<Chunk> needs a number of partials");
+  static_assert(Chunk >= 0, "duet: jacobian_into<Chunk>: Chunk must not be negative");
   using tag = detail::tag_for<Tag, F>;
   using output = std::decay_t<decltype(detail::result_of_call(
       detail::call(f, detail::constants_of_pass<tag, Chunk>(x))))>;
   static_assert(VectorLike<output>, "duet: jacobian_into needs a function that returns a vector");
   const Eigen::Index size = detail::vector_argument<X>::size(x);
-  detail::require(size > 0, "duet: jacobian_into of a function of no variables");
+  detail::require(size > 0, "duet: jacobian_into: the function has no variables");
   return detail::write_jacobian<tag, Chunk, output>(f, x, jacobian, [&](Eigen::Index rows) {
     detail::require_size("jacobian_into", jacobian, rows, size);
   });

@@ -119,8 +119,8 @@ void require_regular(const LU& lu) {
       terms += R(abs(R(factors(k, j) * factors(j, k))));
     }
     require(!any(pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms)),
-            "duet: solve: A is singular: of pivot ", k + 1, " of ", n,
-            " nothing but rounding remains, ", factors(k, k));
+            "duet: solve: A is singular: pivot ", k + 1, " of ", n,
+            " is only round-off: ", factors(k, k));
   }
 }
 

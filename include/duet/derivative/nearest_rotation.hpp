@@ -126,11 +126,11 @@ template <class A>
                 "duet: nearest_rotation: A must be square");
   detail::require(a.rows() == a.cols(), "duet: nearest_rotation: A is ", a.rows(), " x ", a.cols(),
                   ", but must be square");
-  constexpr int n = detail::least_size(A::RowsAtCompileTime, A::ColsAtCompileTime);
+  constexpr int n = detail::min_size(A::RowsAtCompileTime, A::ColsAtCompileTime);
   const Eigen::Matrix<typename A::Scalar, n, n> matrix = a;
   const detail::polar_decomposition<R, n> polar("nearest_rotation", detail::real_values<R>(matrix));
   detail::require(polar.gap > polar.rounding,
-                  "duet: nearest_rotation: more than one rotation is nearest, as the least two "
+                  "duet: nearest_rotation: the nearest rotation is not unique: the smallest two "
                   "singular values, the last with the sign of det A, add up to ",
                   polar.gap);
   return detail::rotation_of<S>(polar, matrix);

@@ -85,7 +85,7 @@ public:
     for (Eigen::Index i = 0; i < rest.size(); ++i) {
       // Sums are not exact: a millionth of the row, or the cancellation of the largest one.
       require(!(std::abs(double(innermost(rest[i]))) > 1e-6 * scale[i] + 1e-12 * largest),
-              "duet: ", caller, ": row ", i, " has entries that the structure has not");
+              "duet: ", caller, ": row ", i, " has entries outside the sparsity pattern");
     }
     return entries_;
   }
@@ -172,7 +172,7 @@ template <class Tag = void, detail::FunctionOfAny F, Variables X, class P>
   using S =
       decltype(detail::part<group_tag>(detail::part<tag>(std::declval<const output&>(), 0), 0));
   const Eigen::Index size = argument::size(x);
-  detail::require(size > 0, "duet: sparse_hessian of a function of no variables");
+  detail::require(size > 0, "duet: sparse_hessian: the function has no variables");
   detail::require(structure.rows() == size && structure.cols() == size,
                   "duet: sparse_hessian: the structure is ", structure.rows(), " x ",
                   structure.cols(), " for ", size, " variables");

@@ -73,7 +73,7 @@ void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
 }
 template <class Tag, class F, RunTimeVector X, class Frame, class Visit>
 void for_each_tangent_pass(F&& f, const X& x, Frame, Visit&& visit) {
-  require(vector_argument<X>::size(x) > 0, "duet: jacobian of a function of no variables");
+  require(vector_argument<X>::size(x) > 0, "duet: jacobian: the function has no variables");
   for_each_pass<Tag>(f, x, visit); // vectors ignore the frame
 }
 
@@ -202,7 +202,7 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
 
 template <class Tag = void, class F, class X, FrameConstant Frame>
   requires(!HasOwnJacobian<F> && !ManifoldPoint<X> && requires { sizeof(structure<X>); })
-DUET_REFUSED("no tangent coordinates are known of this type; those of rotations are in "
+DUET_REFUSED("this type has no tangent coordinates; those of rotations are in "
              "<duet/quaternion/exponential.hpp>, of poses in <duet/dual_quaternion/twist.hpp>")
 value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd> jacobian(F&&, const X&, Frame);
 
@@ -210,7 +210,7 @@ value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd> jacobian(F&&, const X&, Fra
 #define DUET_REFUSES_RUN_TIME_SIZE(driver, ...)                                                    \
   template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>                       \
     requires(!HasOwnJacobian<F> && !detail::OfKnownDimension<X>)                                   \
-  DUET_REFUSED("with a frame, a vector of run-time size is differentiated by alone; in tuples "    \
+  DUET_REFUSED("with a frame, a vector of run-time size must be the only argument; in tuples "     \
                "and arrays give it a size known at compile time")                                  \
   __VA_ARGS__                                                                                      \
   driver(F&&, const X&, Frame);
@@ -223,8 +223,9 @@ DUET_REFUSES_RUN_TIME_SIZE(hessian,
 /// Message for a rotation, pose or tuple without a frame.
 #define DUET_ASKS_FOR_FRAME(driver, ...)                                                           \
   template <class Tag = void, class F, detail::NeedsFrame X>                                       \
-  DUET_REFUSED("to differentiate by rotations, poses or tuples say the frame: " #driver            \
-               "(f, x, frame::body)")                                                              \
+  DUET_REFUSED(                                                                                    \
+      "to differentiate with respect to rotations, poses or tuples pass the frame: " #driver       \
+      "(f, x, frame::body)")                                                                       \
   __VA_ARGS__                                                                                      \
   driver(F&&, const X&);
 

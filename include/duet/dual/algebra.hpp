@@ -121,8 +121,8 @@ struct infinitesimal_operators {
 
 #define DUET_REFUSES_ASSIGNMENT(op)                                                                \
   template <Arithmetic A, Infinitesimal D>                                                         \
-  DUET_REFUSED("a sum or product of numbers with derivatives is of their type: where x is one of " \
-               "them, decltype(x) s = 0 instead of double s = 0")                                  \
+  DUET_REFUSED("a sum or product of numbers with derivatives has their type: if x is one of "      \
+               "them, write decltype(x) s = 0 instead of double s = 0")                            \
   A&                                                                                               \
   operator op(A&, const D&);
 DUET_REFUSES_ASSIGNMENT(+=)

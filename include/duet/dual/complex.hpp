@@ -92,7 +92,7 @@ template <class X, class P>
     } else {                                                                                       \
       static_assert(std::floating_point<duet::lane_type_t<D>>,                                     \
                     "duet: " #function " of a complex number needs float, double or long double, " \
-                    "over which alone the standard library has it");                               \
+                    "the only types for which the standard library has it");                       \
     }                                                                                              \
   }
 

@@ -39,7 +39,7 @@ class dual : public detail::infinitesimal_operators<dual<T, N, Tag>, T> {
   static_assert(
       !detail::contains_tag<T, Tag>(),
       "duet: this differentiation happens inside another one with the same tag, and their "
-      "infinitesimals could not be told apart; give it its own: "
+      "infinitesimals could not be distinguished; give it a separate tag: "
       "derivative<struct my_tag>(f, x)");
 
 public:

@@ -43,7 +43,7 @@ template <class A, class B>
 }
 
 template <class A, class B>
-[[nodiscard]] constexpr bool tags_can_be_told_apart() {
+[[nodiscard]] constexpr bool tags_are_distinguishable() {
   return std::is_same_v<A, B> || is_outside<A, B>() != is_outside<B, A>();
 }
 
@@ -115,9 +115,9 @@ template <class A, class B>
   } else if constexpr (b_in_a) {
     return promotion_below<A, value_a, B>();
   } else {
-    static_assert(tags_can_be_told_apart<tag_a, tag_b>(),
+    static_assert(tags_are_distinguishable<tag_a, tag_b>(),
                   "duet: two differentiations of functions with the same name meet here and cannot "
-                  "be told apart; give one its own tag: derivative<struct my_tag>(f, x)");
+                  "be distinguished; give one a separate tag: derivative<struct my_tag>(f, x)");
     if constexpr (is_outside<tag_a, tag_b>()) {
       return promotion_below<A, value_a, B>();
     } else {

@@ -43,7 +43,8 @@ class second_order_dual : public detail::infinitesimal_operators<second_order_du
   static_assert(
       !detail::contains_tag<T, Tag>(),
       "duet: this differentiation happens inside another one with the same tag, and their "
-      "infinitesimals could not be told apart; give it its own: hessian<struct my_tag>(f, x)");
+      "infinitesimals could not be distinguished; give it a separate tag: hessian<struct "
+      "my_tag>(f, x)");
 
 public:
   using value_type = T;

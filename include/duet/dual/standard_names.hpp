@@ -36,18 +36,19 @@ concept LosesDerivatives = Arithmetic<A> && requires(const Iterator& i) {
   template <class... X>                                                                            \
     requires(duet::detail::UnknownToStd<X> || ...)                                                 \
   DUET_REFUSED("std::" #function                                                                   \
-               " does not know numbers with derivatives nor formulas: write " #function            \
-               "(x), after `using std::" #function ";` where x may be a double")                   \
+               " does not accept numbers with derivatives or formulas: write " #function           \
+               "(x), after `using std::" #function ";` if x may be a double")                      \
   double function(const X&...);
 #define DUET_REFUSED_SUM                                                                           \
   DUET_REFUSED("accumulate, reduce and inner_product of std add up in the type of their initial "  \
-               "value: where x is one of the numbers, decltype(x)(0) instead of 0.0")
+               "value: if x is one of the numbers, write decltype(x)(0) instead of 0.0")
 #define DUET_REFUSES_SPECIAL(function)                                                             \
   template <class... X>                                                                            \
     requires(duet::detail::UnknownToStd<X> || ...)                                                 \
-  DUET_REFUSED("std::" #function " does not know numbers with derivatives nor formulas: of such "  \
-               "numbers there is " #function " of <duet/interop/special_functions.hpp>, without "  \
-               "`std::`, of formulas there is none")                                               \
+  DUET_REFUSED("std::" #function                                                                   \
+               " does not accept numbers with derivatives or formulas: for such "                  \
+               "numbers use " #function " of <duet/interop/special_functions.hpp>, without "       \
+               "`std::`; formulas do not have the function")                                       \
   double function(const X&...);
 
 namespace std {

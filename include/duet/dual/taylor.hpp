@@ -39,7 +39,7 @@ class taylor : public detail::infinitesimal_operators<taylor<T, K, Tag>, T> {
   static_assert(
       !detail::contains_tag<T, Tag>(),
       "duet: this differentiation happens inside another one with the same tag, and their "
-      "infinitesimals could not be told apart; give it its own: "
+      "infinitesimals could not be distinguished; give it a separate tag: "
       "derivatives<K, struct my_tag>(f, x)");
 
 public:

@@ -154,8 +154,9 @@ template <SpecialArgument D>
 #define DUET_REFUSE_FIRST_ARGUMENT(function, what)                                                 \
   template <Infinitesimal D, class... Rest>                                                        \
   void function(const D&, const Rest&...) {                                                        \
-    static_assert(!Infinitesimal<D>, "duet: " #function " has no derivative by its " what          \
-                                     "; give a plain number there");                               \
+    static_assert(!Infinitesimal<D>,                                                               \
+                  "duet: " #function " has no derivative with respect to its " what                \
+                  "; give a plain number there");                                                  \
   }
 DUET_REFUSE_FIRST_ARGUMENT(cyl_bessel_j, "order")
 DUET_REFUSE_FIRST_ARGUMENT(cyl_neumann, "order")
@@ -169,13 +170,13 @@ DUET_REFUSE_FIRST_ARGUMENT(comp_ellint_3, "modulus")
 
 template <Arithmetic K, Infinitesimal D>
 void comp_ellint_3(K, const D&) {
-  static_assert(!Infinitesimal<D>, "duet: comp_ellint_3 has no derivative by its characteristic; "
-                                   "give a plain number there");
+  static_assert(!Infinitesimal<D>, "duet: comp_ellint_3 has no derivative with respect to its "
+                                   "characteristic; give a plain number there");
 }
 template <Arithmetic K, Infinitesimal D, class T>
 void ellint_3(K, const D&, const T&) {
-  static_assert(!Infinitesimal<D>, "duet: ellint_3 has no derivative by its characteristic; give a "
-                                   "plain number there");
+  static_assert(!Infinitesimal<D>, "duet: ellint_3 has no derivative with respect to its "
+                                   "characteristic; give a plain number there");
 }
 
 } // namespace duet

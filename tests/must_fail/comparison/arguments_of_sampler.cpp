@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: compare: (both functions take|arguments come from)
+// expect: duet: compare: (both functions must take|the arguments must come from)
 // within: 2
 // forms: 4
 

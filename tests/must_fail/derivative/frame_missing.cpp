@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: to differentiate by rotations, poses or tuples say the frame
+// expect: duet: to differentiate with respect to rotations, poses or tuples pass the frame
 // within: 5
 // forms: 5
 

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: .* by (one number|a vector)
+// expect: duet: .* with respect to (one number|a vector)
 // within: 2
 // forms: 4
 

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: inside another one with the same tag.*give it its own: derivative<struct my_tag>
+// expect: inside another one with the same tag.*give it a separate tag: derivative<struct my_tag>
 
 #include <duet/derivative/derivative.hpp>
 

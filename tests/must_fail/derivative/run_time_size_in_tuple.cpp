@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: with a frame, a vector of run-time size is differentiated by alone
+// expect: duet: with a frame, a vector of run-time size must be the only argument
 
 #include <duet/derivative/tangent_coordinates.hpp>
 

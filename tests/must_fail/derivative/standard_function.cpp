@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: std::[a-z0-9]* does not know numbers with derivatives
+// expect: duet: std::[a-z0-9]* does not accept numbers with derivatives
 // within: 5
 // forms: 6
 
@@ -27,8 +27,8 @@ int main() {
 #elif DUET_MUST_FAIL == 5
   std::cout << duet::gradient([](const auto& a) { return std::hypot(a[0], a[1]); }, x).gradient;
 #elif DUET_MUST_FAIL == 6
-  const auto turned = [](const auto& a) { return std::array{std::atan2(a[0], a[1])}; };
-  std::cout << duet::jacobian(turned, x).jacobian << "\n";
+  const auto angles = [](const auto& a) { return std::array{std::atan2(a[0], a[1])}; };
+  std::cout << duet::jacobian(angles, x).jacobian << "\n";
 #else
   using std::sin;
   std::cout << derivative([](auto a) { return sin(a) + exp(a) * std::exp(2); }, 0.3).derivative;

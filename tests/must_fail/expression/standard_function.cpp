@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: std::[a-z_0-9]* does not know numbers with derivatives nor formulas
+// expect: duet: std::[a-z_0-9]* does not accept numbers with derivatives or formulas
 // within: 2
 // forms: 5
 

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: an angular velocity is given in frame::spatial or frame::body
+// expect: duet: an angular velocity is expressed in frame::spatial or frame::body
 
 #include <duet/quaternion/rate.hpp>
 

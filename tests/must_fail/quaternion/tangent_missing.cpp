@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: no tangent coordinates are known of this type
+// expect: duet: this type has no tangent coordinates
 // flags: -Wall -Wno-ignored-attributes
 
 // What few headers lead to (which is why this has flags of its own: nothing is precompiled for it).
@@ -14,8 +14,8 @@
 
 int main() {
   using duet::quaternion;
-  const auto turn = [](auto t) { return quaternion<decltype(t)>(t, t, t, t); };
-  const auto [q, q_dot] = duet::derivative(turn, 1.0); // with this, quaternion.hpp alone will do
+  const auto curve = [](auto t) { return quaternion<decltype(t)>(t, t, t, t); };
+  const auto [q, q_dot] = duet::derivative(curve, 1.0); // with this, quaternion.hpp alone will do
   static_cast<void>(duet::jacobian([](const auto& p) { return conj(p); }, q, duet::frame::body));
   return q_dot.w() == 1 ? 0 : 1;
 }

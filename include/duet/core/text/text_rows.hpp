@@ -37,8 +37,8 @@ namespace duet::detail {
 /// \throws file_error if it cannot be read or exceeds that many megabytes
 [[nodiscard]] inline std::string whole_content(const std::string& path, std::size_t megabytes) {
   std::ifstream in;
-  if (const std::string fault = open_input(path, in); !fault.empty()) {
-    raise(file_error(path, fault));
+  if (const std::string error_message = open_input(path, in); !error_message.empty()) {
+    raise(file_error(path, error_message));
   }
   std::string text;
   for (std::array<char, 65536> part{}; in.read(part.data(), part.size()), in.gcount() > 0;) {
@@ -71,8 +71,8 @@ void for_each_word(std::string_view text, const F& f) {
 template <class F>
 void for_each_line(const std::string& path, const F& f) {
   std::ifstream in;
-  if (const std::string fault = open_input(path, in); !fault.empty()) {
-    raise(file_error(path, fault));
+  if (const std::string error_message = open_input(path, in); !error_message.empty()) {
+    raise(file_error(path, error_message));
   }
   std::string buffer(std::size_t(1) << 14, '\0');
   std::string_view unread;
@@ -80,7 +80,8 @@ void for_each_line(const std::string& path, const F& f) {
     std::size_t end = unread.find('\n');
     while (end == std::string_view::npos && in) {
       if (unread.size() > 1'000'000) {
-        raise(file_error(path, line, "more than a million characters: no file of rows"));
+        raise(file_error(path, line,
+                         "the line has more than a million characters (expected a table)"));
       }
       // Moves the unread text to the front, and reads more behind it.
       std::copy(unread.begin(), unread.end(), buffer.begin());
@@ -105,7 +106,7 @@ void for_each_line(const std::string& path, const F& f) {
       if (text.starts_with("\xef\xbb\xbf")) {
         text.remove_prefix(3);
       } else if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) {
-        raise(file_error(path, "is UTF-16: UTF-8 expected"));
+        raise(file_error(path, "is UTF-16 (expected UTF-8)"));
       }
     }
     f(line, text);
@@ -180,9 +181,10 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
                                            double& number) {
   const std::errc error = read_number(cell, number);
   if (error == std::errc::invalid_argument) {
-    raise(file_error(path, line,
-                     name + " is not a number: '" + std::string(cell) + "'" +
-                         (has_decimal_comma(cell) ? ": decimals come after a point" : "")));
+    raise(file_error(
+        path, line,
+        name + " is not a number: '" + std::string(cell) + "'" +
+            (has_decimal_comma(cell) ? " (expected a decimal point, not a comma)" : "")));
   }
   if (error != std::errc() || !(number - number == 0)) {
     return name + " is " + std::string(cell) +
