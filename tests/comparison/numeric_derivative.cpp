@@ -32,7 +32,7 @@ const auto wave = [](const auto& x) {
 
 } // namespace
 
-TEST_CASE("a complex step is exact to rounding") {
+TEST_CASE("complex_step_derivative: exact to round-off") {
   for (const double x : {0.1, 0.7, 2.0, 9.0}) {
     const double reference = derivative(wave, x).derivative;
     CHECK(std::abs(complex_step_derivative(wave, x) - reference) <=
@@ -50,7 +50,7 @@ TEST_CASE("a complex step is exact to rounding") {
   CHECK(complex_step_derivative(pair, 3.0) == std::array{1.0, 6.0});
 }
 
-TEST_CASE("extrapolated central differences know their error") {
+TEST_CASE("central_difference_derivative: the estimated error bounds the actual error") {
   for (const double x : {0.5, 0.7, 2.0}) {
     const double reference = derivative(wave, x).derivative;
     const auto [slope, error] = central_difference_derivative(wave, x);
@@ -63,7 +63,7 @@ TEST_CASE("extrapolated central differences know their error") {
   CHECK(error < 1e-17);
 }
 
-TEST_CASE("central differences of results of any shape") {
+TEST_CASE("central_difference_derivative: results of any shape are differentiated") {
   const auto rotation_at = [](const auto& t) {
     using T = std::decay_t<decltype(t)>;
     return duet::exp(duet::vector3<T>(t, t * t, T(0.3)));
@@ -73,8 +73,8 @@ TEST_CASE("central differences of results of any shape") {
   CHECK(norm(numeric.derivative - reference) < 1e-11);
 }
 
-TEST_CASE(
-    "steps shrink until a kink is out of reach; a kink or a pole too near shows in the estimate") {
+TEST_CASE("central_difference_derivative: the step shrinks away from a kink; the estimate shows "
+          "one too near") {
   const auto kink = [](double x) { return std::abs(x - 0.5) + x; };
   const auto [slope, error] = central_difference_derivative(kink, 0.5 + 3e-2);
   CHECK(std::abs(slope - 2) <= 1e-9);

@@ -34,7 +34,8 @@ comparison sample() {
 
 } // namespace
 
-TEST_CASE("for people") {
+TEST_CASE(
+    "to_text of a comparison: text for people names verdict, samples, errors and counterexample") {
   CHECK(to_text(sample()) ==
         "P5, \"printed\": disagrees at 30, not finite at 2, loses digits at 8, agrees at 60 of 100 "
         "inputs\n"
@@ -51,7 +52,7 @@ TEST_CASE("for people") {
                          "  15 digits: worst error 0 ulp, relative 0, absolute 0\n");
 }
 
-TEST_CASE("as many digits as show where the sides differ") {
+TEST_CASE("to_text of a comparison: prints as many digits as show the difference of both sides") {
   comparison c = sample();
   c.simplest = duet::counterexample{"x = 1", {0.5, 2}, {0.5, 2 + 0x1p-42}};
   CHECK(to_text(c).ends_with("    automatic:   (0.5, 2)\n"
@@ -75,7 +76,8 @@ TEST_CASE("as many digits as show where the sides differ") {
   CHECK(result.simplest->difference == doctest::Approx(1e-13).epsilon(1e-2));
 }
 
-TEST_CASE("what fewer digits than the arguments' were compared") {
+TEST_CASE(
+    "to_text of a comparison: names the function that returned fewer digits than its arguments") {
   comparison c = sample();
   c.errors[0].compared_digits = 6;
   c.note = "why";
@@ -86,7 +88,7 @@ TEST_CASE("what fewer digits than the arguments' were compared") {
   CHECK(to_csv(std::array{c}).ends_with("\"u = 1, w = (0, 1)\",6\n"));
 }
 
-TEST_CASE("for documents") {
+TEST_CASE("to_markdown of comparisons: one row per comparison") {
   comparison good;
   good.label = "good";
   CHECK(to_markdown(std::array{sample(), good}) ==
@@ -97,7 +99,7 @@ TEST_CASE("for documents") {
         "| good | agrees | | | |\n");
 }
 
-TEST_CASE("for programs") {
+TEST_CASE("to_csv of comparisons: one line per comparison and scalar") {
   CHECK(to_csv(std::array{sample()}) ==
         "label,verdict,samples,agreeing,tolerance_ulp,digits,worst_ulp,worst_relative,"
         "worst_absolute,worst_input,simplest_input,compared_digits\n"
@@ -105,7 +107,8 @@ TEST_CASE("for programs") {
         "\"u = 1, w = (0, 2)\",\"u = 1, w = (0, 1)\",15\n");
 }
 
-TEST_CASE("a run says how far it is, and may be ended") {
+TEST_CASE(
+    "compare: reports progress after every input and ends early if the callback returns false") {
   const std::size_t all = duet::sampler(duet::real_numbers{}).points(29, 1).size();
   std::size_t calls = 0, last = all;
   const auto report = [&](const duet::progress& p) {

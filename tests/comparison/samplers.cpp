@@ -53,7 +53,7 @@ bool has(const std::vector<coordinates>& points, const coordinates& point) {
 
 } // namespace
 
-TEST_CASE("points of every domain are inside it") {
+TEST_CASE("sampler: points of every domain are inside it") {
   check_domain(real_numbers{});
   check_domain(real_numbers{-0.19, 0.2});
   check_domain(vectors<3>{2});
@@ -67,7 +67,7 @@ TEST_CASE("points of every domain are inside it") {
   check_domain(arrays<2, real_numbers>{}.without({0, 0}));
 }
 
-TEST_CASE("special points") {
+TEST_CASE("sampler: special points are those documented for each domain") {
   CHECK(has(real_numbers{-1, 1}.special_points(), {0}));
   CHECK(has(real_numbers{-1, 1}.special_points(), {1e-8}));
   CHECK(!has(real_numbers{0.1, 1}.special_points(), {0}));
@@ -78,7 +78,7 @@ TEST_CASE("special points") {
   CHECK(!quaternions{}.contains(coordinates{0, 0, 0, 0}));
 }
 
-TEST_CASE("arguments are made in the precision they are asked for") {
+TEST_CASE("sampler: arguments are constructed in the requested precision") {
   const coordinates point = {0.3, -1.1, 0.7};
   const auto q = rotations{}.make<real_50>(point);
   CHECK(abs(real_50(squared_norm(q) - 1)) < real_50(1e-49));
@@ -89,7 +89,8 @@ TEST_CASE("arguments are made in the precision they are asked for") {
   CHECK(pair == std::array{0.25, 0.5});
 }
 
-TEST_CASE("few special points come in all combinations, of many some, and each in random company") {
+TEST_CASE(
+    "sampler: few special points occur in all combinations, many in some, each in random company") {
   const auto few = sampler(real_numbers{}, real_numbers{}).points(0, 1);
   for (const coordinates& x : real_numbers{}.special_points()) {
     for (const coordinates& y : real_numbers{}.special_points()) {
@@ -149,7 +150,7 @@ void check_near(const Domain& domain, const coordinates& centre) {
 
 } // namespace
 
-TEST_CASE("inputs beside zero, at distances of every size down to 1e-12") {
+TEST_CASE("sampler: points near zero occur at every order of magnitude down to 1e-12") {
   check_decades_near(real_numbers{-2, 2}, {0});
   check_decades_near(real_numbers{-1e3, 1e3}, {0});
   check_decades_near(real_numbers{0, 2}, {0}, 1);
@@ -161,7 +162,7 @@ TEST_CASE("inputs beside zero, at distances of every size down to 1e-12") {
   check_decades_near(arrays<1, vectors<2>>{}, {0, 0});
 }
 
-TEST_CASE("inputs beside the other special points") {
+TEST_CASE("sampler: points near the other special points occur within 1e-6") {
   const double pi = 3.141592653589793;
   for (const double x : {-4.0, 4.0, 1.0, -1.0, 0.5, 2.0, pi, -pi, pi / 2}) {
     check_near(real_numbers{-4, 4}, {x});
@@ -174,7 +175,7 @@ TEST_CASE("inputs beside the other special points") {
   check_near(quaternions{1}, {0, 1, 0, 0});
 }
 
-TEST_CASE("components that are zero or equal, beside others that are not") {
+TEST_CASE("sampler: some components are zero or equal while others are not") {
   const auto points = sampler(vectors<3>{}).points(1000, 1);
   const auto count = [&](const auto& is) {
     return std::count_if(points.begin(), points.end(), is);
@@ -202,7 +203,7 @@ std::vector<duet::quaternion<double>> relative(const Inputs& inputs, std::size_t
 
 } // namespace
 
-TEST_CASE("equal, nearly equal and opposite arguments, however many there are") {
+TEST_CASE("sampler: equal, nearly equal and opposite arguments occur for any number of arguments") {
   const auto check = [](const auto& inputs, std::size_t arguments) {
     for (std::size_t j = 1; j < arguments; ++j) {
       for (std::size_t i = 0; i < j; ++i) {
@@ -262,7 +263,7 @@ TEST_CASE("equal, nearly equal and opposite arguments, however many there are") 
   CHECK(among(cosine, 0, 1e-12) > 5);
 }
 
-TEST_CASE("what is excluded is nowhere among the points") {
+TEST_CASE("sampler: excluded points never occur") {
   const auto check = [](const auto& inputs, const auto& is_excluded) {
     for (const coordinates& p : inputs.points(1000, 1)) {
       CHECK(!is_excluded(p));
@@ -291,7 +292,7 @@ TEST_CASE("what is excluded is nowhere among the points") {
   });
 }
 
-TEST_CASE("exclusions that cannot be") {
+TEST_CASE("sampler: invalid exclusions throw invalid_input") {
   const auto points_of = [](const auto& inputs) {
     return [inputs] { static_cast<void>(inputs.points(10, 1)); };
   };
@@ -317,7 +318,7 @@ TEST_CASE("exclusions that cannot be") {
                        duet::invalid_input);
 }
 
-TEST_CASE("random points come after the special ones, and repeat with the seed") {
+TEST_CASE("sampler: random points follow the special ones and are reproduced by the seed") {
   const auto inputs = sampler(real_numbers{}, vectors<3>{});
   CHECK(inputs.points(2000, 1).size() == inputs.points(1000, 1).size() + 1000);
   CHECK(inputs.points(1000, 1).size() > 1000);
@@ -325,7 +326,7 @@ TEST_CASE("random points come after the special ones, and repeat with the seed")
   CHECK(inputs.points(1000, 1) != inputs.points(1000, 2));
 }
 
-TEST_CASE("points of the caller come first") {
+TEST_CASE("sampler: points of the caller come first") {
   const auto inputs = sampler(real_numbers{0, 2}, vectors<2>{}).including({1.5, 0.25, 0.75});
   CHECK(inputs.points(10, 1).front() == coordinates{1.5, 0.25, 0.75});
   const auto [x, v] = inputs.make<double>(inputs.points(10, 1).front());
@@ -340,7 +341,7 @@ TEST_CASE("points of the caller come first") {
       duet::invalid_input);
 }
 
-TEST_CASE("descriptions") {
+TEST_CASE("sampler: points are described by name and coordinates") {
   const coordinates point = {0.5, 0, 0, 1, 2, -2};
   CHECK(sampler(real_numbers{}, rotations{}, arrays<2, real_numbers>{{-3, 3}}).describe(point) ==
         "x1 = 0.5, x2 = rotation by (0, 0, 1), x3 = {2, -2}");

@@ -47,7 +47,7 @@ const auto slope_of_wave = [](auto x) {
 
 } // namespace
 
-TEST_CASE("a right formula agrees in every precision") {
+TEST_CASE("compare: a right formula agrees in every precision") {
   const auto closed_form = [](auto x) {
     using std::cos;
     return 2 * x * cos(x * x);
@@ -67,7 +67,7 @@ TEST_CASE("a right formula agrees in every precision") {
   }
 }
 
-TEST_CASE("a right formula that names no namespace of its functions agrees in every precision") {
+TEST_CASE("compare: a right formula with unqualified function names agrees in every precision") {
   const auto automatic = [](auto x) {
     return derivative([](auto t) { return log(t + sqrt(t * t + 1)); }, x).derivative;
   };
@@ -76,7 +76,7 @@ TEST_CASE("a right formula that names no namespace of its functions agrees in ev
                                             sampler(real_numbers{0, 100})));
 }
 
-TEST_CASE("few samples come after all special inputs, not in place of them") {
+TEST_CASE("compare: few samples follow all special inputs and do not replace them") {
   const auto special = real_numbers{-3, 3}.special_points();
   const auto wrong_elsewhere = [&](double x) {
     return std::any_of(special.begin(), special.end(), [&](const auto& p) { return p[0] == x; })
@@ -89,7 +89,7 @@ TEST_CASE("few samples come after all special inputs, not in place of them") {
   CHECK(c.outcome == verdict::disagrees);
 }
 
-TEST_CASE("a slip is found and its input simplified") {
+TEST_CASE("compare: an error is detected and its input simplified") {
   const auto slip = [](auto x) {
     using std::cos;
     return x * cos(x * x);
@@ -104,7 +104,8 @@ TEST_CASE("a slip is found and its input simplified") {
   CHECK(c.simplest->closed_form[0] == doctest::Approx(std::cos(1.0)).epsilon(1e-15));
 }
 
-TEST_CASE("a slip as small as a few hundred ulps is found, a smaller one is within tolerance") {
+TEST_CASE(
+    "compare: an error of a few hundred ulps is detected, a smaller one is within tolerance") {
   const auto off_by = [](double relative) {
     return [relative](auto x) {
       using std::cos;
@@ -119,7 +120,7 @@ TEST_CASE("a slip as small as a few hundred ulps is found, a smaller one is with
   CHECK(!compare<double>("tiny", slope_of_wave, off_by(0x1p-49), inputs, options));
 }
 
-TEST_CASE("a slip in one place only is found there") {
+TEST_CASE("compare: an error at a single point is detected there") {
   // The sign of the square root of 1 at a half turn.
   const auto right = [](const auto& q) { return duet::rotation_matrix(q); };
   const auto wrong_at_half_turn = [](const auto& q) {
@@ -136,7 +137,7 @@ TEST_CASE("a slip in one place only is found there") {
   CHECK(c.counts[std::size_t(verdict::disagrees)] >= 2); // about the diagonal axis, both ways
 }
 
-TEST_CASE("digits lost by cancellation are told from a slip") {
+TEST_CASE("compare: digits lost by cancellation are distinguished from an error") {
   const auto stable = [](auto x) {
     using std::sin;
     const auto s = sin(x / 2);
@@ -157,7 +158,7 @@ TEST_CASE("digits lost by cancellation are told from a slip") {
   CHECK(compare("1 - cos", stable, cancelling, sampler(real_numbers{1, 3})));
 }
 
-TEST_CASE("rounding at a zero of the function is not held against it") {
+TEST_CASE("compare: round-off at a zero of the function is not counted as an error") {
   // Near pi, sin has a large relative error for any rounding of its argument.
   const auto direct = [](auto x) {
     using std::sin;
@@ -171,7 +172,7 @@ TEST_CASE("rounding at a zero of the function is not held against it") {
   CHECK(compare("triple angle", direct, shifted, inputs));
 }
 
-TEST_CASE("what is not finite where the other is") {
+TEST_CASE("compare: a result that is not finite on one side only gives not_finite") {
   const auto sinc = [](auto x) {
     using std::sin;
     return x == 0 ? decltype(x)(1) : decltype(x)(sin(x) / x);
@@ -212,7 +213,7 @@ struct wrong_near_zero {
 
 } // namespace
 
-TEST_CASE("a slip in the series for small arguments, whatever its threshold") {
+TEST_CASE("compare: an error in a series for small arguments is detected for any threshold") {
   const wrong_near_zero right{0, 0};
   const auto inputs = sampler(real_numbers{-2, 2});
   const auto outcome = [&](const wrong_near_zero& wrong, std::uint64_t seed) {
@@ -277,7 +278,8 @@ const std::vector<wrong_logarithm> wrong_logarithms = {
 
 } // namespace
 
-TEST_CASE("a slip at small rotations, half turns, full turns or in one octant") {
+TEST_CASE(
+    "compare: an error at small rotations, half turns, full turns or in one octant is detected") {
   const wrong_logarithm right{[](double, double, const auto&) { return false; }};
   std::vector<wrong_logarithm> wrong = wrong_logarithms;
   wrong.push_back({[](double w, double size, const auto&) { return w > 0 && size < 1e-11; }});
@@ -292,7 +294,8 @@ TEST_CASE("a slip at small rotations, half turns, full turns or in one octant") 
   }
 }
 
-TEST_CASE("a slip where two of two or three arguments are equal, or a half or full turn apart") {
+TEST_CASE(
+    "compare: an error at arguments that are equal or a half or full turn apart is detected") {
   const wrong_logarithm right{[](double, double, const auto&) { return false; }};
   const auto two = sampler(rotations{}, rotations{});
   const auto three = sampler(rotations{}, rotations{}, rotations{});
@@ -322,7 +325,7 @@ struct half_square_sinc {
 
 } // namespace
 
-TEST_CASE("a point is excluded, and the right formula agrees or loses digits beside it") {
+TEST_CASE("compare: near an excluded point the right formula agrees or loses digits") {
   const auto sinc = [](auto x) {
     using std::sin;
     return x == 0 ? decltype(x)(1) : decltype(x)(sin(x) / x);
@@ -353,7 +356,7 @@ TEST_CASE("a point is excluded, and the right formula agrees or loses digits bes
                 {.tolerance = 1e6}));
 }
 
-TEST_CASE("rounding is never taken for a slip, whatever the seed") {
+TEST_CASE("compare: round-off is never reported as an error, for any seed") {
   const auto plain = [](auto x) { return x; };
   const auto amplified = [](auto x) { return (x + 1000000) - 1000000; };
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -362,7 +365,7 @@ TEST_CASE("rounding is never taken for a slip, whatever the seed") {
   }
 }
 
-TEST_CASE("a slip beside a component whose rounding is larger") {
+TEST_CASE("compare: an error is detected next to a component with larger round-off") {
   const auto right = [](auto x) { return std::array{x + 1, x + 2}; };
   const auto both = [](auto x) {
     return std::array{(x + 1 + 100000000) - 100000000, (x + 2) * (1 + decltype(x)(1e-11))};
@@ -370,7 +373,7 @@ TEST_CASE("a slip beside a component whose rounding is larger") {
   CHECK(compare("both", right, both, sampler(real_numbers{0, 1})).outcome == verdict::disagrees);
 }
 
-TEST_CASE("components that are not finite do not hide the others") {
+TEST_CASE("compare: components that are not finite do not hide the others") {
   const auto right = [](auto x) { return std::array{x, x}; };
   const auto wrong = [](auto x) { return std::array{x / (x - x), 2 * x}; };
   const comparison c = compare("nan", right, wrong, sampler(real_numbers{}));
@@ -390,7 +393,7 @@ TEST_CASE("components that are not finite do not hide the others") {
         verdict::disagrees);
 }
 
-TEST_CASE("0, 1, 2, 3, … 9, -1, 1/2: the simplest input") {
+TEST_CASE("compare: the simplest input is chosen in the order 0, 1, 2, 3, … 9, -1, 1/2") {
   const auto right = [](auto x) { return x; };
   const auto simplest = [&](double lower, double upper, double smallest, double largest) {
     const auto wrong = [&](auto x) { return x >= smallest && x <= largest ? x + 1 : x; };
@@ -421,7 +424,7 @@ TEST_CASE("0, 1, 2, 3, … 9, -1, 1/2: the simplest input") {
             .input == "x1 = 0, x2 = 1e-12");
 }
 
-TEST_CASE("the same seed gives the same result") {
+TEST_CASE("compare: the same seed gives the same result") {
   const auto slip = [](auto x) { return x; };
   const auto run = [&] {
     return compare("slip", slope_of_wave, slip, sampler(real_numbers{-3, 3}));
@@ -429,7 +432,7 @@ TEST_CASE("the same seed gives the same result") {
   CHECK(to_text(run()) == to_text(run()));
 }
 
-TEST_CASE("several arguments, and results of any shape") {
+TEST_CASE("compare: several arguments and results of any shape are supported") {
   const auto automatic = [](const auto& x, auto k) {
     return duet::gradient([k](const auto& v) { return k * v.dot(v); }, x).gradient;
   };
@@ -442,7 +445,7 @@ TEST_CASE("several arguments, and results of any shape") {
   CHECK(c.simplest->input == "v = (1, 0, 0), k = 2");
 }
 
-TEST_CASE("body and spatial angular velocity mixed up, the most common slip of all") {
+TEST_CASE("compare: mixed-up body and spatial angular velocity is detected") {
   const auto automatic = [](const auto& phi, const auto& rate) {
     const auto moving = [&](auto t) { return duet::from_rotation_vector((phi + t * rate).eval()); };
     const auto [q, q_dot] = derivative(moving, 0);
@@ -460,7 +463,7 @@ TEST_CASE("body and spatial angular velocity mixed up, the most common slip of a
   CHECK(c.simplest->input == "phi = (0, 0, 1), rate = (0, 1, 0)");
 }
 
-TEST_CASE("results of different sizes") {
+TEST_CASE("compare: results of different sizes throw invalid_input") {
   CHECK_THROWS_WITH_AS(
       static_cast<void>(compare(
           "sizes",
@@ -475,7 +478,7 @@ TEST_CASE("results of different sizes") {
       duet::invalid_input);
 }
 
-TEST_CASE("results of different shapes") {
+TEST_CASE("compare: results of different shapes throw invalid_input") {
   const auto as = [](auto rows, auto columns) {
     return [](auto x) {
       return Eigen::Matrix<decltype(x), decltype(rows)::value, decltype(columns)::value>::Constant(
@@ -526,7 +529,7 @@ constexpr bool long_double_is_longer =
 
 } // namespace
 
-TEST_CASE("a right formula, beside a derivative at a constant of double, agrees to its digits") {
+TEST_CASE("compare: with a constant of double, a right formula agrees to the digits of double") {
   const auto inputs = sampler(vectors<3>{}, vectors<3>{}).named("w", "v");
   const auto at_zero = [](const auto& w, const auto& v) {
     return derivative(
@@ -579,7 +582,7 @@ TEST_CASE("a right formula, beside a derivative at a constant of double, agrees 
   CHECK(compare("turning", at_zero, wrong_sign, inputs).outcome == verdict::disagrees);
 }
 
-TEST_CASE("a slip and lost digits are found beside a derivative at a constant of double") {
+TEST_CASE("compare: with a constant of double, errors and lost digits are still detected") {
   const auto at_zero = [](auto w) {
     return derivative([&](const auto& t) { return w * t / 3; }, 0.0F).derivative;
   };
@@ -614,7 +617,7 @@ TEST_CASE("a slip and lost digits are found beside a derivative at a constant of
   CHECK(shorter.note.starts_with("the first function returned float"));
 }
 
-TEST_CASE("constants are judged as they are, without a word on their type where they agree") {
+TEST_CASE("compare: constants are judged as they are, without a note on their type if they agree") {
   const auto two = [](auto x) { return derivative([](auto t) { return 2 * t; }, x).derivative; };
   const auto inputs = sampler(real_numbers{-3, 3});
   for (const comparison& c : {compare<double, real_50>(

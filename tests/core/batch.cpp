@@ -49,7 +49,7 @@ void check_lanes(const F& f, const B& x, const B& y) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("arithmetic and comparisons are those of the lanes", B, batch<double>,
+TEST_CASE_TEMPLATE("batch: arithmetic and comparisons equal those of the lanes", B, batch<double>,
                    batch<double, 1>, batch<double, 8>, batch<float, 4>, batch<float, 16>,
                    batch<long double, 2>) {
   const B x = counted<B>(-1.3, 0.7), y = counted<B>(0.9, 0.25);
@@ -76,8 +76,8 @@ TEST_CASE_TEMPLATE("arithmetic and comparisons are those of the lanes", B, batch
   CHECK(all(B::load(numbers.data()) == x));
 }
 
-TEST_CASE_TEMPLATE("select takes each lane from its side", B, batch<double>, batch<double, 8>,
-                   batch<float, 4>, batch<long double, 2>) {
+TEST_CASE_TEMPLATE("batch: select takes each lane from its side", B, batch<double>,
+                   batch<double, 8>, batch<float, 4>, batch<long double, 2>) {
   const B x = counted<B>(-1);
   const auto f = [](const auto& a) {
     return select(
@@ -96,7 +96,7 @@ TEST_CASE_TEMPLATE("select takes each lane from its side", B, batch<double>, bat
   CHECK(all(select(x != x, never, count) == 2));
 }
 
-TEST_CASE_TEMPLATE("functions are those of the lanes", B, batch<double>, batch<double, 8>,
+TEST_CASE_TEMPLATE("batch: functions equal those of the lanes", B, batch<double>, batch<double, 8>,
                    batch<float, 16>, batch<long double, 2>) {
   const B x = counted<B>(0.2, 0.7 / B::lanes), y = counted<B>(-0.7, 0.3);
 #define DUET_CHECK_FUNCTION(f)                                                                     \
@@ -169,7 +169,7 @@ TEST_CASE_TEMPLATE("functions are those of the lanes", B, batch<double>, batch<d
   }
 }
 
-TEST_CASE("sine and cosine are right to the last place, whatever the other lanes are") {
+TEST_CASE("batch: sine and cosine are accurate to one ulp whatever the other lanes contain") {
   using B = batch<double, 4>;
   using wide = duet_test::real_50;
   duet_test::random_source random(1);
@@ -204,7 +204,7 @@ TEST_CASE("sine and cosine are right to the last place, whatever the other lanes
   CHECK(std::isnan(sin(B(std::numeric_limits<double>::infinity()))[0]));
 }
 
-TEST_CASE("a batch prints its lanes") {
+TEST_CASE("batch: output lists the lanes") {
   std::ostringstream text;
   text << batch<double, 2>::from_lanes([](int i) { return 0.5 + i; });
   CHECK(text.str() == "[0.5, 1.5]");

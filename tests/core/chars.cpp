@@ -72,7 +72,7 @@ void check_text(T x) {
 
 } // namespace
 
-TEST_CASE("numbers that are read, as far as they go") {
+TEST_CASE("from_chars: numbers are read up to the first character that does not belong to them") {
   constexpr auto none = std::errc();
   constexpr auto out_of_range = std::errc::result_out_of_range;
   constexpr auto invalid = std::errc::invalid_argument;
@@ -145,7 +145,7 @@ TEST_CASE("numbers that are read, as far as they go") {
   CHECK(read("125" + zeros + "e-402").value == 1.25);
 }
 
-TEST_CASE("texts at random are read as the library reads them") {
+TEST_CASE("from_chars: random texts are read as by the standard library") {
   std::mt19937_64 random(7);
   constexpr std::string_view letters = "0123456789012345678901234567890...eE+--inafx(),";
   for (int i = 0; i < 20000; ++i) {
@@ -157,7 +157,7 @@ TEST_CASE("texts at random are read as the library reads them") {
   }
 }
 
-TEST_CASE("the shortest texts of numbers are those of the library") {
+TEST_CASE("to_chars: shortest texts equal those of the standard library") {
   for (int exponent = -1074; exponent < 1024; ++exponent) {
     check_text(std::ldexp(1., exponent));
   }

@@ -57,7 +57,7 @@ std::string message(const std::string& path) {
 
 } // namespace
 
-TEST_CASE("a file is replaced as a whole and keeps its permissions") {
+TEST_CASE("write_file: replaces the complete file and keeps its permissions") {
   const playground folder("whole");
   const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
@@ -71,7 +71,7 @@ TEST_CASE("a file is replaced as a whole and keeps its permissions") {
   CHECK(folder.count() == 1);
 }
 
-TEST_CASE("who may not read a file may not read its draft") {
+TEST_CASE("file_draft: has the permissions of the file, so nobody else may read it") {
   const playground folder("private");
   const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
@@ -85,7 +85,7 @@ TEST_CASE("who may not read a file may not read its draft") {
   }
 }
 
-TEST_CASE("drafts are removed while others come and go") {
+TEST_CASE("remove_drafts: works while another thread creates and removes drafts") {
   const playground folder("many");
   std::thread other([&] {
     for (int i = 0; i < 200; ++i) {
@@ -108,7 +108,7 @@ TEST_CASE("drafts are removed while others come and go") {
   CHECK(folder.count() == 0);
 }
 
-TEST_CASE("what was printed to a pipe comes before what is written to it by name") {
+TEST_CASE("write_file: text printed to a pipe precedes text written to it by name") {
   if (!fs::exists("/dev/stdout")) {
     MESSAGE("not tested: standard output has no name");
     return;
@@ -132,7 +132,7 @@ TEST_CASE("what was printed to a pipe comes before what is written to it by name
   CHECK(std::string(text.data()) == "printed x");
 }
 
-TEST_CASE("a draft that is given up leaves what was there") {
+TEST_CASE("file_draft: without commit the target keeps its content") {
   const playground folder("draft");
   const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
@@ -152,7 +152,7 @@ TEST_CASE("a draft that is given up leaves what was there") {
   CHECK(content_of(path) == "first\n");
 }
 
-TEST_CASE("writers of one file do not mix") {
+TEST_CASE("write_file: concurrent writers of one file do not mix their contents") {
   const playground folder("writers");
   const std::string path = folder.at("a.csv");
   const std::string a(200000, 'a'), b(100000, 'b');
@@ -169,7 +169,7 @@ TEST_CASE("writers of one file do not mix") {
   CHECK(folder.count() == 1);
 }
 
-TEST_CASE("links are followed") {
+TEST_CASE("write_file: links are followed and stay links") {
   const playground folder("links");
   fs::create_directory(folder.at("far"));
   write_file(folder.at("far/a.csv"), "first\n");
@@ -195,7 +195,7 @@ TEST_CASE("links are followed") {
   CHECK(message(folder.at("round")).find("round: cannot be written: ") != std::string::npos);
 }
 
-TEST_CASE("devices and pipes are written to and stay what they are") {
+TEST_CASE("write_file: devices and pipes are written to directly and remain") {
   const playground folder("special");
   const std::string pipe = folder.at("pipe");
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
@@ -219,7 +219,7 @@ TEST_CASE("devices and pipes are written to and stay what they are") {
   }
 }
 
-TEST_CASE("what cannot be written is found before") {
+TEST_CASE("require_writable: reports the error that write_file would report, without any change") {
   const playground folder("errors");
   const auto check_message = [](const std::string& path) {
     return duet_test::message_of<duet::file_error>([&] { duet::require_writable(path); });
@@ -239,7 +239,7 @@ TEST_CASE("what cannot be written is found before") {
             ": cannot be written: No such file or directory");
 }
 
-TEST_CASE("two files are written, or neither") {
+TEST_CASE("write_files: writes both files or neither") {
   const playground folder("pair");
   const std::string a = folder.at("a.csv"), b = folder.at("b.csv");
   const auto error_message = [](const std::string& first, const std::string& second) {
@@ -291,7 +291,7 @@ TEST_CASE("two files are written, or neither") {
   }
 }
 
-TEST_CASE("files and folders without permission") {
+TEST_CASE("write_file: missing permissions for files and folders are errors") {
   if (geteuid() == 0) {
     MESSAGE("not tested: root may write everywhere");
     return;

@@ -42,7 +42,7 @@ private:
 
 } // namespace
 
-TEST_CASE("the shortest text that reads back") {
+TEST_CASE("to_text of a number: gives the shortest text that reads back") {
   CHECK(to_text(0.1) == "0.1");
   CHECK(to_text(0.1F) == "0.1");
   CHECK(to_text(1e300) == "1e+300");
@@ -55,7 +55,7 @@ TEST_CASE("the shortest text that reads back") {
   CHECK(to_text(0.5L) == "0.5");
 }
 
-TEST_CASE("what is written reads back bit by bit") {
+TEST_CASE("to_text of a number: parse_number restores every bit") {
   duet_test::random_source random(1);
   for (int i = 0; i < 2000; ++i) {
     const double x = random.signed_log_uniform(1e-307, 1e307);
@@ -67,7 +67,7 @@ TEST_CASE("what is written reads back bit by bit") {
   CHECK(parse_number(to_text(5e-324)) == 5e-324);
 }
 
-TEST_CASE("numbers are read whole") {
+TEST_CASE("parse_number: rejects text with anything but one number") {
   CHECK(parse_number("1.5") == 1.5);
   CHECK(parse_number("  -1.5e-3\t\r\n") == -1.5e-3);
   CHECK(parse_number("+2") == 2);
@@ -87,7 +87,7 @@ TEST_CASE("numbers are read whole") {
   }
 }
 
-TEST_CASE("a decimal comma in the global locale changes nothing") {
+TEST_CASE("to_text and parse_number: a decimal comma in the global locale has no effect") {
   const global_locale guard(std::locale(std::locale::classic(), new german));
   std::ostringstream stream;
   stream << 1234.5;

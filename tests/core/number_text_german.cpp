@@ -12,7 +12,7 @@
 
 namespace test_core_number_text_german {
 
-TEST_CASE("the German C locale changes nothing") {
+TEST_CASE("to_text and parse_number: the German C locale has no effect") {
   bool has_locale = false;
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
     has_locale = has_locale || std::setlocale(LC_ALL, name) != nullptr;

@@ -17,7 +17,7 @@
 
 namespace test_core_parallel_for {
 
-TEST_CASE("every element is visited once, whatever the number of threads") {
+TEST_CASE("parallel_for: visits every element once for any number of threads") {
   for (const std::size_t count : {0, 1, 2, 7, 64, 1000, 10007}) {
     for (const unsigned threads : {0U, 1U, 2U, 3U, 16U}) {
       std::vector<int> visits(count, 0);
@@ -28,7 +28,7 @@ TEST_CASE("every element is visited once, whatever the number of threads") {
   }
 }
 
-TEST_CASE("results are the same as of one core, bit for bit") {
+TEST_CASE("parallel_for: results equal those of one thread bit for bit") {
   const auto table = [](duet::execution how) {
     std::vector<double> result(5000);
     duet::parallel_for(
@@ -39,14 +39,14 @@ TEST_CASE("results are the same as of one core, bit for bit") {
   CHECK(table(duet::all_cores) == table(duet::one_core));
 }
 
-TEST_CASE("one core is the caller's own thread") {
+TEST_CASE("parallel_for: one thread is the caller's own") {
   std::set<std::thread::id> threads;
   duet::parallel_for(
       100, [&](std::size_t) { threads.insert(std::this_thread::get_id()); }, duet::one_core);
   CHECK(threads == std::set<std::thread::id>{std::this_thread::get_id()});
 }
 
-TEST_CASE("several threads do work") {
+TEST_CASE("parallel_for: several threads run at the same time") {
   std::mutex mutex;
   std::set<std::thread::id> threads;
   std::atomic<int> waiting = 0;
@@ -65,7 +65,7 @@ TEST_CASE("several threads do work") {
   CHECK(threads.size() == 2);
 }
 
-TEST_CASE("blocks are as asked for") {
+TEST_CASE("parallel_for_blocks: blocks have the requested size") {
   std::vector<std::size_t> sizes;
   duet::parallel_for_blocks(
       10, [&](std::size_t first, std::size_t last) { sizes.push_back(last - first); },
@@ -73,7 +73,7 @@ TEST_CASE("blocks are as asked for") {
   CHECK(sizes == std::vector<std::size_t>{4, 4, 2});
 }
 
-TEST_CASE("the exception of the first block that fails is the one the caller sees") {
+TEST_CASE("parallel_for: rethrows the exception of the first failing block") {
   for (const unsigned threads : {1U, 2U, 5U}) {
     for (int run = 0; run < 50; ++run) {
       std::string message;
@@ -94,7 +94,7 @@ TEST_CASE("the exception of the first block that fails is the one the caller see
   }
 }
 
-TEST_CASE("progress grows up to everything, told by one thread at a time") {
+TEST_CASE("parallel_for: progress increases to the total, reported by one thread at a time") {
   for (const std::size_t count : {1, 3, 127, 1000, 10007}) {
     for (const unsigned threads : {1U, 2U, 5U}) {
       std::vector<int> visits(count, 0);
@@ -119,7 +119,7 @@ TEST_CASE("progress grows up to everything, told by one thread at a time") {
       0, [](std::size_t) {}, duet::execution{2, never});
 }
 
-TEST_CASE("a run is cancelled between blocks, and what is done has no gaps") {
+TEST_CASE("parallel_for: cancelled between blocks, the completed elements have no gaps") {
   for (const unsigned threads : {1U, 2U, 5U}) {
     for (const std::size_t wanted : {1U, 30U, 500U}) {
       std::vector<int> visits(1000, 0);
@@ -155,7 +155,7 @@ TEST_CASE("a run is cancelled between blocks, and what is done has no gaps") {
   }
 }
 
-TEST_CASE("a run that was asked to end when everything was done has not been cancelled") {
+TEST_CASE("parallel_for: cancellation after the last block is ignored") {
   int calls = 0;
   const auto report = [&](const duet::progress& p) {
     ++calls;
@@ -166,7 +166,8 @@ TEST_CASE("a run that was asked to end when everything was done has not been can
   CHECK(calls == 50);
 }
 
-TEST_CASE("who has asked for the end is told no more, while blocks in work are finished") {
+TEST_CASE(
+    "parallel_for: after cancellation the callback is not called while running blocks finish") {
   for (int run = 0; run < 20; ++run) {
     std::atomic<int> begun = 0;
     int calls = 0;
@@ -188,7 +189,7 @@ TEST_CASE("who has asked for the end is told no more, while blocks in work are f
   }
 }
 
-TEST_CASE("another thread cancels") {
+TEST_CASE("parallel_for: another thread can cancel the run") {
   std::atomic<bool> stop = false;
   std::atomic<int> begun = 0;
   const auto report = [&](const duet::progress&) { return !stop; };
@@ -208,7 +209,7 @@ TEST_CASE("another thread cancels") {
   other.join();
 }
 
-TEST_CASE("exceptions of the callback end the run, and it is called once") {
+TEST_CASE("parallel_for: an exception of the callback ends the run, and no further call follows") {
   int worst_calls = 0, max_visits = 0;
   bool has_thrown = true;
   for (int run = 0; run < 2000; ++run) {
@@ -235,7 +236,7 @@ TEST_CASE("exceptions of the callback end the run, and it is called once") {
   CHECK(max_visits <= 5); // one for each thread
 }
 
-TEST_CASE("an error of the work goes before a wish to end") {
+TEST_CASE("parallel_for: an exception of the body takes precedence over cancellation") {
   const auto report = [](const duet::progress&) { return false; };
   const auto fail = [](std::size_t) { throw std::logic_error("broken"); };
   CHECK_THROWS_AS(duet::parallel_for(100, fail, duet::execution{2, report}), std::logic_error);

@@ -10,7 +10,7 @@ namespace test_core_printable {
 
 using duet::printable;
 
-TEST_CASE("text for people stays as it is") {
+TEST_CASE("printable: plain text is unchanged") {
   CHECK(printable("").empty());
   for (const std::string text : {"out/a b.csv: 3 \"x\" \\ ~", "Größe ½ m", "日本語", "\U0001F916",
                                  "\u00a0 \u2027 \u202f", "\uffff", "\U0010ffff"}) {
@@ -18,7 +18,7 @@ TEST_CASE("text for people stays as it is") {
   }
 }
 
-TEST_CASE("what a terminal would obey is spelt out") {
+TEST_CASE("printable: terminal control characters are escaped") {
   CHECK(printable("a\nb\tc\rd") == "a\\nb\\tc\\rd");
   CHECK(printable("\x1b[2J\x07\x7f") == "\\x1b[2J\\x07\\x7f");
   CHECK(printable(std::string("a\0b", 3)) == "a\\x00b");
@@ -29,7 +29,7 @@ TEST_CASE("what a terminal would obey is spelt out") {
         "\\xd8\\x9c \\xe2\\x80\\x8e \\xe2\\x80\\x8f"); // direction
 }
 
-TEST_CASE("bytes that are no UTF-8") {
+TEST_CASE("printable: bytes that are not UTF-8 are escaped") {
   CHECK(printable("\x9b"
                   "2J") == "\\x9b2J");
   CHECK(printable("a\xc3") == "a\\xc3"); // cut off
@@ -43,7 +43,7 @@ TEST_CASE("bytes that are no UTF-8") {
   CHECK(printable("\xff\xfe") == "\\xff\\xfe");
 }
 
-TEST_CASE("what is long is cut in the middle") {
+TEST_CASE("printable: long text is shortened in the middle") {
   const std::string text = "begin" + std::string(1000000, 'x') + "end";
   const std::string shown = printable(text);
   CHECK(shown.size() == 1005);

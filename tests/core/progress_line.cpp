@@ -36,7 +36,8 @@ std::string said(bool is_terminal, double interval) {
 
 } // namespace
 
-TEST_CASE("one line on a terminal, lines elsewhere, nothing of a short run") {
+TEST_CASE(
+    "progress_line: one line on a terminal, several lines elsewhere, nothing for a short run") {
   CHECK(said(false, 0) ==
         "progress: 1 of 3 things\nprogress: 2 of 3 things\nprogress: 3 of 3 things\n");
   CHECK(said(true, 0) ==
@@ -45,7 +46,7 @@ TEST_CASE("one line on a terminal, lines elsewhere, nothing of a short run") {
   CHECK(said(true, never).empty());
 }
 
-TEST_CASE("the environment says how often") {
+TEST_CASE("progress_line: the environment variable sets the interval") {
   const auto interval = [](const char* text) {
     setenv("DUET_PROGRESS_INTERVAL", text, 1);
     return duet::progress_display::standard().interval;
@@ -67,7 +68,7 @@ TEST_CASE("the environment says how often") {
   }
 }
 
-TEST_CASE("as the report of a run") {
+TEST_CASE("progress_line: serves as progress callback of a run") {
   std::FILE* const file = std::tmpfile();
   duet::progress_line line("calls", {file, false, 0});
   duet::parallel_for_blocks(

@@ -25,7 +25,7 @@ namespace test_core_result_text {
 
 using duet::to_text;
 
-TEST_CASE("numbers, vectors and matrices") {
+TEST_CASE("to_text of a result: numbers, vectors and matrices are fields") {
   const auto f = [](const auto& x) { return x[0] * x[1] * x[1]; };
   CHECK(to_text(duet::hessian(f, Eigen::Vector2d(1, 2))) ==
         "value: 4\ngradient: (4, 4)\nhessian: [0, 4; 4, 2]\n");
@@ -54,13 +54,13 @@ TEST_CASE("numbers, vectors and matrices") {
         "value: (1, 4)\njacobian: 2 x 2, 2 entries\n");
 }
 
-TEST_CASE("vectors and matrices by themselves") {
+TEST_CASE("to_text: vectors and matrices alone") {
   CHECK(to_text(Eigen::Vector3d(1, 2.5, -3)) == "(1, 2.5, -3)");
   CHECK(to_text(Eigen::RowVector2d(1, 2)) == "[1, 2]");
   CHECK(to_text(Eigen::Matrix2d::Identity()) == "[1, 0; 0, 1]");
 }
 
-TEST_CASE("rotations and poses by themselves and in results") {
+TEST_CASE("to_text: rotations and poses alone and as fields") {
   using rotation = duet::quaternion<double>;
   const rotation quarter = duet::from_rotation_vector(Eigen::Vector3d(0, 0, std::acos(-1.0) / 2));
   CHECK(to_text(rotation(0.6, 0, 0, -0.8)) == "(0.6, 0, 0, -0.8)");
@@ -91,7 +91,7 @@ TEST_CASE("rotations and poses by themselves and in results") {
   CHECK(to_text(moved).find("at", 40) == std::string::npos);
 }
 
-TEST_CASE("enumerations, lists of results, results in results") {
+TEST_CASE("to_text of a result: enumerations, lists of results and nested results are fields") {
   CHECK(to_text(duet::screw_motion<double>{duet::vector3<double>(0, 0, 1),
                                            duet::vector3<double>::Zero(), 0.5, 2,
                                            duet::screw_kind::screw}) ==

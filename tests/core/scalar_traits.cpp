@@ -33,7 +33,7 @@ static_assert(duet::innermost(1.5) == 1.5);
 static_assert(DUET_VERSION ==
               DUET_VERSION_MAJOR * 10000 + DUET_VERSION_MINOR * 100 + DUET_VERSION_PATCH);
 
-TEST_CASE("the innermost real is the number itself") {
+TEST_CASE("innermost: a plain number is its own innermost real") {
   double x = 1;
   CHECK(&duet::innermost(x) == &x);
   CHECK(DUET_VERSION_STRING == std::to_string(DUET_VERSION_MAJOR) + "." +
@@ -42,8 +42,8 @@ TEST_CASE("the innermost real is the number itself") {
 }
 
 // Digits from tables, not from the formulas of the library.
-TEST_CASE_TEMPLATE("constants in every precision", T, float, double, long double, real_50,
-                   real_50_et) {
+TEST_CASE_TEMPLATE("constant: accurate to an ulp in every precision", T, float, double, long double,
+                   real_50, real_50_et) {
   const real_100 pi("3.14159265358979323846264338327950288419716939937510582097494459230781640629");
   const real_100 ln2(
       "0.69314718055994530941723212145817656807550013436025525412068000949339362197");

@@ -23,7 +23,7 @@ static_assert(std::is_same_v<decltype(select(
                                  true, [] { return dual<double>(1); }, [] { return 2.5F; })),
                              dual<double>>);
 
-TEST_CASE("one callable is evaluated") {
+TEST_CASE("select: only the chosen callable is evaluated") {
   int calls = 0;
   const auto count = [&] { return ++calls; };
   const auto never = [&]() -> int {
@@ -34,7 +34,7 @@ TEST_CASE("one callable is evaluated") {
   CHECK(select(false, never, count) == 2);
 }
 
-TEST_CASE("both results come in their common type, with derivatives") {
+TEST_CASE("select: both results are converted to their common type and keep derivatives") {
   const auto f = [](auto x) {
     return select(
         x < 1, [&] { return x * x; }, [] { return 7; });

@@ -28,7 +28,7 @@ std::string error_message(const std::string& file, std::size_t columns = 0) {
 
 } // namespace
 
-TEST_CASE("headers, names, blanks, line ends and byte order marks") {
+TEST_CASE("csv_file: reads headers, names, blanks, line ends and byte order marks") {
   write("\xef\xbb\xbfname , a [m],b\r\n\r\n# a comment\nfirst, 1 ,-2e3 # the "
         "rest\n\t3,+4,\nlast,5,6");
   const csv_file file(path);
@@ -45,7 +45,7 @@ TEST_CASE("headers, names, blanks, line ends and byte order marks") {
   CHECK(csv_file(path).header().empty());
 }
 
-TEST_CASE("cells apart by semicolons") {
+TEST_CASE("csv_file: reads cells separated by semicolons") {
   write("name; a [m, above];b;\r\nfirst; 1 ;-2e3;\nsecond, the last;3;4\n");
   const csv_file file(path);
   CHECK(file.header() == std::vector<std::string>{"name", "a [m, above]", "b"});
@@ -56,7 +56,7 @@ TEST_CASE("cells apart by semicolons") {
   CHECK(file.rows()[1].numbers == std::vector<double>{3, 4});
 }
 
-TEST_CASE("headers are read as headers, with as many columns as were written") {
+TEST_CASE("csv_file: reads back headers with as many columns as were written") {
   for (const std::vector<std::string>& names : {std::vector<std::string>{"#", "a"},
                                                 {"", ""},
                                                 {"a", " "},
@@ -73,7 +73,7 @@ TEST_CASE("headers are read as headers, with as many columns as were written") {
   CHECK(duet::csv_line({}) == "\n");
 }
 
-TEST_CASE("what is no file of rows says why") {
+TEST_CASE("csv_file: an invalid file gives an error with line and reason") {
   CHECK(error_message("no/such/file") == "duet: no/such/file: cannot be read");
   CHECK(error_message(".") == "duet: .: is a folder, not a file");
   CHECK_THROWS_AS(static_cast<void>(csv_file(".")), duet::invalid_input); // as other bad input

@@ -87,12 +87,13 @@ void check_lanes() {
 
 } // namespace
 
-TEST_CASE("sine and cosine of vectors are within one unit of the last place") {
+TEST_CASE("vector_sine_cosine: accurate to one unit in the last place") {
   check_lanes<two_lanes>();
   check_lanes<all_lanes>();
 }
 
-TEST_CASE("signs, zeros, large numbers, infinities and NaN as the C library has them") {
+TEST_CASE(
+    "vector_sine_cosine: signs, zeros, large numbers, infinities and NaN as in the C library") {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (const double size : {0.0, 8e5, 1e6, 1e22, 1.7e308, infinity, double(NAN)}) {
     for (const double x : {size, -size}) {

@@ -92,7 +92,7 @@ std::string message_of(const Eigen::Matrix<batch<double, 4>, 2, 2>& a) {
 
 } // namespace
 
-TEST_CASE("linear equations, lanes with pivots in different rows") {
+TEST_CASE("solve over batches: lanes with pivots in different rows are solved independently") {
   const auto solved = [](const auto& a, const auto& b) { return duet::solve(a, b); };
   check_lanes<4>(solved, 8, matrices(), right_sides());
   check_lanes<8>(solved, 8, matrices(), right_sides());
@@ -108,7 +108,7 @@ TEST_CASE("linear equations, lanes with pivots in different rows") {
                  std::vector<Eigen::VectorXd>{right_sides()[0], right_sides()[4]});
 }
 
-TEST_CASE("a singular matrix in one lane is an error, and so is one that is not finite") {
+TEST_CASE("solve over batches: one singular or not finite lane throws invalid_input") {
   using B = batch<double, 4>;
   const auto with = [](double x) {
     Eigen::Matrix<B, 2, 2> a;
@@ -122,7 +122,8 @@ TEST_CASE("a singular matrix in one lane is an error, and so is one that is not 
         std::string::npos);
 }
 
-TEST_CASE("derivatives, gradients, Hessians and Jacobians over batches") {
+TEST_CASE("drivers over batches: derivatives, gradients, Hessians and Jacobians equal those of the "
+          "lanes") {
   const std::vector<vector> points = right_sides();
   const auto f = [](const auto& x) {
     using std::exp, std::sin;

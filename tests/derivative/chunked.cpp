@@ -68,7 +68,7 @@ void check_gradient(Eigen::Index n) {
 
 } // namespace
 
-TEST_CASE("any chunk gives the same gradient, in as many passes as it takes") {
+TEST_CASE("gradient_into: any chunk gives the same gradient in the expected number of passes") {
   check_gradient<0>(1000);
   check_gradient<1>(37);
   check_gradient<4>(1000);
@@ -78,7 +78,7 @@ TEST_CASE("any chunk gives the same gradient, in as many passes as it takes") {
   check_gradient<64>(63);
 }
 
-TEST_CASE("a size known at compile time is divided into passes of equal size") {
+TEST_CASE("gradient_into: a size known at compile time is divided into passes of equal size") {
   const Eigen::Matrix<double, 100, 1> x = point(100);
   Eigen::VectorXd g(100);
   int evaluations = 0;
@@ -96,7 +96,7 @@ TEST_CASE("a size known at compile time is divided into passes of equal size") {
   }
 }
 
-TEST_CASE("a fixed size, an array, and a part of a larger vector") {
+TEST_CASE("gradient_into: accepts fixed sizes, arrays and parts of a larger vector") {
   const Eigen::Matrix<double, 50, 1> x = point(50);
   Eigen::VectorXd results = Eigen::VectorXd::Constant(60, -1);
   static_cast<void>(gradient_into<8>(chain, x, results.segment(5, 50)));
@@ -110,7 +110,7 @@ TEST_CASE("a fixed size, an array, and a part of a larger vector") {
   CHECK(g == Eigen::Vector3d(4 + 9, 12 + 1, 6 + 4));
 }
 
-TEST_CASE("a Jacobian by many inputs") {
+TEST_CASE("jacobian_into: many variables give the same Jacobian in passes") {
   const Eigen::VectorXd x = point(45);
   const auto f = [](const auto& v) {
     using T = std::decay_t<decltype(v[0])>;
@@ -132,7 +132,7 @@ TEST_CASE("a Jacobian by many inputs") {
   CHECK(duet::jacobian(f, x).jacobian == expected);
 }
 
-TEST_CASE("sizes that do not match") {
+TEST_CASE("gradient_into and jacobian_into: sizes that do not match throw invalid_input") {
   const Eigen::VectorXd x = point(10);
   Eigen::VectorXd g(9);
   CHECK_THROWS_WITH_AS(static_cast<void>(gradient_into(chain, x, g)),

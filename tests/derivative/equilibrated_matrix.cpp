@@ -67,13 +67,13 @@ void check_inverses() {
 
 } // namespace
 
-TEST_CASE("inverses do not depend on units") {
+TEST_CASE("equilibrated_matrix: inverses do not depend on units") {
   check_inverses<1>();
   check_inverses<2>();
   check_inverses<5>();
 }
 
-TEST_CASE("all exchanges of rows and columns") {
+TEST_CASE("equilibrated_matrix: all exchanges of rows and columns give the inverse") {
   std::array<int, 4> order{};
   std::iota(order.begin(), order.end(), 0);
   do {
@@ -88,7 +88,7 @@ TEST_CASE("all exchanges of rows and columns") {
   } while (std::next_permutation(order.begin(), order.end()));
 }
 
-TEST_CASE("what is singular") {
+TEST_CASE("equilibrated_matrix: singular matrices are recognised") {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   const auto with = [](double x) {
     matrix<3> result;

@@ -46,7 +46,8 @@ real_100 wide_kepler(double eccentricity, const real_100& mean) {
 
 } // namespace
 
-TEST_CASE("a scalar, in closed form: the square root") {
+TEST_CASE(
+    "implicit_solution: a scalar unknown has the closed-form derivatives of the square root") {
   const auto f = [](const auto& x, const auto& p) { return x * x - p; };
   for (const double p : {1e-8, 0.3, 1.0, 2.0, 1e8}) {
     const auto x = implicit_function<3>(f, 1.0, p);
@@ -58,7 +59,7 @@ TEST_CASE("a scalar, in closed form: the square root") {
   }
 }
 
-TEST_CASE("a scalar, in 100 digits: Kepler's equation to third order") {
+TEST_CASE("implicit_solution: Kepler's equation agrees with 100 digits to third order") {
   for (const double e : {0.0, 0.1, 0.7, 0.95}) {
     for (const double mean : {0.05, 0.5, 2.0, 3.0}) {
       const auto x = implicit_function<3>(kepler{e}, mean, mean);
@@ -72,7 +73,7 @@ TEST_CASE("a scalar, in 100 digits: Kepler's equation to third order") {
   }
 }
 
-TEST_CASE("residuals as a scalar, an array, a fixed and a dynamic vector") {
+TEST_CASE("implicit_solution: residuals may be a scalar, an array, a fixed or a dynamic vector") {
   const auto scalar = [](const auto& x, const auto& p) { return x * x * x - p; };
   const auto array = [](const auto& x, const auto& p) { return std::array{x * x * x - p}; };
   const auto fixed = [](const auto& x, const auto& p) { return duet::make_vector(x * x * x - p); };
@@ -99,7 +100,7 @@ TEST_CASE("residuals as a scalar, an array, a fixed and a dynamic vector") {
 }
 
 // The intersection of the circle of radius p with the line y = 2x: x = p/√5.
-TEST_CASE("a vector and a tuple, in closed form") {
+TEST_CASE("implicit_solution: vector and tuple unknowns have closed-form derivatives") {
   const auto by_vector = implicit_function<2>(
       [](const auto& x, const auto& p) {
         return duet::make_vector(x[0] * x[0] + x[1] * x[1] - p * p, x[1] - 2 * x[0]);
@@ -123,7 +124,7 @@ TEST_CASE("a vector and a tuple, in closed form") {
 }
 
 // The residuals differ by 24 orders of magnitude, and so do the unknowns.
-TEST_CASE("units do not matter") {
+TEST_CASE("implicit_solution: the solution does not depend on units") {
   for (const double unit : {1e-12, 1e-9, 1.0, 1e9}) {
     const auto x = implicit_function<1>(
         [=](const auto& v, const auto& p) {
@@ -137,7 +138,7 @@ TEST_CASE("units do not matter") {
   }
 }
 
-TEST_CASE("far starts: full steps would diverge or crawl") {
+TEST_CASE("implicit_solution: converges from a distant initial guess at which full steps fail") {
   const auto arctangent = [](const auto& x, const auto& p) { return atan(x) - p; };
   CHECK(implicit_function<1>(arctangent, 20.0, 0.3)[0] ==
         doctest::Approx(std::tan(0.3)).epsilon(1e-15));
@@ -146,7 +147,7 @@ TEST_CASE("far starts: full steps would diverge or crawl") {
   CHECK(implicit_function<1>(exponential, -5.0, 2.0)[1] == doctest::Approx(0.5).epsilon(1e-15));
 }
 
-TEST_CASE("a start at the solution stays there, rounding in the residual or not") {
+TEST_CASE("implicit_solution: an initial guess at the solution stays there despite round-off") {
   const auto exact = [](const auto& x, const auto& p) { return x + p; };
   CHECK(implicit_function<1>(exact, 0.0, 0.0) == std::array{0.0, -1.0});
   const auto noisy = [](const auto& x, const auto& p) { return cos(x + 0.3) - p; };
@@ -156,7 +157,7 @@ TEST_CASE("a start at the solution stays there, rounding in the residual or not"
   CHECK(x[1] == doctest::Approx(-1 / std::sin(0.3)).epsilon(1e-14));
 }
 
-TEST_CASE("parameters of any shape, and captured variables") {
+TEST_CASE("implicit_solution: parameters of any shape and captured variables are differentiated") {
   // Derivatives with respect to a vector of parameters, by a Jacobian around the solution.
   const auto solve = [](const auto& p) {
     return duet::implicit_solution(
@@ -173,7 +174,7 @@ TEST_CASE("parameters of any shape, and captured variables") {
   CHECK((J - expected).norm() <= 4e-14);
 }
 
-TEST_CASE("what has no solution, or a singular one, is refused") {
+TEST_CASE("implicit_solution: no solution or a singular one throws no_convergence") {
   const auto message = [](const auto& f, double start) {
     return duet_test::message_of<duet::no_convergence>(
         [&] { static_cast<void>(implicit_function<1>(f, start, 1.0)); });

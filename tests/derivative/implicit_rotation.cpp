@@ -60,7 +60,7 @@ struct contact {
 
 } // namespace
 
-TEST_CASE("a rotation, to third order") {
+TEST_CASE("implicit_solution: a rotation as unknown is differentiated to third order") {
   for (const double p : {-0.4, 0.0, 0.3}) {
     const auto solved = implicit_function<3>(orientation{}, motion(p + 0.05), p);
     const auto expected = duet::derivatives<3>([](const auto& t) { return motion(t); }, p);
@@ -75,7 +75,7 @@ TEST_CASE("a rotation, to third order") {
   }
 }
 
-TEST_CASE("a tuple of a number, a rotation and a vector") {
+TEST_CASE("implicit_solution: a tuple of number, rotation and vector as unknown") {
   const double p = 0.3;
   const std::tuple start(-1.0, motion(p + 0.02), Eigen::Vector2d(0, 0));
   const auto solved = implicit_function<2>(contact{}, start, p);
@@ -98,7 +98,7 @@ TEST_CASE("a tuple of a number, a rotation and a vector") {
 
 // The angle of a crank a that carries a rod of length l to the height p, in 100 digits:
 // a sin φ + √(l² − a² cos² φ) = p, and the rotation of the crank is exp(½ φ e_z).
-TEST_CASE("a crank, in 100 digits to third order") {
+TEST_CASE("implicit_solution: a crank agrees with 100 digits to third order") {
   using duet_test::real_100;
   static constexpr double a = 0.4, l = 1.1;
   const auto height = [](const auto& s, const auto& c) {
@@ -147,7 +147,7 @@ TEST_CASE("a crank, in 100 digits to third order") {
   }
 }
 
-TEST_CASE("an orientation that cannot be reached") {
+TEST_CASE("implicit_solution: an orientation out of reach throws no_convergence") {
   const auto f = [](const auto& q, const auto& p) {
     const auto x = rotate(q, vector3<double>(1, 0, 0));
     return duet::make_vector(x[0] - p, x[1], x[2] * x[1]);

@@ -112,7 +112,8 @@ std::string message(const A& a, const B& b) {
 } // namespace
 
 // All fixed sizes here are 4 x 3: each size that Eigen factorises takes seconds to compile.
-TEST_CASE("fixed and dynamic sizes: Eigen's values and the derivatives of the normal equations") {
+TEST_CASE(
+    "least_squares: fixed and dynamic sizes give Eigen's values and normal-equation derivatives") {
   check<4, 3>(random_fit(4, 3));
   for (int n = 1; n <= 12; ++n) {
     for (const int m : {n, n + 1, 3 * n}) {
@@ -135,7 +136,7 @@ TEST_CASE("fixed and dynamic sizes: Eigen's values and the derivatives of the no
   CHECK(equals_eigen(many, Eigen::VectorXd(many.b)));
 }
 
-TEST_CASE("QR over duals gives the same, also where A and b have zeros") {
+TEST_CASE("least_squares: agrees with QR over duals, also for zeros in A and b") {
   for (int zeros = 0; zeros < 4; ++zeros) {
     fit f = random_fit(7, 3);
     if (zeros == 1) {
@@ -169,7 +170,7 @@ TEST_CASE("QR over duals gives the same, also where A and b have zeros") {
 }
 
 // With N = AᵀA and c = Aᵀb as polynomials of t: N x‴ = c‴ − 3N′x″ − 3N″x′ − N‴x.
-TEST_CASE("higher orders, by Taylor numbers and nested duals") {
+TEST_CASE("least_squares: higher orders by Taylor numbers and nested duals") {
   using series = taylor<double, 3>;
   using nested = dual<dual<double>, 1, outer_tag>;
   for (const auto [m, n] : {std::array{3, 1}, {4, 4}, {9, 4}, {20, 12}}) {
@@ -200,7 +201,7 @@ TEST_CASE("higher orders, by Taylor numbers and nested duals") {
   }
 }
 
-TEST_CASE("scalars and shapes of A and b may differ") {
+TEST_CASE("least_squares: scalars and shapes of A and b may differ") {
   const fit f = random_fit(4, 3);
   fit only_a = f;
   only_a.b_slope.setZero();
@@ -231,7 +232,7 @@ TEST_CASE("scalars and shapes of A and b may differ") {
   }
 }
 
-TEST_CASE("what does not depend on a variable has zero partials") {
+TEST_CASE("least_squares: partials of variables without influence are zero") {
   using D = dual<double, 3>;
   const fit f = random_fit(4, 3);
   const MatrixXd none = MatrixXd::Zero(4, 3);
@@ -248,7 +249,7 @@ TEST_CASE("what does not depend on a variable has zero partials") {
   }
 }
 
-TEST_CASE("entries whose squares leave the range") {
+TEST_CASE("least_squares: entries whose squares overflow or underflow are scaled") {
   const fit f = random_fit(7, 3);
   const auto b = seeded<dual<double>, Dynamic, 1>(f.b, f.b_slope);
   const auto x = least_squares(seeded<dual<double>, Dynamic, Dynamic>(f.a, f.a_slope), b);
@@ -271,7 +272,7 @@ TEST_CASE("entries whose squares leave the range") {
   CHECK(least_squares(MatrixXd(smallest), right)[0] == doctest::Approx(0x1p74).epsilon(1e-15));
 }
 
-TEST_CASE("what has no unique solution is refused") {
+TEST_CASE("least_squares: a problem without a unique solution throws invalid_input") {
   const VectorXd b = VectorXd::Ones(3);
   CHECK(message(MatrixXd(2, 3), b) ==
         "duet: least_squares: A is 2 x 3: fewer equations than unknowns");

@@ -115,7 +115,7 @@ std::array<double, 2> relative_errors(const vector<dual<double>>& computed,
 } // namespace
 
 // The condition reaches 1e13.
-TEST_CASE("Hilbert systems: errors below cond(A) ε / 10") {
+TEST_CASE("solve: Hilbert systems have errors below cond(A) ε / 10") {
   for (const int n : {2, 4, 6, 8, 10}) {
     CAPTURE(n);
     const MatrixXd a = hilbert(n, n);
@@ -143,7 +143,7 @@ TEST_CASE("Hilbert systems: errors below cond(A) ε / 10") {
 }
 
 // What is left of b brings the square of the condition into the error, but x is as much larger.
-TEST_CASE("Hilbert fits: errors below 2 cond(A) ε") {
+TEST_CASE("least_squares: Hilbert fits have errors below 2 cond(A) ε") {
   for (const int n : {2, 3, 4}) {
     CAPTURE(n);
     const MatrixXd a = hilbert(2 * n, n);
@@ -175,7 +175,7 @@ TEST_CASE("Hilbert fits: errors below 2 cond(A) ε") {
 }
 
 // Aᵀ(b − A x) = 0 by normal equations would lose the square of the condition here too.
-TEST_CASE("a fit that leaves nothing of b: errors below cond(A) ε / 10") {
+TEST_CASE("least_squares: a fit with zero residual has errors below cond(A) ε / 10") {
   const int n = 6;
   const MatrixXd a = hilbert(2 * n, n);
   const MatrixXd none = MatrixXd::Zero(2 * n, n);
@@ -190,7 +190,7 @@ TEST_CASE("a fit that leaves nothing of b: errors below cond(A) ε / 10") {
   CHECK(errors[1] <= condition(a) * epsilon / 10);
 }
 
-TEST_CASE("eigenvalues and eigenvectors, the smallest 1e-9 of the largest") {
+TEST_CASE("symmetric_eigen: accurate if the smallest eigenvalue is 1e-9 of the largest") {
   const int n = 6;
   const MatrixXd a = hilbert(n, n);
   const MatrixXd half = draw(n, n, 3);
@@ -225,7 +225,7 @@ TEST_CASE("eigenvalues and eigenvectors, the smallest 1e-9 of the largest") {
   }
 }
 
-TEST_CASE("second order: Taylor numbers in 50 digits") {
+TEST_CASE("linear algebra: second derivatives agree with Taylor numbers of 50 digits") {
   using series = taylor<real_50, 2>;
   const series t = series::variable(real_50(2));
   const series square = t * t;
@@ -258,7 +258,7 @@ TEST_CASE("second order: Taylor numbers in 50 digits") {
   }
 }
 
-TEST_CASE("messages with numbers of 50 digits") {
+TEST_CASE("linear algebra: error messages print numbers of 50 digits") {
   const wide a = wide::Ones(2, 2);
   const vector<real_50> right = vector<real_50>::Ones(2);
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::solve(a, right)),

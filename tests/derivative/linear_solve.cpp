@@ -65,13 +65,13 @@ std::string message(const A& a, const B& b) {
 } // namespace
 
 // All fixed sizes here are 3: each size that Eigen factorises takes seconds to compile.
-TEST_CASE("fixed sizes: Eigen's values, and the derivatives A⁻¹(b′ − A′x)") {
+TEST_CASE("solve: fixed sizes give Eigen's values and the derivatives A⁻¹(b′ − A′x)") {
   for (const auto& p : problems(3)) {
     check<3>(p);
   }
 }
 
-TEST_CASE("dynamic sizes") {
+TEST_CASE("solve: dynamic sizes give the same results") {
   for (int n = 1; n <= 12; ++n) {
     for (const auto& p : problems(n)) {
       check<Dynamic>(p);
@@ -79,7 +79,7 @@ TEST_CASE("dynamic sizes") {
   }
 }
 
-TEST_CASE("elimination over duals gives the same") {
+TEST_CASE("solve: agrees with elimination over duals") {
   for (const auto& p : problems(12)) {
     CAPTURE(p.name);
     const auto a = seeded<dual<double>, Dynamic, Dynamic>(p.a, p.a_slope);
@@ -94,7 +94,7 @@ TEST_CASE("elimination over duals gives the same") {
 }
 
 // A x‴ = −3A′x″, A x″ = b″ − 2A′x′ with A″ = 0, b″ = 0.
-TEST_CASE("higher orders, by Taylor numbers and nested duals") {
+TEST_CASE("solve: higher orders by Taylor numbers and nested duals") {
   using series = taylor<double, 3>;
   using nested = dual<dual<double>, 1, outer_tag>;
   for (const int n : {1, 2, 4, 12}) {
@@ -128,7 +128,7 @@ TEST_CASE("higher orders, by Taylor numbers and nested duals") {
   }
 }
 
-TEST_CASE("scalars and shapes of A and b may differ") {
+TEST_CASE("solve: scalars and shapes of A and b may differ") {
   const linear_problem p = duet_test::random_problem(3, false);
   using D = dual<double>;
   const Eigen::Matrix3d real_a = p.a;
@@ -181,7 +181,7 @@ TEST_CASE("scalars and shapes of A and b may differ") {
   CHECK(l(0, 1).epsilon() == -0.5L);
 }
 
-TEST_CASE("inside a differentiated function") {
+TEST_CASE("solve: works inside a differentiated function") {
   const auto f = [](const auto& p) {
     using T = std::decay_t<decltype(p[0])>;
     Eigen::Matrix<T, 3, 3> a;
@@ -195,7 +195,7 @@ TEST_CASE("inside a differentiated function") {
   CHECK((J - expected).norm() <= 1e-15);
 }
 
-TEST_CASE("what does not depend on a variable has zero partials") {
+TEST_CASE("solve: partials of variables without influence are zero") {
   using D = dual<double, 3>;
   const linear_problem p = duet_test::random_problem(3, false);
   const MatrixXd none = MatrixXd::Zero(3, 3);
@@ -220,7 +220,7 @@ TEST_CASE("what does not depend on a variable has zero partials") {
 }
 
 // Rows and columns differ by 200 orders of magnitude.
-TEST_CASE("units do not matter") {
+TEST_CASE("solve: solvability does not depend on units") {
   const linear_problem p = duet_test::random_problem(3, false);
   const VectorXd rows = Eigen::Vector3d(0x1p300, 1, 0x1p-300);
   const VectorXd columns = Eigen::Vector3d(0x1p-30, 0x1p40, 1);
@@ -239,7 +239,7 @@ TEST_CASE("units do not matter") {
   CHECK(message(tiny, VectorXd::Ones(2).eval()) == "");
 }
 
-TEST_CASE("what cannot be solved is refused") {
+TEST_CASE("solve: singular or invalid systems throw invalid_input") {
   const VectorXd b = VectorXd::Ones(3);
   CHECK(message(MatrixXd(3, 2), b) == "duet: solve: A is 3 x 2, but must be square");
   CHECK(message(MatrixXd(0, 0), VectorXd(0)) == "duet: solve: A is empty");

@@ -66,7 +66,8 @@ std::string message(const A& a) {
 
 } // namespace
 
-TEST_CASE("derivatives to third order, at 0, nilpotent, diagonal and dense matrices") {
+TEST_CASE(
+    "matrix_exponential: derivatives to third order at 0, nilpotent, diagonal and dense matrices") {
   const Matrix3d zero = Matrix3d::Zero(), one = Matrix3d::Identity();
   const Matrix3d nilpotent{{0, 1, 0}, {0, 0, 1}, {0, 0, 0}};
   const Matrix3d diagonal = Eigen::Vector3d(3, 1, 2).asDiagonal();
@@ -80,7 +81,7 @@ TEST_CASE("derivatives to third order, at 0, nilpotent, diagonal and dense matri
   CHECK(error_at(-40 * one, std::exp(-40)) <= 1e-13);
 }
 
-TEST_CASE("large norms: rotations, and matrices far from normal, are not scaled too far") {
+TEST_CASE("matrix_exponential: large norms and matrices far from normal keep their digits") {
   const Matrix3d cross{{0, -30, 20}, {30, 0, -10}, {-20, 10, 0}};
   CHECK(error_at(cross, 1) <= 1e-13);
   const Matrix3d triangular{{1, 1e6, 0}, {0, -1, 3}, {0, 0, .5}};
@@ -94,14 +95,14 @@ TEST_CASE("large norms: rotations, and matrices far from normal, are not scaled 
   CHECK(matrix_exponential(Matrix2d{{-1e9, 0}, {0, 0}}) == Matrix2d{{0, 0}, {0, 1}});
 }
 
-TEST_CASE("of a cross-product matrix it is the rotation of its vector") {
+TEST_CASE("matrix_exponential: a skew matrix gives the rotation of its vector") {
   const Eigen::Vector3d r(.3, -1.2, 2);
   const Matrix3d cross{{0, -r[2], r[1]}, {r[2], 0, -r[0]}, {-r[1], r[0], 0}};
   CHECK((matrix_exponential(cross) - duet::rotation_matrix(duet::from_rotation_vector(r))).norm() <=
         2e-15);
 }
 
-TEST_CASE("nested duals, complex numbers, batches, 50 digits and integers") {
+TEST_CASE("matrix_exponential: nested duals, complex numbers, batches, 50 digits and integers") {
   struct outer;
   using D = dual<dual<double>, 1, outer>;
   Eigen::Matrix<D, 2, 2> a = Eigen::Matrix<D, 2, 2>::Zero();
@@ -131,7 +132,7 @@ TEST_CASE("nested duals, complex numbers, batches, 50 digits and integers") {
   CHECK(matrix_exponential(Eigen::Matrix2i{{0, 1}, {0, 0}}) == Matrix2d{{1, 1}, {0, 1}});
 }
 
-TEST_CASE("what has no exponential is rejected") {
+TEST_CASE("matrix_exponential: invalid matrices and overflow throw invalid_input") {
   CHECK(message(MatrixXd(2, 3)) == "duet: matrix_exponential: A is 2 x 3, but must be square");
   CHECK(message(MatrixXd(0, 0)) == "duet: matrix_exponential: A is empty");
   CHECK(message(Matrix2d{{800, 0}, {0, 1}}) == "duet: matrix_exponential: exp(A) overflows");

@@ -38,7 +38,7 @@ struct times_slope_of_sum {
 } // namespace
 
 // d/dx (x · d/dy (x + y)|₁)|₁ = 1, not 2.
-TEST_CASE("the classic of perturbation confusion") {
+TEST_CASE("nested derivatives: perturbations are not confused") {
   const auto f = [](auto x) {
     return x * derivative([x](auto y) { return x + y; }, 1.0).derivative;
   };
@@ -51,7 +51,7 @@ TEST_CASE("the classic of perturbation confusion") {
   CHECK(derivatives<1>(f, 1.0)[1] == 1);
 }
 
-TEST_CASE("an inner function with a variable of its own, captured or not") {
+TEST_CASE("nested derivatives: an inner function may capture the outer variable or not") {
   // d/dx (x² · d/dy (x y²)|₃) = d/dx 6x³ = 18x²
   const auto captured = [](auto x) {
     return x * x * derivative([x](auto y) { return x * y * y; }, 3.0).derivative;
@@ -76,7 +76,7 @@ TEST_CASE("an inner function with a variable of its own, captured or not") {
   CHECK(derivative(two, 2.0).derivative == 12);
 }
 
-TEST_CASE("three levels") {
+TEST_CASE("nested derivatives: three levels give the product rule's result") {
   // x · d/dy (y x · d/dz (x y z)|₁)|₁ = x · d/dy (x² y²)|₁ = 2x³
   const auto f = [](auto x) {
     return x * derivative(
@@ -91,7 +91,7 @@ TEST_CASE("three levels") {
   CHECK(derivatives<3>(f, 2.0) == std::array{16.0, 24.0, 24.0, 12.0});
 }
 
-TEST_CASE("a gradient inside a derivative, and a derivative inside a gradient") {
+TEST_CASE("nested derivatives: gradient inside a derivative and derivative inside a gradient") {
   // |∇(x y₀ + y₁²)|² at y = (1, x) is x² + 4x²
   const auto f = [](auto x) {
     using T = decltype(x);
@@ -110,7 +110,7 @@ TEST_CASE("a gradient inside a derivative, and a derivative inside a gradient") 
         Eigen::Vector2d(4, 1));
 }
 
-TEST_CASE("a Jacobian of a gradient is the Hessian") {
+TEST_CASE("nested derivatives: the Jacobian of a gradient is the Hessian") {
   const auto f = [](const auto& x) { return sin(x[0]) * x[1] * x[1]; };
   const auto slope = [&](const auto& x) { return duet::gradient(f, x).gradient; };
   const Eigen::Vector2d x(0.4, 1.5);
@@ -126,7 +126,8 @@ TEST_CASE("a Jacobian of a gradient is the Hessian") {
   CHECK(derivative(trace, 3.0).derivative == 12); // 2t²
 }
 
-TEST_CASE("an implicit solution inside a derivative, the outer variable captured") {
+TEST_CASE(
+    "nested derivatives: an implicit solution inside a derivative may capture the outer variable") {
   // y³ + y = x, so y′ = 1/(3y² + 1).
   const auto f = [](auto x) {
     return duet::implicit_solution([x](const auto& y, double) { return y * y * y + y - x; }, 1.0,
@@ -149,7 +150,7 @@ TEST_CASE("an implicit solution inside a derivative, the outer variable captured
   CHECK(ys[2] == doctest::Approx(-1.0 / 128).epsilon(1e-15));
 }
 
-TEST_CASE("a tag of one's own tells two differentiations of one function apart") {
+TEST_CASE("nested derivatives: a user-defined tag separates two differentiations of one function") {
   struct inner;
   const auto cube = [](const auto& y) { return y * y * y; };
   const auto f = [&](const auto& x) { return derivative<inner>(cube, x).derivative; };

@@ -33,7 +33,7 @@ double sine(int k, double x) { return std::sin(x + k * 1.5707963267948966); }
 
 } // namespace
 
-TEST_CASE("a scalar") {
+TEST_CASE("derivative: the result may be a scalar") {
   const auto [y, dy] = derivative([](auto x) { return sin(x) * exp(-x * x); }, 0.3);
   static_assert(std::is_same_v<decltype(y), const double> &&
                 std::is_same_v<decltype(dy), const double>);
@@ -42,7 +42,7 @@ TEST_CASE("a scalar") {
         doctest::Approx((std::cos(0.3) - 0.6 * std::sin(0.3)) * std::exp(-0.09)).epsilon(1e-15));
 }
 
-TEST_CASE("an Eigen vector, matrix and expression") {
+TEST_CASE("derivative: the result may be an Eigen vector, matrix or expression") {
   const auto fixed = [](const auto& x) { return duet::make_vector(x * x, sin(x), 1.0); };
   const auto [y, dy] = derivative(fixed, 2.0);
   static_assert(std::is_same_v<decltype(y), const Eigen::Vector3d>);
@@ -83,7 +83,7 @@ TEST_CASE("an Eigen vector, matrix and expression") {
   CHECK(drow == Eigen::RowVector2d(1, 6));
 }
 
-TEST_CASE("arrays, tuples and pairs, and these in each other") {
+TEST_CASE("derivative: the result may be an array, tuple or pair, also nested") {
   const auto f = [](const auto& x) {
     return std::tuple(std::array{x, x * x}, sin(x), std::pair(x * 2, 7), 3.5);
   };
@@ -96,7 +96,7 @@ TEST_CASE("arrays, tuples and pairs, and these in each other") {
   CHECK(std::get<3>(dy) == 0);
 }
 
-TEST_CASE("a quaternion") {
+TEST_CASE("derivative: the result may be a quaternion") {
   const auto f = [](const auto& x) {
     using T = std::decay_t<decltype(x)>;
     return duet::exp(duet::vector3<T>(x, T(0), T(0)));
@@ -112,7 +112,7 @@ TEST_CASE("a quaternion") {
   }
 }
 
-TEST_CASE("a constant has derivative zero") {
+TEST_CASE("derivative: a constant result has derivative zero") {
   CHECK(derivative([](auto) { return 4.0; }, 1.0).derivative == 0);
   CHECK(derivative([](auto) { return Eigen::Vector2d(1, 2); }, 1.0).derivative ==
         Eigen::Vector2d::Zero());
@@ -120,7 +120,7 @@ TEST_CASE("a constant has derivative zero") {
   CHECK(ys == std::array{4, 0, 0});
 }
 
-TEST_CASE("higher derivatives of a scalar and of a vector") {
+TEST_CASE("derivatives: higher derivatives of a scalar and of a vector") {
   const auto ys = derivatives<6>([](auto x) { return sin(x); }, 0.4);
   for (int k = 0; k <= 6; ++k) {
     CHECK(ys[std::size_t(k)] == doctest::Approx(sine(k, 0.4)).epsilon(1e-14));
@@ -130,7 +130,7 @@ TEST_CASE("higher derivatives of a scalar and of a vector") {
   CHECK(vs[2] == Eigen::Vector2d(12, 0.25));
 }
 
-TEST_CASE("integer and single-precision arguments") {
+TEST_CASE("derivative: integer and single-precision arguments are accepted") {
   const auto [y, dy] = derivative([](auto x) { return x * x / 2; }, 3);
   static_assert(std::is_same_v<decltype(y), const double>);
   CHECK(y == 4.5);
@@ -143,7 +143,7 @@ TEST_CASE("integer and single-precision arguments") {
 }
 
 // Lazy types return garbage or do not compile here.
-TEST_CASE("auto, the conditional operator and lambdas with two returns") {
+TEST_CASE("derivative: auto, the conditional operator and lambdas with two returns work") {
   const auto f = [](auto x) {
     auto square = x * x;
     auto twice = square + square;
@@ -161,7 +161,7 @@ TEST_CASE("auto, the conditional operator and lambdas with two returns") {
   CHECK(derivative(g, -3.0).derivative == -1);
 }
 
-TEST_CASE("directional derivatives") {
+TEST_CASE("directional_derivative: equals the Jacobian times the direction") {
   const auto f = [](const auto& x) { return duet::make_vector(x[0] * x[1], sin(x[0])); };
   const Eigen::Vector2d x(0.5, 2), v(3, -1);
   const auto [y, dy] = directional_derivative(f, x, v);
@@ -179,7 +179,7 @@ TEST_CASE("directional derivatives") {
                        duet::invalid_input);
 }
 
-TEST_CASE("what holds its numbers, and what refers to those of others") {
+TEST_CASE("refers_elsewhere: distinguishes owning types from references and expressions") {
   using duet::detail::refers_elsewhere;
   using Eigen::Vector3d;
   using sparse = Eigen::SparseMatrix<double>;
@@ -195,7 +195,7 @@ TEST_CASE("what holds its numbers, and what refers to those of others") {
   static_assert(refers_elsewhere<std::pair<int, const std::tuple<int, sum>>>);
 }
 
-TEST_CASE("scalars are visited from the first to the last") {
+TEST_CASE("structure: scalars are visited from the first to the last") {
   std::string order;
   const auto record = [&](double x) {
     order += std::to_string(int(x));

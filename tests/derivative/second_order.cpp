@@ -35,7 +35,7 @@ const auto wavy = [](const auto& x) {
 
 } // namespace
 
-TEST_CASE("the product with a vector") {
+TEST_CASE("hessian_vector_product: equals the Hessian times the vector") {
   const Eigen::Vector3d x(0.4, -1.1, 0.7);
   const Eigen::Vector3d v(2, -1, 0.5);
   const auto all = hessian(wavy, x);
@@ -47,7 +47,7 @@ TEST_CASE("the product with a vector") {
   CHECK((hessian_vector_product(wavy, a, v).product - p).norm() == 0);
 }
 
-TEST_CASE("the product for many variables") {
+TEST_CASE("hessian_vector_product: works for many variables") {
   // f = Σ xᵢ² xᵢ₊₁: row i of H holds 2xᵢ₊₁ and, beside the diagonal, 2xᵢ and 2xᵢ₋₁.
   const auto chain = [](const auto& x) {
     using T = std::decay_t<decltype(x[0])>;
@@ -72,7 +72,7 @@ TEST_CASE("the product for many variables") {
   CHECK((hessian_vector_product(chain, x, v).product - expected).norm() < 1e-13);
 }
 
-TEST_CASE("the block of two groups of variables") {
+TEST_CASE("mixed_hessian: equals the block of the Hessian") {
   const auto f = [](const auto& x, const auto& y) {
     return sin(x[0] * y[0]) + x[1] * y[1] * y[2] + exp(x[0]) + y[2] * y[2];
   };
@@ -86,7 +86,7 @@ TEST_CASE("the block of two groups of variables") {
   CHECK((block - expected).norm() < 1e-15);
 }
 
-TEST_CASE("inside another differentiation") {
+TEST_CASE("hessian_vector_product and mixed_hessian: work inside another differentiation") {
   const auto slope = [](auto t) {
     const auto f = [t](const auto& x) { return t * t * x[0] * x[0] * x[1]; };
     return hessian_vector_product(f, Eigen::Vector2d(1, 2), Eigen::Vector2d(1, 0)).product[0];
@@ -101,7 +101,7 @@ TEST_CASE("inside another differentiation") {
   CHECK(duet::derivative(mixed, 3.0).derivative == 6 * 4);
 }
 
-TEST_CASE("sizes that differ") {
+TEST_CASE("hessian_vector_product: sizes that differ throw invalid_input") {
   CHECK_THROWS_WITH_AS(static_cast<void>(hessian_vector_product(wavy, Eigen::Vector3d(1, 2, 3),
                                                                 Eigen::Vector2d(1, 2))),
                        "duet: hessian_vector_product: the point has 3 components, the vector 2",

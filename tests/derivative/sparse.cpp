@@ -138,7 +138,7 @@ matrix band_of_rows(int n, int width) {
 
 } // namespace
 
-TEST_CASE("Hessians of bands, arrows and grids") {
+TEST_CASE("sparse_hessian: bands, arrows and grids equal the dense Hessian") {
   for (const int n : {1, 2, 3, 8, 9, 40}) {
     check_hessian(band(n));
     check_hessian(arrow(n));
@@ -147,7 +147,7 @@ TEST_CASE("Hessians of bands, arrows and grids") {
   check_hessian(grid(6));
 }
 
-TEST_CASE("Jacobians, and how often the function is called") {
+TEST_CASE("sparse_jacobian: equals the dense Jacobian with the expected number of calls") {
   for (const int n : {3, 4, 17, 100}) {
     const Eigen::VectorXd at = point(n);
     const std::vector<double> x(at.begin(), at.end());
@@ -165,7 +165,7 @@ TEST_CASE("Jacobians, and how often the function is called") {
   }
 }
 
-TEST_CASE("a row that is full takes as many passes as a dense Jacobian") {
+TEST_CASE("sparse_jacobian: a full row takes as many passes as a dense Jacobian") {
   const int n = 40;
   const auto f = [](const auto& x) {
     return Eigen::Matrix<typename std::decay_t<decltype(x)>::Scalar, 1, 1>(x.squaredNorm());
@@ -175,7 +175,7 @@ TEST_CASE("a row that is full takes as many passes as a dense Jacobian") {
   CHECK(Eigen::MatrixXd(sparse_jacobian(f, x, full).jacobian) == duet::jacobian(f, x).jacobian);
 }
 
-TEST_CASE("what the structure does not have is noticed") {
+TEST_CASE("sparse_jacobian and sparse_hessian: entries outside the pattern throw invalid_input") {
   const std::vector<double> x{0.3, 0.5, 0.7, 0.9, 1.1};
   CHECK_THROWS_WITH_AS(static_cast<void>(sparse_jacobian(neighbours{}, x, band_of_rows(5, 2))),
                        "duet: sparse_jacobian: row 0 has entries outside the sparsity pattern",
@@ -188,7 +188,7 @@ TEST_CASE("what the structure does not have is noticed") {
                        duet::invalid_input);
 }
 
-TEST_CASE("structures of other sizes") {
+TEST_CASE("sparse_jacobian and sparse_hessian: a pattern of another size throws invalid_input") {
   const std::vector<double> x{0.3, 0.5, 0.7, 0.9, 1.1};
   CHECK_THROWS_WITH_AS(static_cast<void>(sparse_jacobian(neighbours{}, x, band_of_rows(6, 3))),
                        "duet: sparse_jacobian: the structure has 6 columns for 5 variables",
@@ -202,7 +202,7 @@ TEST_CASE("structures of other sizes") {
       "duet: sparse_hessian: the structure is 3 x 4 for 3 variables", duet::invalid_input);
 }
 
-TEST_CASE("several arguments, and derivatives of sparse Jacobians") {
+TEST_CASE("sparse_jacobian: several arguments, and derivatives of the Jacobian") {
   const auto f = [](const auto& x, const auto& scale) {
     using T = std::decay_t<decltype(scale * x[0])>;
     return Eigen::Matrix<T, 3, 1>(scale * x[0] * x[0], scale * x[1] * x[1], scale * x[2] * x[2]);

@@ -85,7 +85,7 @@ TEST_CASE("svd: derivatives to third order at dense, diagonal and reflected matr
   }
 }
 
-TEST_CASE("svd: tall and wide matrices, sizes known or not") {
+TEST_CASE("svd: tall and wide matrices, sizes known at compile time or not") {
   const MatrixXd tall{{1, 0}, {0, 2}, {0, 0}, {0, 0}};
   for (const MatrixXd& a : {tall, MatrixXd(tall.transpose()), MatrixXd{{3, 0, 0}}}) {
     CHECK(error_to_third_order([&](const auto& t) {
@@ -102,7 +102,7 @@ TEST_CASE("svd: tall and wide matrices, sizes known or not") {
   CHECK((s.u(3, 1) * s.v(0, 1)).epsilon() == 2);
 }
 
-TEST_CASE("svd: values are those of Eigen and reproduce the matrix") {
+TEST_CASE("svd: values equal Eigen's and reproduce the matrix") {
   for (const MatrixXd& a : {MatrixXd(dense()), MatrixXd(MatrixXd::Identity(5, 2)),
                             MatrixXd(MatrixXd::Zero(2, 3)), MatrixXd(1e300 * dense())}) {
     const auto s = svd(a);
@@ -113,7 +113,7 @@ TEST_CASE("svd: values are those of Eigen and reproduce the matrix") {
   }
 }
 
-TEST_CASE("singular_values: those that are simple have derivatives, others NaN") {
+TEST_CASE("singular_values: simple ones have derivatives, others NaN") {
   using D = dual<double, 2>;
   Eigen::Matrix<D, 3, 3> a = diagonal(5, 2, 2).cast<D>();
   a(0, 0) = D::variable(5, 0);
@@ -136,7 +136,7 @@ TEST_CASE("singular_values: those that are simple have derivatives, others NaN")
   CHECK((slopes - Eigen::Vector4d(.6, .8, 0, 0)).norm() <= 1e-15);
 }
 
-TEST_CASE("svd: a singular value that is repeated or 0 is rejected, but constants are fine") {
+TEST_CASE("svd: a repeated or zero singular value throws unless A is constant") {
   using D = dual<double>;
   Eigen::Matrix<D, 3, 3> a = diagonal(2, 5, 2).cast<D>();
   CHECK(message(a) == "");
@@ -150,7 +150,7 @@ TEST_CASE("svd: a singular value that is repeated or 0 is rejected, but constant
   CHECK(message(MatrixXd::Constant(1, 1, nan)) == "duet: svd: entry (0, 0) of A is not finite");
 }
 
-TEST_CASE("nearest_rotation: derivatives to third order, at equal and zero singular values too") {
+TEST_CASE("nearest_rotation: derivatives to third order, also at equal and zero singular values") {
   const Matrix3d identity = Matrix3d::Identity();
   for (const Matrix3d& a :
        {identity, dense(), Matrix3d(-dense()), quarter_turn(), diagonal(1, -1, -1),
@@ -165,7 +165,7 @@ TEST_CASE("nearest_rotation: derivatives to third order, at equal and zero singu
   }
 }
 
-TEST_CASE("nearest_rotation: of two rows a closed form, of four at the identity the skew part") {
+TEST_CASE("nearest_rotation: closed form of two rows, skew part at the identity of four") {
   using series = duet::taylor<double, 3>;
   for (const MatrixXd& value : {MatrixXd{{0, 2}, {-2, 0}}, MatrixXd{{1, 2}, {4, 5}}}) {
     const auto a = moving<Dynamic, Dynamic>(value, series::variable(0));
@@ -185,7 +185,8 @@ TEST_CASE("nearest_rotation: of two rows a closed form, of four at the identity 
   }
 }
 
-TEST_CASE("nearest_rotation: a rotation times a symmetric matrix, all sizes of numbers") {
+TEST_CASE(
+    "nearest_rotation: recovers the rotation of a rotation times a symmetric matrix at any scale") {
   for (const double size : {1e-300, 1.0, 1e300}) {
     for (const Matrix3d& a : {dense(), diagonal(3, 2, -1), diagonal(4, 0, 2)}) {
       const Matrix3d r = nearest_rotation(Matrix3d(size * a));
@@ -212,7 +213,7 @@ TEST_CASE("nearest_rotation: at the identity its derivative is the skew part") {
   CHECK(j == Eigen::Matrix<double, 3, 2>{{.5, 0}, {-.5, 0}, {0, 0}});
 }
 
-TEST_CASE("nearest_rotation: where several are nearest it says so") {
+TEST_CASE("nearest_rotation: throws if the nearest rotation is not unique") {
   const std::string several =
       "duet: nearest_rotation: the nearest rotation is not unique: the smallest two singular "
       "values, the last with the sign of det A, add up to ";

@@ -143,7 +143,8 @@ std::string message(const A& a) {
 } // namespace
 
 // All fixed sizes here are 3: each size that Eigen decomposes takes seconds to compile.
-TEST_CASE("fixed sizes: Eigen's values, and the derivatives of perturbation theory") {
+TEST_CASE(
+    "symmetric_eigen: fixed sizes give Eigen's values and derivatives of perturbation theory") {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     check<3>(random_symmetric(3, 10 * seed), random_symmetric(3, 10 * seed + 5));
   }
@@ -153,7 +154,7 @@ TEST_CASE("fixed sizes: Eigen's values, and the derivatives of perturbation theo
   check<3>(VectorXd::LinSpaced(3, 3, -1).asDiagonal(), slope);
 }
 
-TEST_CASE("dynamic sizes") {
+TEST_CASE("symmetric_eigen: dynamic sizes give the same results") {
   for (int n = 1; n <= 12; ++n) {
     check<Dynamic>(random_symmetric(n, 1), random_symmetric(n, 2));
     check<Dynamic>(VectorXd::LinSpaced(n, 0, 3).asDiagonal(), random_symmetric(n, 3));
@@ -163,7 +164,7 @@ TEST_CASE("dynamic sizes") {
 
 // A = R(t) diag(1 + t, 4, 9) R(t)ᵀ with R a rotation by t about the third axis: two vectors turn
 // with unit speed.
-TEST_CASE("a closed form to third order") {
+TEST_CASE("symmetric_eigen: agrees with a closed form to third order") {
   using series = taylor<double, 3>;
   const series t = series::variable(0.3);
   const series c = cos(t);
@@ -185,7 +186,7 @@ TEST_CASE("a closed form to third order") {
   }
 }
 
-TEST_CASE("the equations hold in every part of Taylor numbers and nested duals") {
+TEST_CASE("symmetric_eigen: all parts of Taylor numbers and nested duals satisfy the equations") {
   using series = taylor<double, 3>;
   using nested = dual<dual<double, 2>, 2, outer_tag>;
   for (const int n : {1, 2, 3, 7}) {
@@ -208,7 +209,7 @@ TEST_CASE("the equations hold in every part of Taylor numbers and nested duals")
   }
 }
 
-TEST_CASE("inside a differentiated function: the stretch of a symmetric tensor") {
+TEST_CASE("symmetric_eigen: works inside a differentiated function, the stretch of a tensor") {
   const auto largest = [](const auto& p) {
     using T = std::decay_t<decltype(p[0])>;
     Eigen::Matrix<T, 3, 3> a;
@@ -221,7 +222,7 @@ TEST_CASE("inside a differentiated function: the stretch of a symmetric tensor")
   CHECK((J - Eigen::RowVector3d(0.8, 0.2, 0.8)).norm() <= 1e-15);
 }
 
-TEST_CASE("what does not depend on a variable has zero partials") {
+TEST_CASE("symmetric_eigen: partials of variables without influence are zero") {
   using D = dual<double, 2>;
   Eigen::Matrix<D, 3, 3> a = random_symmetric(3, 1).cast<D>();
   const auto constant = symmetric_eigen(a);
@@ -238,7 +239,7 @@ TEST_CASE("what does not depend on a variable has zero partials") {
   }
 }
 
-TEST_CASE("repeated eigenvalues have no derivatives, but constants are fine") {
+TEST_CASE("symmetric_eigen: repeated eigenvalues throw unless A is constant") {
   using D = dual<double>;
   Eigen::Matrix<D, 3, 3> a = Eigen::Vector3d(5, 2, 5).asDiagonal().toDenseMatrix().cast<D>();
   CHECK(symmetric_eigen(a).values[2].epsilon() == 0);
@@ -271,7 +272,7 @@ TEST_CASE("repeated eigenvalues have no derivatives, but constants are fine") {
   }
 }
 
-TEST_CASE("what is no symmetric matrix is refused") {
+TEST_CASE("symmetric_eigen: matrices that are not square, empty or not finite throw") {
   CHECK(message(MatrixXd(3, 2)) == "duet: symmetric_eigen: A is 3 x 2, but must be square");
   CHECK(message(MatrixXd(0, 0)) == "duet: symmetric_eigen: A is empty");
   MatrixXd a = MatrixXd::Identity(2, 2);
@@ -279,7 +280,7 @@ TEST_CASE("what is no symmetric matrix is refused") {
   CHECK(message(a) == "duet: symmetric_eigen: entry (1, 0) of A is not finite");
 }
 
-TEST_CASE("float, long double and integers") {
+TEST_CASE("symmetric_eigen: float, long double and integers are accepted") {
   const Eigen::Matrix3i swap{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}};
   CHECK(symmetric_eigen(swap).values[2] == doctest::Approx(1));
   CHECK(symmetric_eigen(swap.cast<float>()).values[0] == doctest::Approx(-1));

@@ -47,7 +47,7 @@ double max_abs_difference(const A& a, const B& b) {
 
 } // namespace
 
-TEST_CASE("a vector turned by a rotation") {
+TEST_CASE("jacobian in a frame: of a vector rotated by the variable") {
   const auto rotated = [](const auto& x) { return duet::rotate(x, v); };
   const matrix R = rotation_matrix(q);
   const auto [y, J] = jacobian(rotated, q, spatial);
@@ -58,7 +58,7 @@ TEST_CASE("a vector turned by a rotation") {
   CHECK(jacobian(rotated, q, duet::frame::hybrid).jacobian == J);
 }
 
-TEST_CASE("rotations to rotations") {
+TEST_CASE("jacobian in a frame: from rotations to rotations") {
   const matrix R = rotation_matrix(q);
   const matrix S = rotation_matrix(r);
   const auto inverse = [](const auto& x) { return conj(x); };
@@ -80,7 +80,7 @@ TEST_CASE("rotations to rotations") {
                            jacobian(cube, q, spatial).jacobian * R) < 4e-15);
 }
 
-TEST_CASE("vectors to rotations: Euler rates and the exponential's Jacobian") {
+TEST_CASE("jacobian in a frame: vectors to rotations, Euler rates and exponential's Jacobian") {
   const auto angles = [](const auto& a) { return duet::from_euler<duet::zyx>(a[0], a[1], a[2]); };
   const vector a(0.4, -0.9, 2.2);
   CHECK(max_abs_difference(jacobian(angles, a, spatial).jacobian,
@@ -102,7 +102,7 @@ TEST_CASE("vectors to rotations: Euler rates and the exponential's Jacobian") {
                            left_jacobian.inverse()) < 1e-14);
 }
 
-TEST_CASE("scalars, arrays and tuples on either side") {
+TEST_CASE("jacobian in a frame: scalars, arrays and tuples as arguments and results") {
   const auto slerp = [](const auto& x) {
     const auto& [t, ends] = x;
     return std::tuple(duet::slerp(ends[0], ends[1], t), t * t);
@@ -119,7 +119,7 @@ TEST_CASE("scalars, arrays and tuples on either side") {
   CHECK(max_abs_difference(J.block(0, 1, 3, 3) + J.block(0, 4, 3, 3), matrix::Identity()) < 1e-14);
 }
 
-TEST_CASE("a result whose size is known at run time") {
+TEST_CASE("jacobian in a frame: a result may have a size known only at run time") {
   const auto all = [](const auto& x) {
     using T = typename std::decay_t<decltype(x)>::scalar_type;
     Eigen::Matrix<T, Eigen::Dynamic, 1> y(6);
@@ -132,7 +132,7 @@ TEST_CASE("a result whose size is known at run time") {
   CHECK(max_abs_difference(J.topRows(3), -hat(rotation_matrix(q) * v)) < 1e-15);
 }
 
-TEST_CASE("more coordinates than one pass takes") {
+TEST_CASE("jacobian in a frame: more coordinates than one pass takes") {
   std::array<quaternion, 12> many;
   for (int i = 0; i < 12; ++i) {
     many[std::size_t(i)] = duet::from_rotation_vector(vector(0.1 * i, 0.5, -0.2 * i));
@@ -152,7 +152,7 @@ TEST_CASE("more coordinates than one pass takes") {
   }
 }
 
-TEST_CASE("a vector whose size is known at run time, in several passes") {
+TEST_CASE("jacobian in a frame: a vector of run-time size takes several passes") {
   const auto rotated = [](const auto& x) {
     using T = std::decay_t<decltype(x[0] * 1.)>;
     T sum(0);
@@ -174,7 +174,7 @@ TEST_CASE("a vector whose size is known at run time, in several passes") {
   CHECK_THROWS_AS((void)jacobian(rotated, Eigen::VectorXd(), body), duet::invalid_input);
 }
 
-TEST_CASE("gradients and Hessians: the squared distance of rotations") {
+TEST_CASE("gradient and hessian in a frame: squared distance of rotations") {
   // ½ θ² with θ the angle of q r*. Its gradient is the rotation vector from r to q; at q = r its
   // Hessian is the identity.
   const auto distance = [](const auto& x) {
@@ -205,7 +205,7 @@ TEST_CASE("gradients and Hessians: the squared distance of rotations") {
   CHECK(max_abs_difference(hessian(distance, q, body).hessian, R.transpose() * H * R) < 1e-13);
 }
 
-TEST_CASE("inside another differentiation") {
+TEST_CASE("jacobian in a frame: works inside another differentiation") {
   const auto trace = [](auto t) {
     const auto rotated = [t](const auto& x) {
       return (duet::rotate(x, vector(0, 0, 1)) * t).eval();

@@ -100,7 +100,7 @@ void check_fixed_size() {
 } // namespace
 
 // Up to 32 components in one pass, beyond in several, the last of them not full.
-TEST_CASE("a point in braces") {
+TEST_CASE("gradient, jacobian and hessian: the point may be given in braces") {
   const auto f = [](const auto& x) { return x[0] * x[0] * x[1]; };
   static_assert(std::is_same_v<decltype(gradient(f, {3, 2.0}).gradient), Eigen::Vector2d>);
   CHECK(gradient(f, {3, 2.0}).gradient == Eigen::Vector2d(12, 9));
@@ -110,7 +110,7 @@ TEST_CASE("a point in braces") {
   CHECK(jacobian(g, {3, 2.0}).jacobian == (Eigen::Matrix2d() << 12, 9, 0, 4).finished());
 }
 
-TEST_CASE("sizes known at compile time") {
+TEST_CASE("gradient and jacobian: sizes known at compile time") {
   check_fixed_size<1>();
   check_fixed_size<2>();
   check_fixed_size<3>();
@@ -122,7 +122,7 @@ TEST_CASE("sizes known at compile time") {
   check_fixed_size<40>();
 }
 
-TEST_CASE("sizes known at run time, 1 to 40") {
+TEST_CASE("gradient and jacobian: sizes from 1 to 40 known at run time") {
   for (int n = 1; n <= 40; ++n) {
     const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 1, 1 + 0.5 * n);
     check_gradient(x);
@@ -132,7 +132,7 @@ TEST_CASE("sizes known at run time, 1 to 40") {
   }
 }
 
-TEST_CASE("a vector without components is refused") {
+TEST_CASE("gradient and jacobian: a vector without components throws invalid_input") {
   const Eigen::VectorXd none;
   CHECK_THROWS_WITH_AS(
       static_cast<void>(gradient(
@@ -142,7 +142,7 @@ TEST_CASE("a vector without components is refused") {
                        "duet: jacobian: the function has no variables", duet::invalid_input);
 }
 
-TEST_CASE("rows, expressions, maps, arrays and integers") {
+TEST_CASE("gradient and jacobian: rows, expressions, maps, arrays and integers as arguments") {
   const Eigen::RowVector3d row(1, 2, 3);
   const auto [y, g] = gradient([](const auto& x) { return x[0] * x[1] + x[2]; }, row);
   static_assert(std::is_same_v<decltype(g), const Eigen::Vector3d>);
@@ -172,7 +172,7 @@ TEST_CASE("rows, expressions, maps, arrays and integers") {
   CHECK(J == expected);
 }
 
-TEST_CASE("parts of vectors and matrices, references, entries of a matrix") {
+TEST_CASE("gradient and jacobian: blocks, references and matrix entries inside the function") {
   Eigen::VectorXd x(4);
   x << 2, 3, 5, 7;
   const Eigen::MatrixXd m = x * x.transpose();
@@ -194,7 +194,7 @@ TEST_CASE("parts of vectors and matrices, references, entries of a matrix") {
   CHECK(gradient(determinant, a.reshaped()).gradient == Eigen::Vector4d(4, -2, -3, 1));
 }
 
-TEST_CASE("results of a size known at run time, from an argument of fixed size") {
+TEST_CASE("jacobian: result of a size known at run time, argument of fixed size") {
   const auto f = [](const auto& x) {
     using T = std::decay_t<decltype(x[0])>;
     Eigen::Matrix<T, Eigen::Dynamic, 1> y(4);
@@ -207,7 +207,7 @@ TEST_CASE("results of a size known at run time, from an argument of fixed size")
   CHECK(J.row(3) == Eigen::RowVector2d(0, 0));
 }
 
-TEST_CASE("Hessians") {
+TEST_CASE("hessian: values, gradient and matrix equal the closed form") {
   const auto f = [](const auto& x) { return exp(x[0] * x[1]) + x[1] * x[1] * x[2]; };
   const Eigen::Vector3d x(0.5, 0.7, -1.1);
   const auto [y, g, H] = hessian(f, x);
@@ -272,7 +272,7 @@ void check_fixed_hessian() {
   check_hessian(x);
 }
 
-TEST_CASE("Hessians of any size, in blocks of eight") {
+TEST_CASE("hessian: any size in blocks of eight equals the closed form") {
   for (const int n : {1, 2, 7, 8, 9, 16, 17, 40}) {
     const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(n, 0.3, 1.9);
     check_hessian(x);
@@ -284,7 +284,7 @@ TEST_CASE("Hessians of any size, in blocks of eight") {
                        "duet: hessian: the function has no variables", duet::invalid_input);
 }
 
-TEST_CASE("how often a Hessian evaluates its function") {
+TEST_CASE("hessian: evaluates the function once per pair of blocks") {
   int calls = 0;
   const auto counted = [&calls](const auto& x) {
     ++calls;
@@ -297,7 +297,7 @@ TEST_CASE("how often a Hessian evaluates its function") {
   CHECK(calls == 6); // three blocks, six pairs of them
 }
 
-TEST_CASE("standard vectors, in and out") {
+TEST_CASE("gradient and jacobian: standard vectors as arguments and results") {
   const std::vector<double> x{1, 2, 3};
   const auto squares = [](const auto& v) {
     auto result = v;
@@ -316,7 +316,7 @@ TEST_CASE("standard vectors, in and out") {
   CHECK(moved.derivative == std::vector<double>{2, 0, -6});
 }
 
-TEST_CASE("functions of several arguments") {
+TEST_CASE("gradient, jacobian and hessian: functions of several arguments") {
   const auto f = [](const auto& x, const auto& k, const auto& list) {
     return k * x[0] * x[1] + k * k * list[2];
   };
@@ -350,7 +350,7 @@ TEST_CASE("functions of several arguments") {
         expected.col(0) + expected.col(2) + expected.col(5));
 }
 
-TEST_CASE("gradients in single precision") {
+TEST_CASE("gradient: single precision") {
   const auto [y, g] = gradient([](const auto& x) { return x[0] * x[1]; }, Eigen::Vector2f(2, 3));
   static_assert(std::is_same_v<decltype(g), const Eigen::Vector2f>);
   CHECK(g == Eigen::Vector2f(3, 2));

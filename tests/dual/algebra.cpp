@@ -186,7 +186,7 @@ void check_packed_of_all_sizes() {
   check_packed<T, 33>();
 }
 
-TEST_CASE("packed partials at run time") {
+TEST_CASE("dual: packed partials at run time give the same results as constant evaluation") {
   check_packed_of_all_sizes<float>();
   check_packed_of_all_sizes<double>();
   check_packed_of_all_sizes<long double>();

@@ -41,8 +41,8 @@ static_assert(dual<float>(0.1F, 0) != 0.1); // as 0.1F != 0.1
 
 } // namespace
 
-TEST_CASE_TEMPLATE("classification is that of the value", D, dual<double>, dual<double, 5>,
-                   taylor<double, 3>, dual<dual<double>, 1, outer_tag>) {
+TEST_CASE_TEMPLATE("dual: classification depends on the value alone", D, dual<double>,
+                   dual<double, 5>, taylor<double, 3>, dual<dual<double>, 1, outer_tag>) {
   for (const double x :
        {0.0, -0.0, 1.5, -1.5, 5e-324, 1e-310, infinity, -infinity, not_a_number, -not_a_number}) {
     CAPTURE(x);
@@ -64,8 +64,9 @@ TEST_CASE_TEMPLATE("classification is that of the value", D, dual<double>, dual<
   }
 }
 
-TEST_CASE_TEMPLATE("limits are those of the real number below", D, dual<double>, dual<double, 7>,
-                   taylor<double, 2>, dual<taylor<double, 2>, 1, outer_tag>, const dual<double>) {
+TEST_CASE_TEMPLATE("dual: numeric limits are those of the underlying real number", D, dual<double>,
+                   dual<double, 7>, taylor<double, 2>, dual<taylor<double, 2>, 1, outer_tag>,
+                   const dual<double>) {
   using limits = std::numeric_limits<D>;
   using real = std::numeric_limits<double>;
   static_assert(limits::is_specialized && limits::has_infinity && limits::has_quiet_NaN);
@@ -80,14 +81,14 @@ TEST_CASE_TEMPLATE("limits are those of the real number below", D, dual<double>,
   CHECK(limits::max().all_of([](const auto& part) { return part == 0 || part == real::max(); }));
 }
 
-TEST_CASE("limits follow the precision") {
+TEST_CASE("dual: numeric limits follow the precision") {
   CHECK(std::numeric_limits<dual<float>>::digits == 24);
   CHECK(std::numeric_limits<dual<float>>::epsilon().value() == 0x1p-23F);
   CHECK(std::numeric_limits<dual<long double, 2>>::digits ==
         std::numeric_limits<long double>::digits);
 }
 
-TEST_CASE("algorithms of the standard library keep derivatives") {
+TEST_CASE("dual: algorithms of the standard library keep derivatives") {
   using D = dual<double>;
   D x(1, 10);
   D y(2, 20);
@@ -120,7 +121,7 @@ TEST_CASE("algorithms of the standard library keep derivatives") {
   CHECK(packed[0].partial(3) == 0);
 }
 
-TEST_CASE("complex numbers over duals multiply and divide") {
+TEST_CASE("std::complex of dual: multiplication and division") {
   using D = dual<double>;
   using C = std::complex<D>;
   const C z(D(1, 1), D(2, 0)); // (1 + 2i) + ε

@@ -112,7 +112,7 @@ void check_analytic(F f, DF df, DDF ddf) {
 
 } // namespace
 
-TEST_CASE("algebra, exactly") {
+TEST_CASE("dual of complex: the algebra is exact") {
   const D a(C(1, 2), C(3, -1));
   const D b(C(0, 2), C(1, 1));
   CHECK(same(a + b, C(1, 4), C(4, 0)));
@@ -141,7 +141,7 @@ TEST_CASE("algebra, exactly") {
   CHECK(inverse.derivative(3) == C(-6 / 16.0));
 }
 
-TEST_CASE("equality looks at values, and constants are real or complex") {
+TEST_CASE("dual of complex: equality compares values, constants are real or complex") {
   const D a(C(2, 0), C(3, 1));
   CHECK(a == 2);
   CHECK(2.0 == a);
@@ -155,7 +155,8 @@ TEST_CASE("equality looks at values, and constants are real or complex") {
   CHECK(a == dual<double>(2));
 }
 
-TEST_CASE("a real constant is not widened: values are those of complex numbers") {
+TEST_CASE(
+    "dual of complex: a real constant is not widened, so values equal those of complex numbers") {
   const double inf = std::numeric_limits<double>::infinity();
   const C z(0.1, -0.0);
   const D x = D::variable(z);
@@ -168,14 +169,14 @@ TEST_CASE("a real constant is not widened: values are those of complex numbers")
   CHECK((D(C(inf, 1)) * 2).value() == C(inf, 2));
 }
 
-TEST_CASE("real duals meet complex numbers") {
+TEST_CASE("dual of complex: real duals meet complex numbers") {
   const auto t = dual<double>::variable(0.5);
   const D z = exp(i * t); // on the unit circle, its velocity ie^{it}
   CHECK(z.value() == std::exp(C(0, 0.5)));
   CHECK(std::abs(z.epsilon() - i * z.value()) <= epsilon);
 }
 
-TEST_CASE("streams") {
+TEST_CASE("dual of complex: output and input streams") {
   std::ostringstream out;
   out << D(C(1, 2), C(0.5, -1)) << " " << taylor<C, 1>::variable(i);
   CHECK(out.str() == "(1,2)[(0.5,-1)] ((0,1) + (1,0) e)");
@@ -187,7 +188,7 @@ TEST_CASE("streams") {
   CHECK(b.value() == C(5));
 }
 
-TEST_CASE("functions and their derivatives: exp, log, sqrt") {
+TEST_CASE("dual of complex: derivatives of exp, log and sqrt") {
   check_analytic([](const auto& z) { return exp(z); }, [](C z) { return exp(z); },
                  [](C z) { return exp(z); });
   check_analytic([](const auto& z) { return log(z); }, [](C z) { return 1.0 / z; },
@@ -196,7 +197,7 @@ TEST_CASE("functions and their derivatives: exp, log, sqrt") {
                  [](C z) { return -0.25 / (z * sqrt(z)); });
 }
 
-TEST_CASE("functions and their derivatives: circular and hyperbolic") {
+TEST_CASE("dual of complex: derivatives of circular and hyperbolic functions") {
   check_analytic([](const auto& z) { return sin(z); }, [](C z) { return cos(z); },
                  [](C z) { return -sin(z); });
   check_analytic([](const auto& z) { return cos(z); }, [](C z) { return -sin(z); },
@@ -211,7 +212,7 @@ TEST_CASE("functions and their derivatives: circular and hyperbolic") {
                  [](C z) { return -2.0 * tanh(z) * (1.0 - tanh(z) * tanh(z)); });
 }
 
-TEST_CASE("functions and their derivatives: powers") {
+TEST_CASE("dual of complex: derivatives of powers") {
   check_analytic([](const auto& z) { return pow(z, 3.0); }, [](C z) { return 3.0 * z * z; },
                  [](C z) { return 6.0 * z; });
   check_analytic([](const auto& z) { return pow(z, 0.5); }, [](C z) { return 0.5 / sqrt(z); },
@@ -230,7 +231,7 @@ TEST_CASE("functions and their derivatives: powers") {
                  [](C z) { return pow(z, z) * ((log(z) + 1.0) * (log(z) + 1.0) + 1.0 / z); });
 }
 
-TEST_CASE("functions and their derivatives: inverse circular and hyperbolic") {
+TEST_CASE("dual of complex: derivatives of inverse circular and hyperbolic functions") {
   check_analytic([](const auto& z) { return log10(z); }, [](C z) { return 1 / std::log(10) / z; },
                  [](C z) { return -1 / std::log(10) / (z * z); });
   // The roots in two factors are on the branches of the functions.
@@ -260,7 +261,7 @@ TEST_CASE("functions and their derivatives: inverse circular and hyperbolic") {
   CHECK(atanh(D::variable(large)).epsilon() == C(0));
 }
 
-TEST_CASE("powers at 0, and whole ones of large numbers") {
+TEST_CASE("dual of complex: powers at 0 and integer powers of large numbers") {
   const auto at_zero = [](const auto& p) { return pow(series::variable(0), p); };
   const auto are = [](const series& y, const std::array<C, 3>& expected) {
     return y.derivative(1) == expected[0] && y.derivative(2) == expected[1] &&
@@ -279,7 +280,7 @@ TEST_CASE("powers at 0, and whole ones of large numbers") {
   CHECK(std::abs(pow(D::variable(z), 3).epsilon() - 3.0 * z * z) <= 4 * epsilon * 3 * 25e200);
 }
 
-TEST_CASE("tangents far from the real axis, where 1 + tan² would cancel") {
+TEST_CASE("dual of complex: tangents far from the real axis do not cancel") {
   const C z(0.3, 18);
   const D y = tan(D::variable(z));
   const C exact = 4.0 / (std::exp(-i * z) * (1.0 + std::exp(2.0 * i * z)) * std::exp(-i * z) *
@@ -293,7 +294,7 @@ TEST_CASE("tangents far from the real axis, where 1 + tan² would cancel") {
   CHECK(tanh(series::variable(C(-800, 0.3))).derivative(2) == C(0));
 }
 
-TEST_CASE("constants do not poison what they meet at singular points") {
+TEST_CASE("dual of complex: constants stay constants at singular points") {
   CHECK(same(sqrt(D(0)), 0, 0));
   CHECK(log(D(0)).epsilon() == C(0));
   CHECK(pow(D::variable(0), 0).epsilon() == C(0));
@@ -302,7 +303,7 @@ TEST_CASE("constants do not poison what they meet at singular points") {
   CHECK((dual<C, 2>::variable(1, 0) / dual<C, 2>(0)).partial(1) == C(0));
 }
 
-TEST_CASE("the complex step is the dual part") {
+TEST_CASE("dual of complex: the complex step equals the dual part") {
   // f(x + ih) = f(x) + ih f′(x) + O(h²): with h this small the step is exact to the last digits.
   const auto f = [](const auto& x) { return exp(sin(x)) * sqrt(x) / (x * x + 1.0); };
   random_source random(2);
@@ -322,7 +323,7 @@ TEST_CASE("the complex step is the dual part") {
   }
 }
 
-TEST_CASE("drivers differentiate analytic functions") {
+TEST_CASE("dual of complex: drivers differentiate analytic functions") {
   const C z(0.3, -1.2);
   const auto [y, dy] = duet::derivative([](const auto& x) { return x * sin(x); }, z);
   CHECK(y == z * sin(z));
@@ -331,7 +332,8 @@ TEST_CASE("drivers differentiate analytic functions") {
   CHECK(std::abs(ys[3] - 8.0 * exp(2.0 * z)) <= 64 * epsilon * std::abs(ys[3]));
 }
 
-TEST_CASE_TEMPLATE("in every built-in precision", T, float, double, long double) {
+TEST_CASE_TEMPLATE("dual of complex: functions work in every built-in precision", T, float, double,
+                   long double) {
   using number = std::complex<T>;
   const auto x = dual<number>::variable(number(T(0.5), T(1.5)));
   const auto y = exp(x) * x / 2 + pow(x, 2);

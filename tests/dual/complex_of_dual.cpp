@@ -81,7 +81,7 @@ void check_analytic(F f) {
 
 } // namespace
 
-TEST_CASE("arithmetic") {
+TEST_CASE("std::complex of dual: arithmetic") {
   random_source random(1);
   for (int k = 0; k < 100; ++k) {
     const auto [z, dz, w, dw, a, b] = random_pair(random);
@@ -106,7 +106,7 @@ TEST_CASE("arithmetic") {
   }
 }
 
-TEST_CASE("conversion, comparison, streams") {
+TEST_CASE("std::complex of dual: conversion, comparison and streams") {
   const Z z = C(1, 2); // a constant
   CHECK(value(z) == C(1, 2));
   CHECK(velocity(z) == C(0, 0));
@@ -124,7 +124,7 @@ TEST_CASE("conversion, comparison, streams") {
   CHECK(out.str() == "(1[3],2[4])");
 }
 
-TEST_CASE("modulus, argument, norm, conjugate, parts: what has no complex derivative") {
+TEST_CASE("std::complex of dual: modulus, argument, norm, conjugate and parts have derivatives") {
   random_source random(2);
   for (int k = 0; k < 200; ++k) {
     const moving_pair p = random_pair(random);
@@ -148,7 +148,7 @@ TEST_CASE("modulus, argument, norm, conjugate, parts: what has no complex deriva
   }
 }
 
-TEST_CASE("the modulus neither overflows nor vanishes early") {
+TEST_CASE("std::complex of dual: the modulus neither overflows nor underflows early") {
   const D large = abs(moving(C(3e200, 4e200), C(1, 2)));
   CHECK(near(large, 5e200, 0.6 + 1.6, 2.2));
   const D small = abs(moving(C(3e-200, 4e-200), C(1, 2)));
@@ -157,7 +157,7 @@ TEST_CASE("the modulus neither overflows nor vanishes early") {
   CHECK(abs(Z()).epsilon() == 0); // a constant
 }
 
-TEST_CASE("analytic functions agree with the duals over complex numbers") {
+TEST_CASE("std::complex of dual: analytic functions agree with the dual of complex") {
   check_analytic([](const auto& z) { return exp(z); });
   check_analytic([](const auto& z) { return log(z); });
   check_analytic([](const auto& z) { return sqrt(z); });
@@ -171,7 +171,7 @@ TEST_CASE("analytic functions agree with the duals over complex numbers") {
   check_analytic([](const auto& z) { return pow(z, z); });
 }
 
-TEST_CASE("drivers go through complex results") {
+TEST_CASE("std::complex of dual: drivers differentiate complex results") {
   // A spiral z = r e^{iφ}, r = t, φ = t²; ż = (1 + 2it²) e^{iφ}, z̈ = (6it − 4t³) e^{iφ}.
   const auto spiral = [](const auto& t) { return std::polar(t, t * t); };
   const double t = 0.75;
@@ -185,7 +185,7 @@ TEST_CASE("drivers go through complex results") {
   CHECK(near(zs[2], C(-4 * t * t * t, 6 * t) * e, 1));
 }
 
-TEST_CASE("Taylor numbers: e^{it} has the derivatives i^k e^{it}") {
+TEST_CASE("std::complex of Taylor: e^{it} has the derivatives i^k e^{it}") {
   using T = taylor<double, 4>;
   const std::complex<T> z = exp(std::complex<T>(T(0), T::variable(0.5)));
   C exact = std::polar(1.0, 0.5);
@@ -340,7 +340,7 @@ bool is_infinite(const C& z) { return std::isinf(z.real()) || std::isinf(z.imag(
 
 } // namespace
 
-TEST_CASE("derivatives to the third, against differences in 100 digits") {
+TEST_CASE("std::complex of dual: derivatives to the third agree with differences in 100 digits") {
   // Among them equal parts, on axes, small and large.
   const C points[] = {{1, 0.5},  {1, 1},      {-1, 1},     {2, -2},      {0.5, 0.5},  {0.25, 0},
                       {0, 0.75}, {0.3, -1.7}, {-0.4, 0.2}, {1e-9, 2e-9}, {-3, -0.25}, {5, 4}};
@@ -375,7 +375,8 @@ TEST_CASE("derivatives to the third, against differences in 100 digits") {
   });
 }
 
-TEST_CASE("values are those of complex<double>, zeros, infinities and cuts included") {
+TEST_CASE("std::complex of dual: values equal those of complex<double>, also at zeros, infinities "
+          "and cuts") {
   const double inf = std::numeric_limits<double>::infinity();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double parts[] = {0.0, -0.0, 0.5, -0.5, 1, -1, 2, -3, 1e-300, 1e300, inf, -inf, nan};
@@ -398,7 +399,8 @@ TEST_CASE("values are those of complex<double>, zeros, infinities and cuts inclu
   }
 }
 
-TEST_CASE("on cuts the derivative is that of the side of the zero's sign") {
+TEST_CASE(
+    "std::complex of dual: on cuts the derivative is that of the side given by the sign of zero") {
   for_each_function([&](const std::string& name, const auto& f) {
     for (const C v : {C(2, 0.0), C(2, -0.0), C(-2, 0.0), C(-2, -0.0), C(0.0, 2), C(-0.0, 2),
                       C(0.0, -2), C(-0.0, -2), C(0.5, -0.0), C(-0.25, 0.0)}) {
@@ -418,7 +420,7 @@ TEST_CASE("on cuts the derivative is that of the side of the zero's sign") {
   });
 }
 
-TEST_CASE("powers of every pair of types, called in both ways") {
+TEST_CASE("std::complex of dual: powers of every pair of types, qualified or not") {
   using std::pow;
   const C z(1, 2), w(0.5, -1);
   const Z a = moving(z, C(1, -1));
@@ -446,7 +448,7 @@ TEST_CASE("powers of every pair of types, called in both ways") {
   check(std::pow(a, D(2)), std::pow(z, 2.0), 2.0 * z * dz);
 }
 
-TEST_CASE("powers at 0, and what is singular there") {
+TEST_CASE("std::complex of dual: powers at 0 and their singularities") {
   const Z zero = moving(C(0, 0), C(0, 1));
   CHECK(velocity(std::pow(zero, D(1))) == C(0, 1));
   CHECK(velocity(std::pow(zero, D(2))) == C(0, 0));
@@ -473,7 +475,7 @@ TEST_CASE("powers at 0, and what is singular there") {
   }
 }
 
-TEST_CASE("quotients of what is large or small, and operators of two types") {
+TEST_CASE("std::complex of dual: quotients of large or small numbers, operators of two types") {
   const Z large = moving(C(3e200, 4e200), C(1e200, 0));
   CHECK(value(large / large) == C(1, 0));
   CHECK(near(velocity(1 / large), -1e200 / C(3e200, 4e200) / C(3e200, 4e200), 1e-201));
@@ -499,7 +501,7 @@ TEST_CASE("quotients of what is large or small, and operators of two types") {
   CHECK(near(velocity(on_circle), 2.0 * C(-std::sin(0.5), std::cos(0.5)), 2));
 }
 
-TEST_CASE("roots of Eigen, on the axes too") {
+TEST_CASE("std::complex of dual: square roots by Eigen, also on the axes") {
   for (const C v : {C(0, 2), C(0, -2), C(2, 0), C(1, 1)}) {
     CAPTURE(v);
     for (const C d : {C(1, 0), C(0, 1)}) {
@@ -512,8 +514,9 @@ TEST_CASE("roots of Eigen, on the axes too") {
   }
 }
 
-TEST_CASE_TEMPLATE("in every built-in precision, and in lanes", T, float, long double,
-                   duet::batch<double, 2>) {
+TEST_CASE_TEMPLATE(
+    "std::complex of dual: functions work in every built-in precision and in batches", T, float,
+    long double, duet::batch<double, 2>) {
   using number = dual<T>;
   using real = duet::lane_type_t<T>;
   const std::complex<number> z(number::variable(T(real(0.5))), number(T(real(1.5))));

@@ -64,7 +64,7 @@ void check_against_fixed() {
 
 } // namespace
 
-TEST_CASE("the same derivatives as with a fixed number of partials") {
+TEST_CASE("dynamic_dual: derivatives equal those with a fixed number of partials") {
   check_against_fixed<double, 2, 8>();
   check_against_fixed<double, 3, 3>();
   check_against_fixed<double, 7, 16>();
@@ -73,7 +73,7 @@ TEST_CASE("the same derivatives as with a fixed number of partials") {
   check_against_fixed<long double, 6, 9>();
 }
 
-TEST_CASE("counts that differ meet as if the missing partials were zero") {
+TEST_CASE("dynamic_dual: missing partials count as zero if the numbers of partials differ") {
   using D = dynamic_dual<double, 12>;
   const D constant = 2;
   CHECK(constant.size() == 0);
@@ -92,7 +92,7 @@ TEST_CASE("counts that differ meet as if the missing partials were zero") {
   CHECK((x - y).partial(1) == 1);
 }
 
-TEST_CASE("what pads the last packet never shows") {
+TEST_CASE("dynamic_dual: the padding of the last packet is never visible") {
   using D = dynamic_dual<double, 16>;
   const double infinity = std::numeric_limits<double>::infinity();
   // Multiplying by infinity leaves NaN beside the two partials.
@@ -107,7 +107,7 @@ TEST_CASE("what pads the last packet never shows") {
   CHECK(y.partial(5) == 1);
 }
 
-TEST_CASE("structural zeros survive") {
+TEST_CASE("dynamic_dual: structural zeros survive") {
   using D = dynamic_dual<double, 6>;
   const D constant = 0;
   CHECK(sqrt(constant).size() == 0);
@@ -121,7 +121,7 @@ TEST_CASE("structural zeros survive") {
   CHECK((D::variable(1, 0, 2) / D(0)).partial(1) == 0);
 }
 
-TEST_CASE("beyond the capacity") {
+TEST_CASE("dynamic_dual: exceeding the capacity throws invalid_input") {
   using D = dynamic_dual<double, 4>;
   CHECK(D::variable(1, 3, 4).partial(3) == 1);
   CHECK_THROWS_WITH_AS(static_cast<void>(D::variable(1, 0, 5)),
@@ -131,7 +131,7 @@ TEST_CASE("beyond the capacity") {
   CHECK_THROWS_AS(x.set_partial(4, 1.0), duet::invalid_input);
 }
 
-TEST_CASE("nested, in Eigen and in streams") {
+TEST_CASE("dynamic_dual: works nested, in Eigen and in streams") {
   using inner = dual<double>;
   using D = dynamic_dual<inner, 5, duet::derivative_tag<struct outer>>;
   const D x = D::variable(inner::variable(0.4), 2, 3);

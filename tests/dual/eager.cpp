@@ -30,7 +30,7 @@ auto polynomial(const T& x) {
 
 } // namespace
 
-TEST_CASE("auto returns values, not references to what is gone") {
+TEST_CASE("dual: auto holds values, not dangling references") {
   auto y = square(dual<double>::variable(3));
   static_assert(std::is_same_v<decltype(y), dual<double>>);
   CHECK(y.value() == 9);
@@ -47,7 +47,7 @@ TEST_CASE("auto returns values, not references to what is gone") {
   CHECK(later[2]().epsilon() == 20);
 }
 
-TEST_CASE("the conditional operator mixes duals and literals") {
+TEST_CASE("dual: the conditional operator mixes duals and literals") {
   const auto relu_square = [](auto x) { return x > 0 ? x * x : 0.0; };
   CHECK(relu_square(dual<double>::variable(3)).epsilon() == 6);
   CHECK(relu_square(dual<double>::variable(-3)).epsilon() == 0);
@@ -55,7 +55,7 @@ TEST_CASE("the conditional operator mixes duals and literals") {
   CHECK(chosen(dual<double, 3>::variable(2, 1)).partial(1) == 1);
 }
 
-TEST_CASE("a lambda may return from several places") {
+TEST_CASE("dual: a lambda may have several return statements") {
   const auto huber = [](auto x) {
     if (x > 1) {
       return 2 * x - 1;
@@ -70,7 +70,7 @@ TEST_CASE("a lambda may return from several places") {
   CHECK(huber(taylor<double, 3>::variable(-4)).coefficient(1) == -2);
 }
 
-TEST_CASE("operands may be the result") {
+TEST_CASE("dual: an operand may be the result") {
   auto x = dual<double, 3>::variable(2, 1);
   const auto& same_x = x;
   x *= same_x;

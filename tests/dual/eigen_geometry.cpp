@@ -43,7 +43,7 @@ bool near(const auto& a, const auto& b) { return (a - b).norm() <= 1e-14 * (1 + 
 
 } // namespace
 
-TEST_CASE("angle and axis") {
+TEST_CASE("Eigen geometry over dual: AngleAxis") {
   const Eigen::AngleAxis<D> angle_axis(angle, axis.cast<D>());
   const DMatrix r = angle_axis.toRotationMatrix();
   CHECK(near(values(r), rotation));
@@ -60,7 +60,7 @@ TEST_CASE("angle and axis") {
   CHECK(Eigen::AngleAxis<D>::Identity().toRotationMatrix() == DMatrix::Identity());
 }
 
-TEST_CASE("quaternions") {
+TEST_CASE("Eigen geometry over dual: Quaternion") {
   const Eigen::Quaternion<D> q(Eigen::AngleAxis<D>(angle, axis.cast<D>()));
   CHECK(q.w().epsilon() == doctest::Approx(-std::sin(0.35) / 2));
   CHECK(near(slopes(q.toRotationMatrix()), rate));
@@ -82,7 +82,7 @@ TEST_CASE("quaternions") {
   CHECK(near(slopes(plain.cast<D>().toRotationMatrix()), Matrix3d::Zero().eval()));
 }
 
-TEST_CASE("transforms") {
+TEST_CASE("Eigen geometry over dual: Transform") {
   Eigen::Transform<D, 3, Eigen::Isometry> t = Eigen::Transform<D, 3, Eigen::Isometry>::Identity();
   t.translate(DVector(D(1, 2), 0, 0));
   t.rotate(Eigen::AngleAxis<D>(angle, axis.cast<D>()));
@@ -95,7 +95,7 @@ TEST_CASE("transforms") {
   CHECK(near(slopes(affine.matrix().topLeftCorner<3, 3>().eval()), rate));
 }
 
-TEST_CASE("products of vectors") {
+TEST_CASE("Eigen geometry over dual: products of vectors") {
   const DVector a(D(1, 1), 2, 3);
   const DVector b(4, D(5, -1), 6);
   const Vector3d x(1, 2, 3);
@@ -169,7 +169,7 @@ Eigen::Matrix<T, Eigen::Dynamic, 1> at_structured_points(const T& t) {
 
 } // namespace
 
-TEST_CASE("derivatives of Eigen's members are right to third order at structured points") {
+TEST_CASE("Eigen geometry over dual: members are right to third order at structured points") {
   CHECK(duet_test::error_to_third_order([](const auto& t) { return at_structured_points(t); }) <=
         1e-13);
 }

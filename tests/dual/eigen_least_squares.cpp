@@ -15,7 +15,7 @@ using duet_test::seeded;
 using Eigen::Dynamic;
 using Eigen::MatrixXd;
 
-TEST_CASE("least squares: AᵀA x = Aᵀb, with derivatives") {
+TEST_CASE("Eigen over dual: least squares satisfy AᵀA x = Aᵀb with derivatives") {
   duet_test::random_source random(5);
   const auto draw = [&](int rows, int columns) -> MatrixXd {
     return MatrixXd::NullaryExpr(rows, columns, [&] { return random.uniform(-1, 1); });

@@ -30,8 +30,8 @@ void check_decomposition(const linear_problem& p) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("LU of dynamic size", Decomposition, Eigen::PartialPivLU<matrix<Dynamic>>,
-                   Eigen::FullPivLU<matrix<Dynamic>>) {
+TEST_CASE_TEMPLATE("Eigen over dual: LU of dynamic size", Decomposition,
+                   Eigen::PartialPivLU<matrix<Dynamic>>, Eigen::FullPivLU<matrix<Dynamic>>) {
   for (const int n : {1, 2, 3, 12}) {
     for (const auto& p : problems(n)) {
       check_decomposition<Decomposition, Dynamic>(p);
@@ -39,8 +39,8 @@ TEST_CASE_TEMPLATE("LU of dynamic size", Decomposition, Eigen::PartialPivLU<matr
   }
 }
 
-TEST_CASE_TEMPLATE("Cholesky decompositions", Decomposition, Eigen::LLT<matrix<Dynamic>>,
-                   Eigen::LDLT<matrix<Dynamic>>) {
+TEST_CASE_TEMPLATE("Eigen over dual: Cholesky decompositions", Decomposition,
+                   Eigen::LLT<matrix<Dynamic>>, Eigen::LDLT<matrix<Dynamic>>) {
   for (const int n : {1, 2, 3, 12}) {
     for (const auto& p : problems(n)) {
       if (p.positive) {
@@ -50,7 +50,7 @@ TEST_CASE_TEMPLATE("Cholesky decompositions", Decomposition, Eigen::LLT<matrix<D
   }
 }
 
-TEST_CASE("fixed sizes and inverses") {
+TEST_CASE("Eigen over dual: solutions and inverses of fixed size") {
   for (const auto& p : problems(3)) {
     check_decomposition<Eigen::PartialPivLU<matrix<3>>, 3>(p);
     if (p.positive) {
@@ -62,7 +62,7 @@ TEST_CASE("fixed sizes and inverses") {
   }
 }
 
-TEST_CASE("several right-hand sides, systems larger than Eigen's blocks") {
+TEST_CASE("Eigen over dual: several right-hand sides and systems larger than Eigen's blocks") {
   for (const int n : {2, 12, 50}) {
     for (const auto& p : problems(n)) {
       CAPTURE(p.name);

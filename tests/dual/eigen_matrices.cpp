@@ -35,7 +35,8 @@ auto values(const M& m) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("mixed products with double", D, dual<double>, dual<double, 3>) {
+TEST_CASE_TEMPLATE("Eigen over dual: mixed products with double", D, dual<double>,
+                   dual<double, 3>) {
   const Eigen::Matrix3d a = (Eigen::Matrix3d() << 1, 2, 3, 4, 5, 6, 7, 8, 10).finished();
   const Eigen::Vector3d u(1, -2, 0.5);
   const auto t = D::variable(2);
@@ -75,7 +76,7 @@ TEST_CASE_TEMPLATE("mixed products with double", D, dual<double>, dual<double, 3
   CHECK(back == 2 * a * x_value);
 }
 
-TEST_CASE("mixed products of dynamic size, larger than Eigen's blocks") {
+TEST_CASE("Eigen over dual: mixed products of dynamic size, larger than Eigen's blocks") {
   using D = dual<double>;
   for (const int n : {2, 9, 33}) {
     const Eigen::MatrixXd a = Eigen::MatrixXd::NullaryExpr(
@@ -98,7 +99,7 @@ TEST_CASE("mixed products of dynamic size, larger than Eigen's blocks") {
   }
 }
 
-TEST_CASE("scalars of different nestings meet in matrices") {
+TEST_CASE("Eigen over dual: scalars of different nestings meet in matrices") {
   using derivative_dual = dual<double>;
   using screw = dual<double, 1, screw_tag>;
   const matrix<derivative_dual, 2, 2> a =
@@ -113,7 +114,7 @@ TEST_CASE("scalars of different nestings meet in matrices") {
   CHECK(c(0).epsilon().epsilon() == 10);
 }
 
-TEST_CASE("lambdas in unaryExpr, with two returns and with literals") {
+TEST_CASE("Eigen over dual: unaryExpr accepts lambdas with two returns and with literals") {
   using D = dual<double>;
   const matrix<D, 2, 1> x(D(3, 1), D(-3, 1));
   const auto squares = x.unaryExpr([](const D& e) { return e > 0 ? e * e : 0.0; }).eval();
@@ -132,7 +133,7 @@ TEST_CASE("lambdas in unaryExpr, with two returns and with literals") {
   CHECK(slopes(scaled) == Eigen::Vector2d(1, 2));
 }
 
-TEST_CASE("reductions, norms and coefficient-wise functions") {
+TEST_CASE("Eigen over dual: reductions, norms and coefficient-wise functions") {
   using D = dual<double, 2>;
   const matrix<D, 2, 1> x(D::variable(3, 0), D::variable(4, 1));
   CHECK(x.norm() == 5);
@@ -163,7 +164,7 @@ TEST_CASE("reductions, norms and coefficient-wise functions") {
   CHECK(m.inverse()(0, 0).partial(0) == doctest::Approx(-16.0 / 100));
 }
 
-TEST_CASE("matrices print in columns") {
+TEST_CASE("Eigen over dual: matrices are printed in columns") {
   const Eigen::Matrix<dual<double>, 2, 2> m =
       (Eigen::Matrix<dual<double>, 2, 2>() << dual<double>(1, 2), 10, 0.5, dual<double>(3, -1))
           .finished();

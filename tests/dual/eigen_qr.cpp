@@ -28,7 +28,8 @@ using matrix = Eigen::Matrix<dual<double>, N, N>;
 
 } // namespace
 
-TEST_CASE_TEMPLATE("QR of dynamic size", Decomposition, Eigen::HouseholderQR<matrix<Dynamic>>,
+TEST_CASE_TEMPLATE("Eigen over dual: QR of dynamic size", Decomposition,
+                   Eigen::HouseholderQR<matrix<Dynamic>>,
                    Eigen::ColPivHouseholderQR<matrix<Dynamic>>,
                    Eigen::FullPivHouseholderQR<matrix<Dynamic>>,
                    Eigen::CompleteOrthogonalDecomposition<matrix<Dynamic>>) {

@@ -46,7 +46,7 @@ void check_factors(const QR& qr, const dual_matrix& a) {
 
 // Among them matrices whose columns are zero below the diagonal, but their derivatives are not; and
 // one larger than the blocks that Eigen puts reflectors together in.
-TEST_CASE("Q R = A and QᵀQ = 1 with their derivatives") {
+TEST_CASE("Eigen over dual: Q R = A and QᵀQ = 1 hold with their derivatives") {
   for (const int n : {2, 3, 12}) {
     for (const auto& p : problems(n)) {
       CAPTURE(p.name);
@@ -62,7 +62,8 @@ TEST_CASE("Q R = A and QᵀQ = 1 with their derivatives") {
   check_factors(Eigen::HouseholderQR<dual_matrix>(large), large);
 }
 
-TEST_CASE("a tail without values, with derivatives: R in closed form") {
+TEST_CASE("Eigen over dual: R has the closed form if a column's tail is zero but its derivatives "
+          "are not") {
   using column = Eigen::Matrix<dual<double>, 3, 1>;
   using D = dual<double>;
   const column u(D(2, 0.5), D(0, 3), D(0, -1));
@@ -81,7 +82,7 @@ TEST_CASE("a tail without values, with derivatives: R in closed form") {
   }
 }
 
-TEST_CASE("HouseholderQR has the values it has over double") {
+TEST_CASE("Eigen over dual: HouseholderQR has the values that it has over double") {
   for (const int n : {2, 3, 12}) {
     const auto p = duet_test::random_problem(n, false);
     const auto a = seeded<dual<double>, Dynamic, Dynamic>(p.a, p.a_slope);
@@ -95,7 +96,7 @@ TEST_CASE("HouseholderQR has the values it has over double") {
   }
 }
 
-TEST_CASE("fixed sizes, several partials and right-hand sides") {
+TEST_CASE("Eigen over dual: QR of fixed sizes with several partials and right-hand sides") {
   for (const auto& p : problems(2)) {
     CAPTURE(p.name);
     const auto a = seeded<dual<double, 3>, 2, 2>(p.a, p.a_slope, 3);

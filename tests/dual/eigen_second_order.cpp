@@ -31,7 +31,7 @@ auto seeded_twice(const Eigen::MatrixXd& value, const Eigen::MatrixXd& slope, Se
 
 } // namespace
 
-TEST_CASE("second derivatives of solutions") {
+TEST_CASE("Eigen over dual: second derivatives of solutions") {
   using series = taylor<double, 2>;
   using nested = dual<dual<double>, 1, outer_tag>;
   for (const int n : {1, 2, 4}) {

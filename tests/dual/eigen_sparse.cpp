@@ -15,7 +15,7 @@ namespace test_dual_eigen_sparse {
 
 using duet::dual;
 
-TEST_CASE("sparse Cholesky") {
+TEST_CASE("Eigen over dual: sparse Cholesky solves with derivatives") {
   duet_test::random_source random(4);
   for (const Eigen::Index n : {2, 5, 12}) {
     // Tridiagonal and positive definite, every entry moving.

@@ -95,7 +95,8 @@ void for_each_of_two(const Visit& visit) {
 
 } // namespace
 
-TEST_CASE("a quiet NaN raises nothing, nor do ordinary arguments" * doctest::skip(!has_flags)) {
+TEST_CASE("dual: a quiet NaN or ordinary argument raises no floating-point exception" *
+          doctest::skip(!has_flags)) {
   duet_test::for_each_function([](const std::string& name, auto f, auto, const auto&, auto) {
     check(name, f, not_a_number);
     check(name, f, name == "acosh" ? 2.5 : 0.3);
@@ -121,7 +122,7 @@ TEST_CASE("a quiet NaN raises nothing, nor do ordinary arguments" * doctest::ski
   }
 }
 
-TEST_CASE("what is chosen by comparison raises nothing at infinities and zeros either" *
+TEST_CASE("dual: branches by comparison raise no floating-point exception at infinities and zeros" *
           doctest::skip(!has_flags)) {
   for (const double x : {infinity, -infinity, 0.0, -0.0, 2.0}) {
     for (const double y : {infinity, -infinity, 0.0, not_a_number}) {

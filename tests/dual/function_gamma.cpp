@@ -26,7 +26,7 @@ using duet_test::scale;
 using duet_test::ulps;
 using duet_test::worst_error;
 
-TEST_CASE("derivatives of gamma functions") {
+TEST_CASE("gamma functions: derivatives agree with series") {
   worst_error worst_tgamma("tgamma");
   worst_error worst_lgamma("lgamma");
   duet_test::random_source random(3);
@@ -103,7 +103,8 @@ std::array<real_100, 7> gammas(const real_100& x, const std::array<real_100, 7>&
 
 } // namespace
 
-TEST_CASE_TEMPLATE("derivatives of gamma functions to the fifth", T, float, double, long double) {
+TEST_CASE_TEMPLATE("gamma functions: derivatives to the fifth in every built-in precision", T,
+                   float, double, long double) {
   worst_error worst_tgamma("tgamma");
   worst_error worst_lgamma("lgamma");
   std::vector<T> inputs;
@@ -147,7 +148,7 @@ TEST_CASE_TEMPLATE("derivatives of gamma functions to the fifth", T, float, doub
   CHECK_MESSAGE(worst_tgamma <= 16, worst_tgamma);
 }
 
-TEST_CASE("derivatives of the gamma function at -3/2, from a table") {
+TEST_CASE("gamma functions: derivatives at -3/2 agree with a table") {
   const auto g = tgamma(duet::taylor<double, 5>::variable(-1.5));
   CHECK(g.derivative(4) == doctest::Approx(1148.336).epsilon(5e-6));
   CHECK(g.derivative(5) == doctest::Approx(3831.21).epsilon(5e-6));

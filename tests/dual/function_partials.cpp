@@ -38,7 +38,7 @@ bool partials_agree(F&& f, T x) {
 
 } // namespace
 
-TEST_CASE("every number of partials gives the same slope") {
+TEST_CASE("functions over dual: every number of partials gives the same slope") {
   for_each_function([](const std::string& name, auto f, auto, const domain& d, auto) {
     CAPTURE(name);
     for (const double x : d.inputs) {

@@ -20,7 +20,8 @@ using duet_test::ulps;
 using duet_test::worst_error;
 
 // float and long double beside double: the same rules in another precision.
-TEST_CASE_TEMPLATE("first derivatives in every built-in precision", T, float, long double) {
+TEST_CASE_TEMPLATE("functions over dual: first derivatives in every built-in precision", T, float,
+                   long double) {
   using wide = duet_test::real_50;
   for_each_function([](const std::string& name, auto f, auto df, const domain& d, auto length) {
     worst_error worst(name);

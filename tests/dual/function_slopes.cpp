@@ -19,7 +19,7 @@ using duet_test::scale;
 using duet_test::ulps;
 using duet_test::worst_error;
 
-TEST_CASE("first derivatives against 100 digits") {
+TEST_CASE("functions over dual: first derivatives agree with 100 digits") {
   for_each_function([](const std::string& name, auto f, auto df, const domain& d, auto length) {
     worst_error worst(name);
     for (const double x : d.inputs) {

@@ -15,7 +15,7 @@ using duet_test::real_100;
 
 // The truth the other tests compare with must be true: derivatives by hand agree with difference
 // quotients of the functions themselves.
-TEST_CASE("the derivatives by hand are derivatives") {
+TEST_CASE("function_cases: derivatives by hand agree with difference quotients") {
   duet_test::for_each_function([](const std::string& name, auto f, auto df, const domain& d,
                                   auto length) {
     CAPTURE(name);

@@ -26,7 +26,7 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
 } // namespace
 
-TEST_CASE("values are those of <cmath>, bit by bit") {
+TEST_CASE("functions over dual: values equal those of <cmath> bit by bit") {
   for_each_function([](const std::string& name, auto f, auto, domain d, auto) {
     CAPTURE(name);
     d.inputs.insert(d.inputs.end(), {infinity, -infinity, not_a_number, 5e-324, -5e-324, 1e308,
@@ -41,7 +41,7 @@ TEST_CASE("values are those of <cmath>, bit by bit") {
   });
 }
 
-TEST_CASE("a constant has no derivative, wherever it is") {
+TEST_CASE("functions over dual: a constant at any nesting level has no derivative") {
   for_each_function([](const std::string& name, auto f, auto, domain d, auto) {
     CAPTURE(name);
     d.inputs.insert(d.inputs.end(),

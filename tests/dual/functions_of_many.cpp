@@ -92,7 +92,7 @@ using wide = std::array<R, M>;
 
 } // namespace
 
-TEST_CASE("pow") {
+TEST_CASE("pow: values and partials of base and exponent") {
   duet_test::random_source random(11);
   auto inputs = random_inputs<2>([&](std::size_t j) {
     return j == 0 ? random.log_uniform(1e-3, 1e3) : random.uniform(-9, 9);
@@ -116,7 +116,7 @@ TEST_CASE("pow") {
       inputs);
 }
 
-TEST_CASE("atan2") {
+TEST_CASE("atan2: values and partials") {
   duet_test::random_source random(12);
   auto inputs = random_inputs<2>([&](std::size_t) { return random.signed_log_uniform(1e-4, 1e4); });
   inputs.insert(inputs.end(), {{1e-160, 1e-160},
@@ -138,7 +138,7 @@ TEST_CASE("atan2") {
       inputs);
 }
 
-TEST_CASE("hypot") {
+TEST_CASE("hypot: values and partials of two and three arguments") {
   duet_test::random_source random(13);
   const auto draw = [&](std::size_t) { return random.signed_log_uniform(1e-4, 1e4); };
   auto two = random_inputs<2>(draw);
@@ -163,7 +163,7 @@ TEST_CASE("hypot") {
       three);
 }
 
-TEST_CASE("fma and lerp") {
+TEST_CASE("fma and lerp: values and partials") {
   duet_test::random_source random(14);
   auto inputs = random_inputs<3>([&](std::size_t) { return random.signed_log_uniform(1e-3, 1e3); });
   inputs.insert(inputs.end(), {{1 + 0x1p-52, 1 - 0x1p-52, -1},
@@ -187,7 +187,7 @@ TEST_CASE("fma and lerp") {
       inputs, 4);
 }
 
-TEST_CASE("remainders") {
+TEST_CASE("fmod, remainder and remquo: values and partials") {
   duet_test::random_source random(15);
   auto inputs = random_inputs<2>([&](std::size_t j) {
     return random.signed_log_uniform(j == 0 ? 1e-3 : 1e-2, j == 0 ? 1e6 : 1e1);
@@ -235,7 +235,7 @@ void add_series(worst_error& worst, F f, double x, const std::array<R, 5>& exact
 } // namespace
 
 // By closed forms: what a difference could tell of x²/r³ beside 1/r needs more than 100 digits.
-TEST_CASE("hypot and atan2 of arguments decades apart, to the fourth derivative") {
+TEST_CASE("hypot and atan2: arguments decades apart keep their digits to the fourth derivative") {
   worst_error worst_hypot("hypot");
   worst_error worst_hypot_3("hypot of three");
   worst_error worst_atan2("atan2");
@@ -283,7 +283,7 @@ TEST_CASE("hypot and atan2 of arguments decades apart, to the fourth derivative"
   CHECK_MESSAGE(worst_mixed <= 16, worst_mixed);
 }
 
-TEST_CASE("pow with a constant exponent, to the fifth derivative") {
+TEST_CASE("pow: constant exponent to the fifth derivative") {
   worst_error worst("pow");
   duet_test::random_source random(16);
   const auto add = [&](double x, double p) {

@@ -70,17 +70,17 @@ void operator delete[](void* p) noexcept { std::free(p); }
 void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 
-TEST_CASE_TEMPLATE("functions of fixed size do not allocate", D, dual<double>, dual<double, 7>,
+TEST_CASE_TEMPLATE("functions of fixed size: no heap allocation", D, dual<double>, dual<double, 7>,
                    taylor<double, 3>, dual<dual<double>, 1, outer_tag>) {
   CHECK(allocations_of([](const D& x) { return functions(x); }, D::variable(0.5)) == 0);
 }
 
-TEST_CASE("solvers of fixed size do not allocate") {
+TEST_CASE("solvers of fixed size: no heap allocation") {
   using D = dual<double, 7>;
   CHECK(allocations_of([](const D& x) { return solutions(x); }, D::variable(0.5)) == 0);
 }
 
-TEST_CASE("the counter counts") {
+TEST_CASE("allocation counter: counts an allocation") {
   const long before = allocations;
   ::operator delete(::operator new(8)); // a new-expression may be optimised away
   CHECK(allocations == before + 1);

@@ -37,7 +37,8 @@ thrice variable_of_three(double x) { return {twice(once(x, 1), once(1)), twice(o
 
 } // namespace
 
-TEST_CASE("derivatives to the fourth order against 100 digits") {
+TEST_CASE(
+    "functions over Taylor and nested duals: derivatives to the fourth agree with 100 digits") {
   for_each_function([](const std::string& name, auto f, auto df, const domain& d, auto length) {
     worst_error worst(name);
     for (const double x : d.inputs) {
@@ -75,7 +76,7 @@ TEST_CASE("derivatives to the fourth order against 100 digits") {
   });
 }
 
-TEST_CASE("even derivatives of odd functions near 0 vanish with x") {
+TEST_CASE("odd functions: even derivatives near 0 vanish with x") {
   // f″(x) → f‴(0) x and f⁗(x) → f⁽⁵⁾(0) x, where rounding errors of order 1 would swamp them.
   struct odd {
     const char* name;

@@ -151,7 +151,7 @@ D tried(const D& x) {
   return y + norm(p + q) + log(q).x() + normalized(q).w() + inverse(p).z();
 }
 
-TEST_CASE("a level that duet does not know has all functions of duals") {
+TEST_CASE("Level: a user-defined infinitesimal number has all functions of duals") {
   for (const double at : {0.3, 1.0, 2.2}) {
     const auto known = tried(dual<double>::variable(at));
     const auto x = tried(sloped<double>(at, 1));
@@ -173,7 +173,7 @@ TEST_CASE("a level that duet does not know has all functions of duals") {
   CHECK(out.str() == "2~3");
 }
 
-TEST_CASE("its lanes, limits, matrices and parts follow") {
+TEST_CASE("Level: lanes, limits, matrices and parts of a user-defined infinitesimal number") {
   using lanes = sloped<batch<double, 4>>;
   const auto joined =
       duet::from_lanes<4>([](std::size_t i) { return sloped<double>(0.3 + double(i), 1); });
@@ -197,7 +197,7 @@ TEST_CASE("its lanes, limits, matrices and parts follow") {
   CHECK(solved[0].slope() == doctest::Approx((15 * 43.0 - 44 * 30) / (43 * 43)));
 }
 
-TEST_CASE("numbers of unequal counts of partials meet in lanes and linear equations") {
+TEST_CASE("Level: numbers of unequal counts of partials meet in lanes and linear equations") {
   using D = duet::dynamic_dual<double, 4>;
   const D x = D::variable(3, 0, 2), y = D::variable(5, 1, 2);
   Eigen::Matrix<D, 2, 2> a;

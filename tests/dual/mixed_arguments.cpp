@@ -11,7 +11,7 @@ namespace test_dual_mixed_arguments {
 
 using namespace test_support::mixed;
 
-TEST_CASE("constants mix with derivatives: functions of numbers") {
+TEST_CASE("functions of several arguments: constants mix with derivatives") {
   using std::atan2;
   using std::fdim;
   using std::fma;

@@ -4,8 +4,8 @@
 
 namespace test_dual_multiprecision {
 
-TEST_CASE("50 digits: functions") { duet_test::check_functions_over<duet_test::real_50>(); }
+TEST_CASE("dual of 50 digits: functions") { duet_test::check_functions_over<duet_test::real_50>(); }
 
-TEST_CASE("50 digits: algebra") { duet_test::check_algebra_over<duet_test::real_50>(); }
+TEST_CASE("dual of 50 digits: algebra") { duet_test::check_algebra_over<duet_test::real_50>(); }
 
 } // namespace test_dual_multiprecision

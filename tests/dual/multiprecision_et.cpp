@@ -4,11 +4,11 @@
 
 namespace test_dual_multiprecision_et {
 
-TEST_CASE("50 digits with expression templates: functions") {
+TEST_CASE("dual of 50 digits with expression templates: functions") {
   duet_test::check_functions_over<duet_test::real_50_et>();
 }
 
-TEST_CASE("50 digits with expression templates: algebra") {
+TEST_CASE("dual of 50 digits with expression templates: algebra") {
   duet_test::check_algebra_over<duet_test::real_50_et>();
 }
 

@@ -66,7 +66,7 @@ using std::abs, std::ceil, std::copysign, std::fabs, std::fdim, std::floor, std:
     std::frexp, std::ldexp, std::logb, std::modf, std::nearbyint, std::nextafter, std::nexttoward,
     std::rint, std::round, std::scalbln, std::scalbn, std::trunc;
 
-TEST_CASE("absolute value and sign") {
+TEST_CASE("abs and copysign: the derivative follows the sign") {
   const auto sign = [](double x) { return std::signbit(x) ? -1.0 : 1.0; };
   check_values([](const auto& x) { return abs(x); }, sign);
   check_values([](const auto& x) { return fabs(x); }, sign);
@@ -76,7 +76,7 @@ TEST_CASE("absolute value and sign") {
   CHECK(identical(copysign(dual<double>::variable(not_a_number), -1).value(), not_a_number));
 }
 
-TEST_CASE("rounding is flat") {
+TEST_CASE("rounding functions: derivatives are zero") {
   check_values([](const auto& x) { return floor(x); }, flat);
   check_values([](const auto& x) { return ceil(x); }, flat);
   check_values([](const auto& x) { return trunc(x); }, flat);
@@ -94,7 +94,7 @@ TEST_CASE("rounding is flat") {
   }
 }
 
-TEST_CASE("the larger, the smaller, the positive difference") {
+TEST_CASE("fmax, fmin and fdim: derivatives of the selected argument") {
   for (const double b : inputs) {
     CAPTURE(b);
     const auto slope = [&](bool of_x) { return of_x ? 1.0 : 0.0; };
@@ -112,7 +112,7 @@ TEST_CASE("the larger, the smaller, the positive difference") {
   CHECK(std::isnan(fdim(dual<double>(not_a_number, 1), 2).value()));
 }
 
-TEST_CASE("integer and fraction") {
+TEST_CASE("modf: the fraction keeps the derivatives") {
   for (const double x : inputs) {
     CAPTURE(x);
     double integer_part = 0;
@@ -126,7 +126,7 @@ TEST_CASE("integer and fraction") {
   }
 }
 
-TEST_CASE("significand and exponent") {
+TEST_CASE("frexp and ldexp: the significand keeps the derivatives") {
   for (const int e : {0, 1, -1, 10, -30, -70, 1000, -1000, 3000, -3000}) {
     CAPTURE(e);
     const auto slope = [&](double) { return std::ldexp(1.0, e); };
@@ -148,7 +148,7 @@ TEST_CASE("significand and exponent") {
   CHECK(std::isinf(ldexp(dual<double>::variable(1e300), 500).value()));
 }
 
-TEST_CASE("neighbours") {
+TEST_CASE("nextafter: the neighbour keeps the derivatives") {
   const auto x = dual<double>(1, 3);
   CHECK(nextafter(x, dual<double>(2)).value() == 1 + 0x1p-52);
   CHECK(nextafter(x, dual<double>(0)).value() == 1 - 0x1p-53);

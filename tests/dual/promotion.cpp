@@ -152,7 +152,7 @@ static_assert(std::same_as<duet::real_type_t<dual<taylor<float, 2, tag_a>, 3>>, 
 
 } // namespace
 
-TEST_CASE("a derivative dual is a scalar of the screw algebra") {
+TEST_CASE("promotion: a derivative dual is a scalar of the screw algebra") {
   const screw s(2, 3);
   const auto x = d::variable(5);
   const auto y = s * x; // (2 + 3ε)(5 + δ)
@@ -166,7 +166,7 @@ TEST_CASE("a derivative dual is a scalar of the screw algebra") {
   CHECK(z.epsilon().epsilon() == -0.75);
 }
 
-TEST_CASE("opposite orders of promotion give one number") {
+TEST_CASE("promotion: opposite orders of promotion give the same type") {
   const a x = a::variable(2);
   const bb y = bb::variable(3);
   const auto p = x * x * y;
@@ -178,7 +178,7 @@ TEST_CASE("opposite orders of promotion give one number") {
   CHECK(q.epsilon().epsilon() == 4);
 }
 
-TEST_CASE("widening keeps every part, narrowing rounds it") {
+TEST_CASE("conversion: widening keeps every part, narrowing rounds it") {
   const dual<float, 2> f = dual<float, 2>::variable(0.1F, 1);
   const dual<double, 2> wide = f;
   CHECK(wide.value() == double(0.1F));

@@ -50,7 +50,7 @@ bool same(const D& x, const Q& value, const Q& slope) {
 
 } // namespace
 
-TEST_CASE("the algebra, exactly") {
+TEST_CASE("dual of rationals: the algebra is exact") {
   const D a(Q(2, 3), Q(5, 7));
   const D b(Q(-3, 4), Q(1, 2));
   CHECK(same(a + b, Q(-1, 12), Q(17, 14)));
@@ -71,7 +71,7 @@ TEST_CASE("the algebra, exactly") {
   CHECK(c.value() == Q(4, 3));
 }
 
-TEST_CASE("N11: 1/(a + εb) = (1/a)(1 − ε b/a), and the axioms of a ring") {
+TEST_CASE("dual of rationals: N11 1/(a + εb) = (1/a)(1 − ε b/a) and the axioms of a ring") {
   for (long long p = -4; p <= 4; ++p) {
     for (long long q = 1; q <= 4; ++q) {
       const Q a(p == 0 ? 7 : p, q);
@@ -90,7 +90,7 @@ TEST_CASE("N11: 1/(a + εb) = (1/a)(1 − ε b/a), and the axioms of a ring") {
   CHECK(same(D(0, 1) * D(0, 1), 0, 0)); // ε² = 0
 }
 
-TEST_CASE("what has no inverse throws") {
+TEST_CASE("dual of rationals: division by zero throws") {
   CHECK_THROWS_AS(static_cast<void>(1 / D(0, 1)),
                   boost::bad_rational); // a zero divisor of the dual numbers
   CHECK_THROWS_AS(static_cast<void>(D(1) / D(Q(0), Q(5, 3))), boost::bad_rational);
@@ -99,7 +99,7 @@ TEST_CASE("what has no inverse throws") {
   CHECK_THROWS_AS(static_cast<void>(1 / dual<Q, 3>::variable(0, 1)), boost::bad_rational);
 }
 
-TEST_CASE("comparison looks at values, and rationals have an order") {
+TEST_CASE("dual of rationals: comparison uses values, in the order of the rationals") {
   const D a(Q(1, 2), Q(3));
   CHECK(a == Q(1, 2));
   CHECK(Q(1, 2) == a);
@@ -113,7 +113,7 @@ TEST_CASE("comparison looks at values, and rationals have an order") {
   CHECK(nested(a) >= a);
 }
 
-TEST_CASE("streams") {
+TEST_CASE("dual of rationals: output streams") {
   std::ostringstream out;
   out << D(Q(1, 2), Q(-3, 4));
   CHECK(out.str() == "1/2[-3/4]");
@@ -123,7 +123,7 @@ TEST_CASE("streams") {
   CHECK(same(a, Q(5, 6), 0));
 }
 
-TEST_CASE("derivatives of rational functions of every order, exactly") {
+TEST_CASE("dual of rationals: derivatives of rational functions of every order are exact") {
   // f = x³/(x + 1) = x² − x + 1 − 1/(x + 1)
   const auto f = [](const auto& x) { return x * x * x / (x + 1); };
   const Q x(2, 3);

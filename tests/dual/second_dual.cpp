@@ -95,7 +95,7 @@ void check_everything() {
 
 } // namespace
 
-TEST_CASE("every function of one argument") {
+TEST_CASE("second_order_dual: every function of one argument") {
   duet_test::for_each_function(
       [](const std::string& name, auto f, auto, const duet_test::domain& d, auto) {
         CAPTURE(name);
@@ -110,14 +110,14 @@ TEST_CASE("every function of one argument") {
       });
 }
 
-TEST_CASE("sums, products, quotients and functions of several arguments") {
+TEST_CASE("second_order_dual: sums, products, quotients and functions of several arguments") {
   check_everything<double, 1>();
   check_everything<double, 2>();
   check_everything<double, 9>();
   check_everything<long double, 4>();
 }
 
-TEST_CASE("structural zeros survive") {
+TEST_CASE("second_order_dual: structural zeros survive") {
   using D = second_order_dual<double, 2>;
   const D constant = 0;
   const D x = D::variable(0, 0);
@@ -132,7 +132,7 @@ TEST_CASE("structural zeros survive") {
   CHECK(root.second_partial(1, 0) == 0);
 }
 
-TEST_CASE("the square of a norm at 0 is to be computed without the norm") {
+TEST_CASE("second_order_dual: the square of a norm at 0 has no finite second derivative") {
   using D = second_order_dual<double, 2>;
   const D x = D::variable(0, 0), y = D::variable(0, 1);
   const D square = x * x + y * y;
@@ -152,7 +152,7 @@ TEST_CASE("the square of a norm at 0 is to be computed without the norm") {
   CHECK((near * near).second_partial(1, 1) == doctest::Approx(2).epsilon(1e-14));
 }
 
-TEST_CASE("inside and outside other levels") {
+TEST_CASE("second_order_dual: nests inside and outside other levels") {
   // d/dt of the Hessian of t x² y.
   const auto trace = [](auto t) {
     const auto f = [t](const auto& x) { return t * x[0] * x[0] * x[1]; };
@@ -176,7 +176,7 @@ TEST_CASE("inside and outside other levels") {
   CHECK(H(1, 1) == 0);
 }
 
-TEST_CASE("in Eigen, Stumpff functions and streams") {
+TEST_CASE("second_order_dual: works in Eigen, Stumpff functions and streams") {
   using D = second_order_dual<double, 4>;
   Eigen::Matrix<D, 2, 2> m;
   m << D::variable(4, 0), D::variable(1, 1), D::variable(2, 2), D::variable(3, 3);

@@ -225,7 +225,7 @@ void rows(const std::string& name, F f, std::initializer_list<line<M>> lines) {
 #define DUET_ROWS_2(f, ...)                                                                        \
   rows<2>(#f, [](const auto& x, const auto& y) { return f; }, {__VA_ARGS__})
 
-TEST_CASE("functions of one variable") {
+TEST_CASE("singular points: functions of one variable") {
   const double nan = not_a_number;
   DUET_ROWS_1(sqrt(x), {{0}, 0, {infinity}}, {{-0.0}, 0, {-infinity}}, {{-1}, nan, {nan}});
   DUET_ROWS_1(cbrt(x), {{0}, 0, {infinity}});
@@ -250,7 +250,7 @@ TEST_CASE("functions of one variable") {
   DUET_ROWS_1(floor(x), {{1}, 1, {0}});
 }
 
-TEST_CASE("functions of two variables") {
+TEST_CASE("singular points: functions of two variables") {
   const double nan = not_a_number;
   DUET_ROWS_2(hypot(x, y), {{0, 0}, 0, {nan, nan}}, {{0, 2}, 2, {0, 1}});
   DUET_ROWS_2(atan2(x, y), {{0, 0}, 0, {nan, nan}}, {{0, -1}, pi, {-1, 0}},
@@ -261,7 +261,7 @@ TEST_CASE("functions of two variables") {
   DUET_ROWS_2(fmod(x, y), {{1, 0}, nan, {1, nan}});
 }
 
-TEST_CASE("the nine cases of pow") {
+TEST_CASE("singular points: the nine cases of pow") {
   const double nan = not_a_number;
   DUET_ROWS_2(pow(x, y), {{2, 3}, 8, {12, 8 * ln2}}, {{2, 0}, 1, {0, ln2}}, {{0, 2}, 0, {0, 0}},
               {{0, 1}, 0, {1, 0}}, {{0, 0.5}, 0, {infinity, 0}}, {{0, 0}, 1, {0, -infinity}},
@@ -270,7 +270,7 @@ TEST_CASE("the nine cases of pow") {
               {{infinity, 0}, 1, {0, infinity}});
 }
 
-TEST_CASE("compositions") {
+TEST_CASE("singular points: compositions") {
   const double nan = not_a_number;
   DUET_ROWS_1(sqrt(x * x), {{0}, 0, {0}});
   DUET_ROWS_2(sqrt(x * x + y * y), {{0, 0}, 0, {0, 0}});
@@ -284,7 +284,7 @@ TEST_CASE("compositions") {
   DUET_ROWS_1(x * infinity, {{1}, infinity, {infinity}, nan});
 }
 
-TEST_CASE("std::max and std::min take the first of equal numbers") {
+TEST_CASE("singular points: std::max and std::min take the first of equal numbers") {
   const auto x = dual<double, 2>::variable(1, 0);
   const auto y = dual<double, 2>::variable(1, 1);
   CHECK(max(x, y).partial(0) == 1);

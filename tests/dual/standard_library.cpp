@@ -78,7 +78,8 @@ std::vector<D> three_numbers() {
 #define DUET_EVERY_NUMBER                                                                          \
   dual<double>, three, series, nested, nested_series, dual<float>, dual<long double>
 
-TEST_CASE_TEMPLATE("they are regular, ordered and swappable", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: numbers are regular, ordered and swappable", D,
+                   DUET_EVERY_NUMBER) {
   static_assert(std::regular<D>);
   static_assert(std::totally_ordered<D>);
   static_assert(std::totally_ordered_with<D, double>);
@@ -90,7 +91,7 @@ TEST_CASE_TEMPLATE("they are regular, ordered and swappable", D, DUET_EVERY_NUMB
   CHECK(is(D{}, 0, 0));
 }
 
-TEST_CASE_TEMPLATE("std::max, std::min and std::clamp of a number and a constant", D,
+TEST_CASE_TEMPLATE("standard library: max, min and clamp of a number and a constant", D,
                    DUET_EVERY_NUMBER) {
   const D x = variable<D>(2);
   CHECK(is(std::max(x * x, 3.0), 4, 4));
@@ -109,7 +110,7 @@ TEST_CASE_TEMPLATE("std::max, std::min and std::clamp of a number and a constant
   CHECK(is(std::max(x, x * x), 4, 4));
 }
 
-TEST_CASE_TEMPLATE("literals of every arithmetic type", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: literals of every arithmetic type", D, DUET_EVERY_NUMBER) {
   const D x = variable<D>(2);
   CHECK(is(3 * x + 1, 7, 3));
   CHECK(is(x * 3U - 1U, 5, 3)); // not 2³² − 1
@@ -147,7 +148,8 @@ TEST_CASE_TEMPLATE("literals of every arithmetic type", D, DUET_EVERY_NUMBER) {
   CHECK(static_cast<int>(x * 1.25) == 2);
 }
 
-TEST_CASE_TEMPLATE("the conditional operator and several returns", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: conditional operator and several return statements", D,
+                   DUET_EVERY_NUMBER) {
   const D x = variable<D>(2);
   const auto ramp = [](auto a) { return a > 0 ? a * a : 0.0; };
   CHECK(is(ramp(x), 4, 4));
@@ -183,7 +185,7 @@ TEST_CASE_TEMPLATE("the conditional operator and several returns", D, DUET_EVERY
   CHECK(is(stored(0.5), 0, 0));
 }
 
-TEST_CASE_TEMPLATE("the larger, the smaller, exchanged", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: fmax, fmin and swap", D, DUET_EVERY_NUMBER) {
   using std::max, std::min;
   D x = variable<D>(2);
   D y = x * x;
@@ -205,7 +207,7 @@ TEST_CASE_TEMPLATE("the larger, the smaller, exchanged", D, DUET_EVERY_NUMBER) {
   CHECK(is(x, 5, 0));
 }
 
-TEST_CASE_TEMPLATE("lerp and midpoint", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: lerp and midpoint", D, DUET_EVERY_NUMBER) {
   using std::lerp, std::midpoint;
   const D x = variable<D>(2);
   CHECK(is(lerp(x, x * x, 0.5), 3, 2.5));
@@ -217,7 +219,7 @@ TEST_CASE_TEMPLATE("lerp and midpoint", D, DUET_EVERY_NUMBER) {
   CHECK(is(midpoint(D(1), D(2)), 1.5, 0));
 }
 
-TEST_CASE("midpoints are those of <numeric>, bit by bit") {
+TEST_CASE("standard library: midpoints equal those of <numeric> bit by bit") {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double inputs[] = {0,      -0.0,  1,       -1,       0.1,      3e-17,     5e-324,
                            1e-310, 1e308, 1.5e308, -1.5e308, infinity, -infinity, std::nan("")};
@@ -244,7 +246,7 @@ TEST_CASE("midpoints are those of <numeric>, bit by bit") {
   }
 }
 
-TEST_CASE_TEMPLATE("sums and products of ranges", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: sums and products of ranges", D, DUET_EVERY_NUMBER) {
   const std::vector<D> v = three_numbers<D>();
   const auto first = v.begin();
   const auto last = v.end();
@@ -276,7 +278,7 @@ TEST_CASE_TEMPLATE("sums and products of ranges", D, DUET_EVERY_NUMBER) {
   CHECK(is(scanned[2], 4, 1));
 }
 
-TEST_CASE_TEMPLATE("order statistics carry their derivatives", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: order statistics carry derivatives", D, DUET_EVERY_NUMBER) {
   const std::vector<D> unsorted = three_numbers<D>();
   auto v = unsorted;
   std::sort(v.begin(), v.end());
@@ -306,7 +308,7 @@ TEST_CASE_TEMPLATE("order statistics carry their derivatives", D, DUET_EVERY_NUM
 
 // clang before 16 cannot compile the views of libstdc++.
 #if !defined(__clang__) || __clang_major__ >= 16
-TEST_CASE_TEMPLATE("views", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: views", D, DUET_EVERY_NUMBER) {
   const std::vector<D> v = three_numbers<D>();
   auto squares_above = v | std::views::transform([](const D& a) { return a * a; }) |
                        std::views::filter([](const D& a) { return a >= 1; });
@@ -320,7 +322,7 @@ TEST_CASE_TEMPLATE("views", D, DUET_EVERY_NUMBER) {
 }
 #endif
 
-TEST_CASE_TEMPLATE("containers", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: containers", D, DUET_EVERY_NUMBER) {
   const std::vector<D> v = three_numbers<D>();
   const D x = v[0];
   std::map<int, D> by_name;
@@ -343,7 +345,7 @@ TEST_CASE_TEMPLATE("containers", D, DUET_EVERY_NUMBER) {
   CHECK(std::less<>()(x, 3));
 }
 
-TEST_CASE_TEMPLATE("valarrays", D, DUET_EVERY_NUMBER) {
+TEST_CASE_TEMPLATE("standard library: valarrays", D, DUET_EVERY_NUMBER) {
   const std::vector<D> v = three_numbers<D>();
   const std::valarray<D> a(v.data(), v.size());
   CHECK(is(a.sum(), 3.5, 4.75));

@@ -33,7 +33,7 @@ struct decimal_comma : std::numpunct<char> {
 
 } // namespace
 
-TEST_CASE("numbers print with their derivatives") {
+TEST_CASE("output stream: numbers are printed with their derivatives") {
   CHECK(printed(dual<double>(1.5, -2)) == "1.5[-2]");
   CHECK(printed(dual<double, 3>::variable(1.5, 1)) == "1.5[0, 1, 0]");
   CHECK(printed(taylor<double, 2>::variable(3)) == "(3 + 1 e + 0 e^2)");
@@ -42,7 +42,7 @@ TEST_CASE("numbers print with their derivatives") {
   CHECK(printed(dual<duet_test::real_50>(0.5, 3)) == "0.5[3]");
 }
 
-TEST_CASE("format, width and fill are the stream's and count for the whole number") {
+TEST_CASE("output stream: format, width and fill apply to the complete number") {
   std::ostringstream out;
   const dual<double> x(0.1, 2);
   out << std::setprecision(3) << std::fixed << std::setw(16) << std::setfill('.') << x << "|" << x;
@@ -56,13 +56,13 @@ TEST_CASE("format, width and fill are the stream's and count for the whole numbe
   CHECK(comma.str() == "0,5[2]");
 }
 
-TEST_CASE("wide streams") {
+TEST_CASE("output stream: wide characters") {
   std::wostringstream out;
   out << std::setw(9) << dual<double>(1.5, 2) << taylor<double, 1>(2);
   CHECK(out.str() == L"   1.5[2](2 + 0 e)");
 }
 
-TEST_CASE("what is read is a constant") {
+TEST_CASE("input stream: a number that is read is a constant") {
   std::istringstream in("2.5 -1e-3 x");
   dual<double, 3> x = dual<double, 3>::variable(7, 2);
   taylor<double, 2> y = taylor<double, 2>::variable(7);

@@ -45,7 +45,7 @@ void check_pair(const pair& y, double value, double dx, double dp) {
 
 } // namespace
 
-TEST_CASE("square root at 0") {
+TEST_CASE("structural zero: square root at 0") {
   CHECK(sqrt(variable(0)).value() == 0);
   CHECK(sqrt(variable(0)).epsilon() == infinity);
   CHECK(sqrt(first(0)).partial(0) == infinity);
@@ -59,7 +59,7 @@ TEST_CASE("square root at 0") {
 }
 
 // f ^ g with both variable: the nine cases.
-TEST_CASE("power of two variables") {
+TEST_CASE("structural zero: power of two variables") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double log2 = std::log(2.0);
   check_pair(pow(first(2), second(3)), 8, 12, 8 * log2);  // 1: f > 0
@@ -74,7 +74,7 @@ TEST_CASE("power of two variables") {
   CHECK(std::isnan(pow(first(-2), second(0.5)).value())); // 9: f < 0, g not whole
 }
 
-TEST_CASE("power with constants") {
+TEST_CASE("structural zero: power with constants") {
   CHECK(pow(variable(0), 0).value() == 1);
   CHECK(pow(variable(0), 0).epsilon() == 0);
   CHECK(pow(variable(0), 0.).epsilon() == 0);
@@ -102,7 +102,7 @@ TEST_CASE("power with constants") {
   CHECK(pow(-2, D(2)).epsilon() == 0);
 }
 
-TEST_CASE("higher derivatives of powers at 0") {
+TEST_CASE("structural zero: higher derivatives of powers at 0") {
   const auto x = taylor<double, 4>::variable(0);
   const auto cube = pow(x, 3);
   CHECK(cube.coefficient(2) == 0);
@@ -126,7 +126,7 @@ TEST_CASE("higher derivatives of powers at 0") {
   CHECK_FALSE(std::isfinite(pow(nested(D(0, 1)), nested(D(1), 1)).epsilon().epsilon()));
 }
 
-TEST_CASE("hypot and atan2 at the origin") {
+TEST_CASE("structural zero: hypot and atan2 at the origin") {
   CHECK(hypot(variable(0), 0).value() == 0);
   CHECK(hypot(D(0), 0).epsilon() == 0);
   CHECK(hypot(D(0), D(0), D(0)).epsilon() == 0);
@@ -142,7 +142,7 @@ TEST_CASE("hypot and atan2 at the origin") {
   CHECK(atan2(variable(0), -2).epsilon() == -0.5);
 }
 
-TEST_CASE("inverse functions at the ends of their domains") {
+TEST_CASE("structural zero: inverse functions at the ends of their domains") {
   CHECK(acos(variable(1)).value() == 0);
   CHECK(acos(variable(1)).epsilon() == -infinity);
   CHECK(acos(D(1)).epsilon() == 0);
@@ -158,7 +158,7 @@ TEST_CASE("inverse functions at the ends of their domains") {
   CHECK(log1p(D(-1)).epsilon() == 0);
 }
 
-TEST_CASE("saturated functions are flat to every order") {
+TEST_CASE("structural zero: saturated functions are flat to every order") {
   const auto x = taylor<double, 4>::variable(800);
   for (int k = 1; k <= 4; ++k) {
     CHECK(tanh(x).coefficient(k) == 0);
@@ -177,7 +177,7 @@ TEST_CASE("saturated functions are flat to every order") {
   }
 }
 
-TEST_CASE("division by zero") {
+TEST_CASE("structural zero: division by zero") {
   CHECK((1 / variable(0)).value() == infinity);
   CHECK((1 / variable(0)).epsilon() == -infinity);
   CHECK((1 / D(0)).epsilon() == 0);
@@ -189,7 +189,7 @@ TEST_CASE("division by zero") {
   CHECK((1 / taylor<double, 3>(0)).coefficient(2) == 0);
 }
 
-TEST_CASE("what does not depend on the inner variable is not poisoned by it") {
+TEST_CASE("structural zero: parts that do not depend on the inner variable stay finite") {
   using nested = dual<D, 2, outer_tag>;
   // x = 0 varies in the outer level, y = 3 in the inner one: ∂²/∂x∂y (√x + y) = 0.
   const nested x = nested::variable(D(0), 0);
@@ -202,7 +202,7 @@ TEST_CASE("what does not depend on the inner variable is not poisoned by it") {
   CHECK(z.partial(1).epsilon() == 0);
 }
 
-TEST_CASE("in quotients no level poisons another") {
+TEST_CASE("structural zero: in quotients no nesting level affects another") {
   using nested = dual<D, 1, outer_tag>;
   const nested x = nested::variable(D(0)); // varies in the outer level only
   for (const nested& y : {1 / x, nested(1) / x, x / x, 0 / x, infinity / x, 1 / (x * 2)}) {
@@ -217,7 +217,7 @@ TEST_CASE("in quotients no level poisons another") {
   CHECK((1 / taylor<double, 2>::variable(0)).derivative(2) == infinity);
 }
 
-TEST_CASE("arithmetic constants leave infinite values alone at every level") {
+TEST_CASE("structural zero: arithmetic constants keep infinite values at every nesting level") {
   using nested = dual<D, 2, outer_tag>;
   const nested x(variable(infinity));
   for (const nested& y : {x * 2, 2 * x, x / 2, x + 1, 1 - x, -x}) {
@@ -262,7 +262,7 @@ void check_last_of() {
 
 } // namespace
 
-TEST_CASE("rows of any length keep their zeros") {
+TEST_CASE("structural zero: rows of any length keep their zeros") {
   check_last_of<2>();
   check_last_of<5>();
   check_last_of<9>();

@@ -33,7 +33,7 @@ constexpr auto part_of(const dual<T, 1, DTag>& x) {
 } // namespace
 
 // d/dx (x · d/dy (x + y)|₁)|₁ = 1. With one ε for both it is 2, as other libraries say.
-TEST_CASE("nested derivatives do not confuse their perturbations") {
+TEST_CASE("tags: nested derivatives do not confuse their perturbations") {
   const auto x = dual<double, 1, derivative_tag<my_tag>>::variable(1);
   const auto y = dual<double, 1, derivative_tag<other_tag>>::variable(1);
   const auto inner = part_of<derivative_tag<other_tag>>(x + y);
@@ -46,7 +46,7 @@ TEST_CASE("nested derivatives do not confuse their perturbations") {
 
 // The same with lambdas that really capture each other, so that the tag of the inner function
 // contains the tag of the outer one in its own name: the inner level must be outside.
-TEST_CASE("the level of an inner function nests outside the level of the outer one") {
+TEST_CASE("tags: the level of an inner function nests outside the level of the outer one") {
   const auto outer_function = [](auto x) {
     const auto inner_function = [x](auto y) { return x * y; };
     using inner_tag = derivative_tag<decltype(inner_function)>;
@@ -65,7 +65,7 @@ TEST_CASE("the level of an inner function nests outside the level of the outer o
   CHECK(result.epsilon() == 1);
 }
 
-TEST_CASE("the screw's infinitesimal is outermost") {
+TEST_CASE("tags: the screw's infinitesimal is outermost") {
   using duet::detail::is_outside;
   static_assert(is_outside<screw_tag, derivative_tag<>>());
   static_assert(!is_outside<derivative_tag<>, screw_tag>());

@@ -128,6 +128,9 @@ void target(const std::string& input) {
   std::cout.clear();
 }
 
-TEST_CASE("command lines, mutated") { duet_fuzz::run_seeded(seeds(), target, 1500); }
+TEST_CASE(
+    "command lines of examples: mutated ones are accepted correctly or rejected with a message") {
+  duet_fuzz::run_seeded(seeds(), target, 1500);
+}
 
 } // namespace test_fuzz_command_lines

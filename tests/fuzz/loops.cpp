@@ -44,6 +44,8 @@ void target(const std::string& input) {
   std::remove(path.c_str());
 }
 
-TEST_CASE("files of loops, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+TEST_CASE("loop files: mutated ones are read correctly or rejected with a message") {
+  duet_fuzz::run_seeded(seeds(), target, 2000);
+}
 
 } // namespace test_fuzz_loops

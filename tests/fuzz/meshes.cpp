@@ -101,6 +101,8 @@ void target(const std::string& input) {
   }
 }
 
-TEST_CASE("surfaces, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+TEST_CASE("mesh files: mutated ones are read correctly or rejected with a message") {
+  duet_fuzz::run_seeded(seeds(), target, 2000);
+}
 
 } // namespace test_fuzz_meshes

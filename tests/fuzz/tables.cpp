@@ -127,6 +127,8 @@ void target(const std::string& input) {
   std::remove(path.c_str());
 }
 
-TEST_CASE("tables, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+TEST_CASE("table files: mutated ones are read correctly or rejected with a message") {
+  duet_fuzz::run_seeded(seeds(), target, 2000);
+}
 
 } // namespace test_fuzz_tables

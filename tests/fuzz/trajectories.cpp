@@ -79,6 +79,8 @@ void target(const std::string& input) {
   std::remove(path.c_str());
 }
 
-TEST_CASE("recorded motion, mutated") { duet_fuzz::run_seeded(seeds(), target, 2000); }
+TEST_CASE("recordings: mutated ones are read correctly or rejected with a message") {
+  duet_fuzz::run_seeded(seeds(), target, 2000);
+}
 
 } // namespace test_fuzz_trajectories

@@ -6,6 +6,6 @@
 
 int version_of_other_file();
 
-TEST_CASE("two files that include everything link") {
+TEST_CASE("duet.hpp: two translation units that include it link") {
   CHECK(version_of_other_file() == DUET_VERSION);
 }

@@ -16,8 +16,8 @@ namespace test_interop_boost {
 using duet::quaternion;
 using duet_test::random_source;
 
-TEST_CASE_TEMPLATE("there and back without a change", T, float, double, long double,
-                   duet_test::real_50) {
+TEST_CASE_TEMPLATE("to_boost and from_boost: conversion there and back changes nothing", T, float,
+                   double, long double, duet_test::real_50) {
   const quaternion<T> q(T(1), T(2), T(3), T(4));
   const boost::math::quaternion<T> b = duet::to_boost(q);
   CHECK(b.R_component_1() == 1);
@@ -25,7 +25,7 @@ TEST_CASE_TEMPLATE("there and back without a change", T, float, double, long dou
   CHECK(duet::from_boost(b) == q);
 }
 
-TEST_CASE("products, quotients, conjugates, norms, exponentials and powers agree") {
+TEST_CASE("boost::math::quaternion: products, quotients, norms, exponentials and powers agree") {
   random_source random(1);
   const auto random_quaternion = [&] {
     return quaternion<double>(random.normal(), random.normal(), random.normal(), random.normal());

@@ -103,7 +103,7 @@ void check(const char* name, F f, std::initializer_list<double> points, wide len
 
 namespace bm = boost::math;
 
-TEST_CASE("gamma functions, at integers too") {
+TEST_CASE("Boost.Math over dual: gamma functions, also at integers") {
   check(
       "tgamma", [](auto x) { return bm::tgamma(x); },
       [](wide x) { return bm::tgamma(x) * bm::digamma(x); }, {1, 1.5, 2, 2.3, 3, 4.7, 10}, 0.5L);
@@ -133,7 +133,7 @@ TEST_CASE("gamma functions, at integers too") {
       {0.3, 0.5, 0.7}, 0.25L);
 }
 
-TEST_CASE("error functions, at 0 too") {
+TEST_CASE("Boost.Math over dual: error functions, also at 0") {
   const auto bell = [](wide x) { return 2 / std::sqrt(pi) * std::exp(-x * x); };
   check("erf", [](auto x) { return bm::erf(x); }, bell, {-1, 0, 0.1, 0.7, 2});
   check(
@@ -144,7 +144,7 @@ TEST_CASE("error functions, at 0 too") {
       [=](wide x) { return 1 / bell(bm::erf_inv(x)); }, {-0.4, 0.3, 0.6}, 0.25L);
 }
 
-TEST_CASE("Bessel functions") {
+TEST_CASE("Boost.Math over dual: Bessel functions") {
   check(
       "J0", [](auto x) { return bm::cyl_bessel_j(0, x); },
       [](wide x) { return -bm::cyl_bessel_j(1, x); }, {0.3, 1, 2.1, 5, 9, 30});
@@ -172,7 +172,7 @@ TEST_CASE("Bessel functions") {
       0.5L);
 }
 
-TEST_CASE("orthogonal polynomials") {
+TEST_CASE("Boost.Math over dual: orthogonal polynomials") {
   check(
       "P3", [](auto x) { return bm::legendre_p(3, x); },
       [](wide x) { return (15 * x * x - 3) / 2; }, {-0.5, 0, 0.3}, 0.25L);
@@ -184,7 +184,7 @@ TEST_CASE("orthogonal polynomials") {
       [](wide x) { return -bm::laguerre(3, 1, x); }, {0, 0.3, 2});
 }
 
-TEST_CASE("elliptic integrals") {
+TEST_CASE("Boost.Math over dual: elliptic integrals") {
   const auto first = [](wide k) { return bm::ellint_1(k); };
   const auto second = [](wide k) { return bm::ellint_2(k); };
   check(
@@ -202,7 +202,8 @@ TEST_CASE("elliptic integrals") {
       [](wide phi) { return std::sqrt(1 - 0.16L * std::sin(phi) * std::sin(phi)); }, {0.4, 0.9, 3});
 }
 
-TEST_CASE("zeta, exponential integral, sinc, Lambert's W, cube root, hypotenuse") {
+TEST_CASE(
+    "Boost.Math over dual: zeta, exponential integral, sinc, Lambert's W, cube root, hypotenuse") {
   check(
       "zeta", [](auto x) { return bm::zeta(x); }, {2.5, 3.2, 5.5}, 0.5L);
   check(
@@ -228,7 +229,7 @@ TEST_CASE("zeta, exponential integral, sinc, Lambert's W, cube root, hypotenuse"
 
 // Boost answers these arguments from a table or a special case, mostly by a constant. They are in
 // docs/boost.md; when this test fails with a newer Boost, so is better news.
-TEST_CASE("known faults: arguments that Boost compares with a constant") {
+TEST_CASE("Boost.Math over dual: known errors at arguments that Boost compares with a constant") {
   const auto lost = [](const D& y) { return y.epsilon() == 0; };
   const auto at = [](double x) { return D::variable(x); };
   CHECK(lost(bm::zeta(at(2))));

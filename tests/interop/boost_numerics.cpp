@@ -60,7 +60,7 @@ const double root_curvature = -2 * root / (9 * p0 * p0);
 
 } // namespace
 
-TEST_CASE("newton_raphson_iterate: the derivative lags one step behind the value") {
+TEST_CASE("newton_raphson_iterate: the derivative is one step behind the value") {
   const auto solve = [](const auto& p, double start, std::uintmax_t iterations) {
     using S = std::decay_t<decltype(p)>;
     const auto f = [&](const S& x) { return std::pair<S, S>(cubic(p)(x), 3 * x * x); };
@@ -79,7 +79,7 @@ TEST_CASE("newton_raphson_iterate: the derivative lags one step behind the value
   CHECK(z.derivative(2) == 0);
 }
 
-TEST_CASE("bracketing finders see values only; one Newton step repairs the derivative") {
+TEST_CASE("bracketing root finders: see values only; one Newton step repairs the derivative") {
   const D p = D::variable(p0);
   const auto close = [](const D& a, const D& b) { return abs(a - b) <= 4 * epsilon; };
   const auto [low, high] = tools::bisect(cubic(p), D(0.5), D(5), close);
@@ -106,7 +106,7 @@ TEST_CASE("bracketing finders see values only; one Newton step repairs the deriv
   CHECK(near(exact[2], root_curvature));
 }
 
-TEST_CASE("brent_find_minima finds the place, and the envelope theorem its slope") {
+TEST_CASE("brent_find_minima: finds the minimiser; the envelope theorem gives the derivative") {
   // min_x cosh(x − p) + p² is at x = p; the minimum is 1 + p², its slope 2p.
   const D p = D::variable(0.75);
   const auto f = [&](const D& x) { return D(cosh(x - p) + p * p); };
@@ -152,7 +152,7 @@ void check_limit(Integrate integrate, double units) {
 
 } // namespace
 
-TEST_CASE("quadrature of integrands that depend on a dual number, and over limits that do") {
+TEST_CASE("quadrature: integrands and limits may depend on a dual number") {
   const auto gauss = [](auto f, auto a, auto b) {
     return quadrature::gauss<decltype(a), 15>::integrate(f, a, b);
   };

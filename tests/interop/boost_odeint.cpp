@@ -119,7 +119,7 @@ using eigen_state = Eigen::Matrix<D, 2, 1>;
 
 } // namespace
 
-TEST_CASE("runge_kutta4 with constant steps") {
+TEST_CASE("runge_kutta4: constant steps give the sensitivities") {
   check_constant_steps<odeint::runge_kutta4<array_state>, array_state>();
   check_constant_steps<odeint::runge_kutta4<vector_state>, vector_state>();
   using odeint::range_algebra;
@@ -131,7 +131,7 @@ TEST_CASE("runge_kutta4 with constant steps") {
       odeint::runge_kutta4<eigen_state, double, eigen_state, double, range_algebra>, eigen_state>();
 }
 
-TEST_CASE("rotations and poses are states with vector_space_algebra") {
+TEST_CASE("runge_kutta4: rotations and poses are states with vector_space_algebra") {
   using odeint::vector_space_algebra;
   using rotation = duet::quaternion<D>;
   const duet::vector3<D> omega(D(0), D(0), D::variable(2, 0));
@@ -158,7 +158,7 @@ TEST_CASE("rotations and poses are states with vector_space_algebra") {
   CHECK(std::abs(duet::rotation(a).z() - std::sin(1)) <= 1e-13);
 }
 
-TEST_CASE("runge_kutta_dopri5 with step size control that looks at values") {
+TEST_CASE("runge_kutta_dopri5: step size control uses values only") {
   check_controlled_steps<odeint::runge_kutta_dopri5<array_state>, array_state>();
   check_controlled_steps<odeint::runge_kutta_dopri5<vector_state>, vector_state>();
   using stepper = odeint::runge_kutta_dopri5<eigen_state, double, eigen_state, double,
@@ -169,7 +169,7 @@ TEST_CASE("runge_kutta_dopri5 with step size control that looks at values") {
   check_controlled_steps<of_range, eigen_state>();
 }
 
-TEST_CASE("large derivatives do not change the steps") {
+TEST_CASE("runge_kutta_dopri5: large derivatives do not change the steps") {
   const auto steps_with = [](double slope) {
     array_state x{D(start), D(0)};
     x[0].set_partial(0, slope);
@@ -180,7 +180,7 @@ TEST_CASE("large derivatives do not change the steps") {
   CHECK(steps_with(1e6) == steps_with(0));
 }
 
-TEST_CASE("Taylor numbers: second sensitivities of an oscillator in closed form") {
+TEST_CASE("odeint over Taylor: second sensitivities of an oscillator agree with the closed form") {
   // ẍ = −p x: x = cos ωt, ω = √p; dx/dp = −t sin(ωt)/2ω, d²x/dp² = (t sin ωt − ωt² cos ωt)/4ω³.
   using T = duet::taylor<double, 2>;
   using state = std::vector<T>;

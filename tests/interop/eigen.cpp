@@ -29,7 +29,7 @@ quaternion<double> random_rotation(random_source& random) {
 
 } // namespace
 
-TEST_CASE("there and back without a change") {
+TEST_CASE("to_eigen and from_eigen: conversion there and back changes nothing") {
   const quaternion<double> q(1, 2, 3, 4);
   const Eigen::Quaterniond e = duet::to_eigen(q);
   CHECK(e.w() == 1);
@@ -42,7 +42,7 @@ TEST_CASE("there and back without a change") {
   CHECK(duet::from_eigen(Eigen::Map<Eigen::Quaterniond>(memory)) == q);
 }
 
-TEST_CASE("products, conjugates, matrices and rotated vectors agree") {
+TEST_CASE("Eigen::Quaternion: products, conjugates, matrices and rotated vectors agree") {
   random_source random(1);
   for (int i = 0; i < 100; ++i) {
     const auto p = random_rotation(random);
@@ -61,7 +61,7 @@ TEST_CASE("products, conjugates, matrices and rotated vectors agree") {
   }
 }
 
-TEST_CASE("axis and angle agree") {
+TEST_CASE("from_eigen: axis and angle agree with from_axis_angle") {
   random_source random(2);
   for (int i = 0; i < 100; ++i) {
     const auto d = random.direction<3>();
@@ -74,7 +74,7 @@ TEST_CASE("axis and angle agree") {
   }
 }
 
-TEST_CASE("poses and isometries act alike and convert without a change") {
+TEST_CASE("to_eigen and from_eigen: poses and isometries act alike and convert without loss") {
   const auto a = duet::pose(duet::from_rotation_vector(Eigen::Vector3d(0.4, -1, 2)),
                             Eigen::Vector3d(1, 2, -3));
   const auto b = duet::pose(duet::from_rotation_vector(Eigen::Vector3d(-2, 0.1, 0.3)),

@@ -98,7 +98,7 @@ R bessel_series(const R& nu, const R& z, int sign) {
 
 } // namespace
 
-TEST_CASE("Bessel functions") {
+TEST_CASE("special functions: Bessel functions") {
   for (const int nu : {0, 1, 2, 5}) {
     check(
         "J", [=](const auto& x) { return cyl_bessel_j(nu, x); },
@@ -159,7 +159,7 @@ TEST_CASE("Bessel functions") {
   CHECK(at_zero.derivative(3) == doctest::Approx(-0.375).epsilon(1e-15));
 }
 
-TEST_CASE("Bessel functions at and near 0, where derivatives are infinite") {
+TEST_CASE("special functions: Bessel functions at and near 0, where derivatives are infinite") {
   const double inf = std::numeric_limits<double>::infinity();
   const double nothing = 0;
   // Near 0 every one is c x^p, but for integers of the first kind: 0, ±∞ or what x^p gives.
@@ -205,7 +205,7 @@ TEST_CASE("Bessel functions at and near 0, where derivatives are infinite") {
   CHECK(cyl_bessel_j(0.5, duet::dual<double>(0)).epsilon() == 0); // a constant
 }
 
-TEST_CASE("elliptic integrals") {
+TEST_CASE("special functions: elliptic integrals") {
   // π/2 Σ ((2n)!/(4ⁿ n!²))² k²ⁿ, and the same over 1 − 2n
   const auto series = [](const R& k, bool is_second) {
     R term = pi / 2, sum = 0;
@@ -248,7 +248,7 @@ TEST_CASE("elliptic integrals") {
                  [=](const R& t) -> R { return 1 / ((1 - R(0.25) * sin(t) * sin(t)) * root(t)); });
 }
 
-TEST_CASE("exponential integral, zeta and beta") {
+TEST_CASE("special functions: exponential integral, zeta and beta") {
   check(
       "Ei", [](const auto& x) { return expint(x); }, [](double x) { return std::expint(x); },
       [](const R& x) -> R { // γ + log|x| + Σ xᵏ/(k k!)
@@ -287,7 +287,7 @@ TEST_CASE("exponential integral, zeta and beta") {
         doctest::Approx(0.35506593315177356).epsilon(1e-14));
 }
 
-TEST_CASE("zeta where its factors leave the range, and beside 0") {
+TEST_CASE("special functions: zeta near 0 and where its factors overflow") {
   using D = duet::dual<double>;
   const auto slope = [](double s) { return riemann_zeta(D::variable(s)).epsilon(); };
   CHECK(slope(50) == doctest::Approx(-std::log(2) * std::pow(2.0, -50)).epsilon(1e-8).scale(0));
@@ -305,7 +305,7 @@ TEST_CASE("zeta where its factors leave the range, and beside 0") {
   }
 }
 
-TEST_CASE("orthogonal polynomials, at the ends too") {
+TEST_CASE("special functions: orthogonal polynomials, also at the ends of their domains") {
   const auto at = {-1.0, -0.6, 0.0, 0.3, 1.0};
   check(
       "P4", [](const auto& x) { return legendre(4, x); },
@@ -340,7 +340,7 @@ TEST_CASE("orthogonal polynomials, at the ends too") {
       [](const R& x) -> R { return x * x / 2 - 3 * x + 3; }, {0, 0.3, 1});
 }
 
-TEST_CASE("associated Legendre functions of odd order at the ends") {
+TEST_CASE("special functions: associated Legendre functions of odd order at the ends") {
   using D = duet::dual<double>;
   for (const double x : {-1.0, 1.0}) {
     for (const unsigned m : {3u, 5u}) { // of (1 − x²)^(m/2)
@@ -353,7 +353,8 @@ TEST_CASE("associated Legendre functions of odd order at the ends") {
   CHECK(assoc_legendre(5, 5, duet::taylor<double, 2>::variable(1)).derivative(2) == 0);
 }
 
-TEST_CASE("associated Legendre functions of odd order have infinite derivatives at the ends") {
+TEST_CASE(
+    "special functions: associated Legendre functions of odd order, infinite derivatives at ends") {
   const double inf = std::numeric_limits<double>::infinity();
   for (const double x : {-1.0, 1.0}) {
     for (unsigned l = 1; l <= 6; ++l) {
@@ -376,7 +377,7 @@ TEST_CASE("associated Legendre functions of odd order have infinite derivatives 
   }
 }
 
-TEST_CASE("end points of domains") {
+TEST_CASE("special functions: end points of domains") {
   const double inf = std::numeric_limits<double>::infinity();
   const auto alternating = [=](int k) { return k % 2 == 0 ? inf : -inf; };
   check_all_numbers([](const auto& k) { return comp_ellint_1(k); }, 1, [=](int) { return inf; });
@@ -398,7 +399,7 @@ TEST_CASE("end points of domains") {
   CHECK(e.derivative(3) == -std::cos(pi_half));
 }
 
-TEST_CASE("spherical harmonics of orders whose factorials leave the range") {
+TEST_CASE("special functions: spherical harmonics of orders whose factorials overflow") {
   using D = duet::dual<double>;
   struct harmonic {
     unsigned l, m;
@@ -419,7 +420,7 @@ TEST_CASE("spherical harmonics of orders whose factorials leave the range") {
   CHECK(sph_legendre(3, 4, D::variable(0.7)).value() == 0);
 }
 
-TEST_CASE("functions of Boost.Math that duet has in their place") {
+TEST_CASE("special functions: sinc, Lambert's W and the like of Boost.Math are duet's") {
   for (const double x : {9.0, 1e5, 1e80, 1e155, -1e300}) { // sin x/x
     const auto y = boost::math::sinc_pi(duet::taylor<double, 2>::variable(x));
     const double s = std::sin(x) / x, c = std::cos(x) / x;
