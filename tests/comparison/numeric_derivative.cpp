@@ -13,7 +13,7 @@
 #include <cmath>
 #include <complex>
 
-// The other ways to a derivative, against dual numbers.
+// Complex steps and central differences, against dual numbers.
 
 namespace test_comparison_numeric_derivative {
 

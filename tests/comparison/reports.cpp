@@ -10,7 +10,7 @@
 #include <limits>
 #include <string>
 
-// How a comparison is printed, for people and for programs.
+// Text forms of a comparison, for people and for programs.
 
 namespace test_comparison_reports {
 
@@ -60,7 +60,7 @@ TEST_CASE("to_text of a comparison: prints as many digits as show the difference
   c.simplest = duet::counterexample{"x = 1", {1}, {1 + 0x1p-52}};
   CHECK(to_text(c).ends_with("    automatic:   1\n    closed form: 1.0000000000000002\n"));
   CHECK(to_markdown(std::array{c}).ends_with("| x = 1 | 1 | 1.0000000000000002 |\n"));
-  // What is nothing beside the largest component at ten digits is not at more.
+  // A component negligible beside the largest one at ten digits is printed at more digits.
   c.simplest = duet::counterexample{"x = 1", {1, 0}, {1, 1e-13}};
   CHECK(to_text(c).ends_with("    automatic:   (1, 0)\n    closed form: (1, 1e-13)\n"));
   // Digits that `double` does not have.

@@ -17,7 +17,7 @@
 #include <tuple>
 #include <vector>
 
-// Where compared functions are evaluated.
+// Points at which compared functions are evaluated.
 
 namespace test_comparison_samplers {
 
@@ -112,8 +112,8 @@ TEST_CASE(
 
 namespace {
 
-/// Are there points at distances from `centre` of every decade from 1e-12 to 1e-3, at both sides,
-/// as far as both are in the domain?
+/// Checks that there are points at distances from `centre` of every decade from 1e-12 to 1e-3, on
+/// both sides if both are in the domain.
 template <class Domain>
 void check_decades_near(const Domain& domain, const coordinates& centre, int sides = 2) {
   for (const std::uint64_t seed : {1, 2, 3}) {
@@ -135,7 +135,7 @@ void check_decades_near(const Domain& domain, const coordinates& centre, int sid
   }
 }
 
-/// Are there any within 1e-6 of it?
+/// Checks that there are points within 1e-6 of `centre`.
 template <class Domain>
 void check_near(const Domain& domain, const coordinates& centre) {
   const auto points = sampler(domain).points(1000, 1);
@@ -187,7 +187,7 @@ TEST_CASE("sampler: some components are zero or equal while others are not") {
 
 namespace {
 
-/// Of rotation i and j of each point, the components of q_i* q_j.
+/// The components of q_i* q_j for rotations i and j of each point.
 template <class Inputs>
 std::vector<duet::quaternion<double>> relative(const Inputs& inputs, std::size_t samples,
                                                std::size_t i, std::size_t j) {

@@ -24,7 +24,7 @@
 #include <utility>
 #include <vector>
 
-// What `compare` says of formulas that are right, wrong, wrong in one place only, or badly rounded.
+// Verdicts on formulas that are right, wrong, wrong at one point only, or badly rounded.
 
 namespace test_comparison_verdicts {
 
@@ -134,7 +134,8 @@ TEST_CASE("compare: an error at a single point is detected there") {
   const comparison c =
       compare("matrix", right, wrong_at_half_turn, sampler(rotations{}).named("q"));
   CHECK(c.outcome == verdict::disagrees);
-  CHECK(c.counts[std::size_t(verdict::disagrees)] >= 2); // about the diagonal axis, both ways
+  CHECK(c.counts[std::size_t(verdict::disagrees)] >=
+        2); // about the diagonal axis, in both directions
 }
 
 TEST_CASE("compare: digits lost by cancellation are distinguished from an error") {
@@ -188,7 +189,7 @@ TEST_CASE("compare: a result that is not finite on one side only gives not_finit
   CHECK(c.simplest->input == "x = 0");
   CHECK(c.simplest->automatic[0] == 1);
   CHECK(std::isnan(c.simplest->closed_form[0]));
-  // Not finite in both: nothing to compare.
+  // Results that are not finite on both sides are not compared.
   CHECK(compare("both", naive, naive, sampler(real_numbers{-1, 1})));
 }
 
@@ -244,7 +245,7 @@ TEST_CASE("compare: an error in a series for small arguments is detected for any
 
 namespace {
 
-/// The rotation vector of q, wrong where `where` says so.
+/// The rotation vector of q, wrong if `where` holds.
 struct wrong_logarithm {
   bool (*where)(double w, double size, const Eigen::Vector3d& v);
 
@@ -342,7 +343,7 @@ TEST_CASE("compare: near an excluded point the right formula agrees or loses dig
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     const comparison_options options = {.seed = seed};
     CHECK(compare("right", half_square_sinc{}, half_square_sinc{}, inputs, options));
-    // No digit is right in either precision, as for a slip: it is none.
+    // No digit is right in either precision, as for an error, but this is round-off.
     const comparison c =
         compare("naive", half_square_sinc{}, half_square_sinc{true}, inputs, options);
     CHECK(c.outcome == verdict::loses_precision);
@@ -388,7 +389,7 @@ TEST_CASE("compare: components that are not finite do not hide the others") {
   CHECK(c.simplest->closed_form[1] == 2);
   const auto not_finite = [](auto x) { return std::array{x / (x - x), x}; };
   CHECK(compare("nan", right, not_finite, sampler(real_numbers{})).outcome == verdict::not_finite);
-  // What is infinite in both is no scale for the others.
+  // A component that is infinite on both sides does not set the scale of the others.
   CHECK(compare("infinite", not_finite, wrong, sampler(real_numbers{})).outcome ==
         verdict::disagrees);
 }
@@ -412,7 +413,7 @@ TEST_CASE("compare: the simplest input is chosen in the order 0, 1, 2, 3, … 9,
   CHECK(simplest(-20, 20, 7.5, 8.5) == "x = 8");
   CHECK(simplest(-2, 2, 1e-5, 9.5e-5) == "x = 1e-05");
 
-  // Of equal and of nearly equal arguments.
+  // Equal and nearly equal arguments.
   const auto equal = [](auto x, auto y) { return x == y && x > 0.25 ? x + 1 : x; };
   const auto first = [](auto x, auto) { return x; };
   CHECK(compare<double>("x", first, equal, sampler(real_numbers{}, real_numbers{}))
@@ -565,7 +566,7 @@ TEST_CASE("compare: with a constant of double, a right formula agrees to the dig
   CHECK(to_text(c).find("  15 digits, compared to 6: worst error ") != std::string::npos);
   CHECK(to_text(c).find("\n  note: the first function returned float ") != std::string::npos);
 
-  // The other way round, and both.
+  // Fewer digits in the second function, and in both.
   CHECK(compare<float, double>("third", exact_third, third, sampler(real_numbers{-3, 3}))
             .note.starts_with("the second function returned float where its arguments were"));
   CHECK(compare<float, double>(
@@ -594,7 +595,7 @@ TEST_CASE("compare: with a constant of double, errors and lost digits are still 
   CHECK(slip.outcome == verdict::disagrees);
   CHECK(slip.counts[std::size_t(verdict::disagrees)] == slip.samples);
   CHECK(slip.note.starts_with("the first function returned float"));
-  // What leaves more than half of the digits may be rounding: nothing has more digits to tell.
+  // An error that leaves more than half of the digits may be round-off: no scalar has more digits.
   CHECK(compare<float, double>("small", at_zero, off_by(0x1p-15), inputs).outcome ==
         verdict::loses_precision);
   CHECK(compare<float, double>("in T", off_by(0), off_by(0x1p-15), inputs).outcome ==
@@ -605,7 +606,7 @@ TEST_CASE("compare: with a constant of double, errors and lost digits are still 
   CHECK(lost.outcome == verdict::loses_precision);
   CHECK(lost.counts[std::size_t(verdict::disagrees)] == 0);
   CHECK(lost.counts[std::size_t(verdict::loses_precision)] > 0);
-  // Where it is the shorter side that loses them.
+  // The side with fewer digits is the one that loses digits.
   const auto cancelling_at_zero = [](auto w) {
     return derivative([&](const auto& t) { return ((1 + w * (t + 1)) - (1 + w * 0.5)) / 3; }, 0.0F)
         .value;
@@ -635,7 +636,7 @@ TEST_CASE("compare: constants are judged as they are, without a note on their ty
     CHECK(c.outcome == verdict::disagrees);
     CHECK(c.counts[std::size_t(verdict::disagrees)] == c.samples);
   }
-  // A whole number has no fewer digits than it needs: it is not judged by those of another type.
+  // An integer is exact, so it is not judged by the digits of another type.
   CHECK(compare<double, real_50>(
             "1 + 1e-18", [](auto x) { return decltype(x)(x * 0 + 1 + decltype(x)(1e-18)); },
             [](auto) { return 1; }, inputs)

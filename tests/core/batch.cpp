@@ -32,7 +32,7 @@ namespace {
 
 template <class B>
 B counted(double first, double step = 1) {
-  // Unknown to the compiler, which would round functions of it in its own way.
+  // Volatile, so that the compiler does not evaluate and round functions of it itself.
   volatile double unknown = first;
   const double begin = unknown;
   return B::from_lanes([=](int i) { return typename B::value_type(begin + step * i); });
@@ -174,7 +174,7 @@ TEST_CASE("batch: sine and cosine are accurate to one ulp whatever the other lan
   using wide = duet_test::real_50;
   duet_test::random_source random(1);
   duet_test::worst_error worst("sin, cos");
-  // Unknown to the compiler, whose own sine may differ from the C library's.
+  // Volatile, because the compiler's own sine may differ from the C library's.
   volatile double unknown = 1e9;
   const double large = unknown;
   const auto check = [&](double x) {
@@ -182,7 +182,7 @@ TEST_CASE("batch: sine and cosine are accurate to one ulp whatever the other lan
     const wide s = sin(wide(x)), c = cos(wide(x));
     worst.add(duet_test::ulps(sine[1], s, wide(abs(s))), x);
     worst.add(duet_test::ulps(cosine[2], c, wide(abs(c))), x);
-    // Beside a lane that the kernel is not made for.
+    // Next to a lane beyond the range of the kernel.
     B mixed(x);
     mixed.set(3, large);
     CHECK(sin(mixed)[1] == sine[1]);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// What stands in for std::from_chars and std::to_chars of floating-point numbers where there are
-// none: the same as they give, where there are, and as is known.
+// Substitutes for std::from_chars and std::to_chars of floating-point numbers, compared with the
+// standard library if it has them, and with known results.
 
 #include <duet/core/text/from_chars.hpp>
 #include <duet/core/text/to_chars.hpp>
@@ -32,13 +32,13 @@ struct reading {
 };
 
 reading read(std::string_view text) {
-  double value = 42; // what is no number leaves it as it is
+  double value = 42; // text that is not a number leaves it unchanged
   const auto [end, error] =
       duet::detail::from_chars_by_strtod(text.data(), text.data() + text.size(), value);
   return {error, std::size_t(end - text.data()), value};
 }
 
-/// By std::from_chars, or, where there is none, by its stand-in.
+/// Reads with std::from_chars or, if the library lacks it, with the substitute.
 reading read_by_library(std::string_view text) {
   double value = 42;
   const auto [end, error] = duet::detail::from_chars(text.data(), text.data() + text.size(), value);
@@ -139,7 +139,7 @@ TEST_CASE("from_chars: numbers are read up to the first character that does not 
   CHECK(read("nan(a_1)").length == 8);
   CHECK(read("nan(-)").length == 3);
 
-  // The point may stand far from where the exponent has it.
+  // The decimal point may be far from the position that the exponent gives.
   const std::string zeros(400, '0');
   CHECK(read("0." + zeros + "125e403").value == 125);
   CHECK(read("125" + zeros + "e-402").value == 1.25);

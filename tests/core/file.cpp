@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using duet::write_file;
 
-/// A folder of its own, empty at first and gone at last.
+/// A separate folder, created empty and removed at the end.
 class playground {
 public:
   explicit playground(const char* name)
@@ -37,7 +37,7 @@ public:
   }
   ~playground() { fs::remove_all(path_); }
   [[nodiscard]] std::string at(const std::string& name) const { return path_ / name; }
-  /// How many things are in it: drafts would be counted, too.
+  /// Number of entries in the folder, drafts included.
   [[nodiscard]] auto count() const {
     return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
   }
@@ -96,7 +96,7 @@ TEST_CASE("remove_drafts: works while another thread creates and removes drafts"
     duet::remove_drafts();
   }
   other.join();
-  { // more than the list holds, and more than once: none is left in it
+  { // more drafts than the list holds; destructors then empty the list
     std::vector<std::unique_ptr<duet::file_draft>> drafts;
     for (int i = 0; i < 100; ++i) {
       drafts.push_back(std::make_unique<duet::file_draft>(folder.at("a.csv")));
@@ -143,7 +143,7 @@ TEST_CASE("file_draft: without commit the target keeps its content") {
     CHECK(content_of(draft.name()) == "second\n");
   }
   CHECK(folder.count() == 1);
-  // So does a signal that comes meanwhile.
+  // A signal before `commit` also keeps the content of the target.
   duet::file_draft draft(path);
   draft.write("second\n");
   duet::remove_drafts();
@@ -179,7 +179,7 @@ TEST_CASE("write_file: links are followed and stay links") {
   CHECK(fs::is_symlink(folder.at("link")));
   CHECK(fs::is_symlink(folder.at("far/second")));
   CHECK(content_of(folder.at("far/a.csv")) == "second\n");
-  // To a file that is not there yet.
+  // A link to a file that does not exist yet.
   fs::create_symlink(folder.at("far/new.csv"), folder.at("dangling"));
   duet::require_writable(folder.at("dangling"));
   CHECK(!fs::exists(folder.at("far/new.csv")));
@@ -187,7 +187,7 @@ TEST_CASE("write_file: links are followed and stay links") {
   CHECK(fs::is_symlink(folder.at("dangling")));
   CHECK(content_of(folder.at("far/new.csv")) == "new\n");
   CHECK(folder.count() == 3);
-  // To nowhere, and round and round.
+  // A link into a missing folder, and a circular link.
   fs::create_symlink("none/new.csv", folder.at("nowhere"));
   CHECK(message(folder.at("nowhere")) ==
         "duet: " + folder.at("nowhere") + ": cannot be written: No such file or directory");
@@ -263,7 +263,7 @@ TEST_CASE("write_files: writes both files or neither") {
   CHECK(content_of(a) == "before\n");
   CHECK(folder.count() == 3);
 
-  // The second finds a folder in its place at last.
+  // The second target is a folder by the time it is replaced.
   for (const std::string& first : {a, none, folder.at("link")}) {
     const std::string second = folder.at("late.csv");
     {

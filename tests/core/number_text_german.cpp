@@ -28,7 +28,7 @@ TEST_CASE("to_text and parse_number: the German C locale has no effect") {
   CHECK(duet::parse_number("1234.5") == 1234.5);
   CHECK_FALSE(duet::parse_number("1234,5").has_value());
 
-  // What stands in for std::from_chars and std::to_chars where there are none.
+  // The substitutes for std::from_chars and std::to_chars.
   const std::string text = "-1234.5e1,5";
   double x = 0;
   CHECK(duet::detail::from_chars_by_strtod(text.data(), text.data() + text.size(), x).ptr ==

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// What a run of three steps says.
+/// Output of a run of three steps.
 std::string said(bool is_terminal, double interval) {
   std::FILE* const file = std::tmpfile();
   {

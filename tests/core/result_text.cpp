@@ -72,7 +72,7 @@ TEST_CASE("to_text: rotations and poses alone and as fields") {
   CHECK(to_text(duet::pose(one, duet::vector3<float>(1, 2, 3))) == "(1, 0, 0, 0) at (1, 2, 3)");
   const auto far = duet::pose(normalized(rotation(1, 2, -3, 4)), Eigen::Vector3d(1e12, 3e12, 7e11));
   CHECK(to_text(far).ends_with(" at (1e+12, 3e+12, 7e+11)"));
-  // What is no pose, by the length of its real part or by the angle of its dual one.
+  // Not poses: the norm of the real part, or its angle to the dual part, is wrong.
   for (const auto& other : {duet::dual_quaternion<double>(2 * a),
                             duet::make_dual_quaternion(quarter, rotation(1, 0, 0, 0)),
                             duet::make_dual_quaternion(quarter, rotation(std::nan("")))}) {

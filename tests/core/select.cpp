@@ -45,7 +45,7 @@ TEST_CASE("select: both results are converted to their common type and keep deri
   CHECK(f(0.5) == 0.25);
 }
 
-// A mask of lanes is not a bool: it will have its own overload, not a conversion.
+// A mask of lanes is not a bool: it has a separate overload instead of a conversion.
 struct mask {
   operator bool() const { return true; }
 };

@@ -25,7 +25,7 @@ using duet_test::real_50;
 using two_lanes = duet::detail::vector_of<double, 2>;
 using all_lanes = duet::detail::vector_of<double, int(DUET_VECTOR_BYTES / sizeof(double))>;
 
-/// Of every size, and next to multiples of π/2, where all leading bits cancel.
+/// Arguments of every size, and next to multiples of π/2, where all leading bits cancel.
 std::vector<double> moderate_inputs() {
   std::vector<double> result = {0.0, 1e-300, 0x1p-1074, 0.5, 1, 799999.9, 0x1.921fb54442d18p-1};
   duet_test::random_source random(3);
@@ -68,7 +68,7 @@ void check_lanes() {
     }
     const auto y = duet::detail::vector_sine_and_cosine(x);
     const real_50 s = sin(real_50(x[1])), c = cos(real_50(x[1]));
-    // In units of the last place of this very value.
+    // The error in units of the last place of the computed value.
     const auto error = [](double computed, const real_50& exact) {
       const double unit = std::nextafter(std::abs(computed), 2.0) - std::abs(computed);
       return double(real_50(abs(real_50(computed - exact)) / unit));

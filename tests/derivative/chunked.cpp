@@ -13,7 +13,7 @@
 #include <cmath>
 #include <type_traits>
 
-// Gradients and Jacobians by many inputs, into memory of the caller.
+// Gradients and Jacobians with respect to many variables, into memory of the caller.
 
 namespace test_derivative_chunked {
 

@@ -39,7 +39,7 @@ matrix<N> random_matrix(duet_test::random_source& random) {
   return result;
 }
 
-/// With rows and columns in units of their own, of up to 1e±8.
+/// A matrix whose rows and columns have different units, of up to 1e±8.
 template <int N>
 void check_inverses() {
   duet_test::random_source random(7);
@@ -103,7 +103,7 @@ TEST_CASE("equilibrated_matrix: singular matrices are recognised") {
   CHECK(!of<2>(matrix<2>::Zero()).is_invertible());
   CHECK(of<2>(matrix<2>::Zero()).determinant() == 0);
   CHECK(!of<2>(matrix<2>::Zero()).inverse().allFinite());
-  // A row in small units is none that is missing, nor are all of them.
+  // Rows in small units do not make the matrix singular, neither one nor all of them.
   matrix<3> entries = matrix<3>::Identity();
   entries.row(1) *= 1e-200;
   CHECK(of<3>(entries).is_invertible());

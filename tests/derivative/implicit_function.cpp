@@ -186,7 +186,7 @@ TEST_CASE("implicit_solution: no solution or a singular one throws no_convergenc
   CHECK(message([](const auto& x, const auto& p) { return exp(x) * p; }, 1.0) != "");
   // A double root has no derivative.
   CHECK(message([](const auto& x, const auto& p) { return x * x * (1 + 0 * p); }, 1.0) != "");
-  // Nor has what does not depend on x, though it is solved.
+  // Residuals that vanish but do not depend on x have no derivative either.
   const auto flat = [](const auto& x, const auto& p) { return 0 * x + p - 1; };
   CHECK(message(flat, 1.0).find("met a singular Jacobian") != std::string::npos);
   CHECK(message([](const auto& x, const auto& p) { return log(x - 5) + p; }, 1.0) != "");

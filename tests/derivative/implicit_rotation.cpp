@@ -24,7 +24,7 @@ using duet::vector3;
 
 namespace {
 
-/// A rotation that turns about three axes at once, over any scalar.
+/// A rotation about three axes at once, over any scalar.
 template <class T>
 quaternion<T> motion(const T& t) {
   using std::sin;
@@ -46,7 +46,7 @@ struct orientation {
   }
 };
 
-/// A point on a turning body at a distance that makes it touch a plane: rotation and two numbers.
+/// A point on a rotating body at a distance at which it touches a plane: rotation and two numbers.
 struct contact {
   template <class X, class P>
   auto operator()(const X& unknown, const P& p) const {
@@ -68,7 +68,7 @@ TEST_CASE("implicit_solution: a rotation as unknown is differentiated to third o
     for (std::size_t k = 0; k <= 3; ++k) {
       CHECK(norm(sign * solved[k] - expected[k]) <= 1e-14 * (1 + norm(expected[k])));
     }
-    // To every order a unit: |q|² is constant.
+    // The norm is 1 to every order: |q|² is constant.
     CHECK(std::abs(squared_norm(solved[0]) - 1) <= 1e-15);
     CHECK(std::abs(dot(solved[0], solved[1])) <= 1e-15);
     CHECK(std::abs(dot(solved[0], solved[2]) + squared_norm(solved[1])) <= 1e-13);

@@ -68,7 +68,7 @@ fit random_fit(int m, int n, std::uint64_t seed = 1) {
 constexpr bool has_eigens_bits =
     !duet_test::may_fuse && EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4;
 
-/// Are x and y the same least-squares solution? Otherwise than to the last bit: by QR each solves a
+/// True if x and y are the same least-squares solution up to round-off: by QR each solves a
 /// problem whose A and b are off by mnε ‖A‖ and mnε ‖b‖, so x is by up to mnε κ (2‖x‖ + (κ + 1)
 /// ‖r‖ / ‖A‖), κ = ‖A‖‖A⁺‖ (Higham, Accuracy and Stability, theorems 20.1 and 20.3).
 bool are_same(const VectorXd& x, const VectorXd& y, const fit& f) {

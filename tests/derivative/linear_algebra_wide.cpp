@@ -142,7 +142,7 @@ TEST_CASE("solve: Hilbert systems have errors below cond(A) ε / 10") {
   }
 }
 
-// What is left of b brings the square of the condition into the error, but x is as much larger.
+// The residual of b brings the squared condition number into the error, but x is as much larger.
 TEST_CASE("least_squares: Hilbert fits have errors below 2 cond(A) ε") {
   for (const int n : {2, 3, 4}) {
     CAPTURE(n);
@@ -267,7 +267,7 @@ TEST_CASE("linear algebra: error messages print numbers of 50 digits") {
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::least_squares(a, right)),
                        "duet: least_squares: A has rank 1, less than its 2 columns",
                        duet::invalid_input);
-  // More digits than doubles have tell these rows apart.
+  // These rows differ only in digits that doubles do not have.
   wide b = a;
   b(1, 1) += real_50(1e-30);
   CHECK(duet::solve(b, right).rows() == 2);

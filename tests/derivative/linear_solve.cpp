@@ -210,7 +210,7 @@ TEST_CASE("solve: partials of variables without influence are zero") {
     CHECK(one[i].partial(0) == 0);
     CHECK(one[i].partial(1) != 0);
   }
-  // Nor are they poisoned by what is infinite.
+  // Zero partials stay zero next to infinite entries.
   const double infinity = std::numeric_limits<double>::infinity();
   const Eigen::Matrix<D, Dynamic, Dynamic> two{{D(2)}};
   const Eigen::Matrix<D, Dynamic, 1> infinite_b{{D(infinity)}};
@@ -252,7 +252,7 @@ TEST_CASE("solve: singular or invalid systems throw invalid_input") {
         "duet: solve: A is singular: pivot 2 of 3 is only round-off: 0");
   a(2, 1) = std::numeric_limits<double>::quiet_NaN();
   CHECK(message(a, b) == "duet: solve: entry (2, 1) of A is not finite");
-  // Nearly singular is another thing.
+  // A nearly singular matrix is solved.
   CHECK(message(hilbert(12), VectorXd::Ones(12).eval()) == "");
 }
 

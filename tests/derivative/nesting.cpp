@@ -10,8 +10,8 @@
 #include <array>
 #include <cmath>
 
-// Differentiation inside differentiated functions: no level may take another's infinitesimal for
-// its own.
+// Differentiation inside differentiated functions: no level may confuse another's infinitesimal
+// with its own.
 
 namespace test_derivative_nesting {
 

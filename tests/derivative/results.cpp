@@ -62,7 +62,7 @@ TEST_CASE("derivative: the result may be an Eigen vector, matrix or expression")
   CHECK(m(1, 2) == 12);
   CHECK(dm(1, 2) == 6);
 
-  // What a lambda returns may be an expression of what it holds on to.
+  // A lambda may return an expression that refers to its captures.
   const Eigen::Vector2d v(1, 2);
   const auto [e, de] = derivative(
       [&](const auto& x) {

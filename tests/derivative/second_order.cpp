@@ -12,7 +12,7 @@
 #include <cmath>
 #include <type_traits>
 
-// Parts of Hessians, against all of it and closed forms.
+// Parts of Hessians, against the complete Hessian and closed forms.
 
 namespace test_derivative_second_order {
 

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-// sparse_jacobian and sparse_hessian beside the dense ones, over structures of several kinds.
+// sparse_jacobian and sparse_hessian against the dense ones, over several kinds of patterns.
 
 namespace test_derivative_sparse {
 
@@ -21,7 +21,7 @@ using matrix = Eigen::SparseMatrix<double>;
 
 namespace {
 
-/// Which pairs of n variables meet in a term.
+/// Pairs of n variables that occur in a common term.
 struct pairs {
   int count;
   std::vector<std::pair<int, int>> met;

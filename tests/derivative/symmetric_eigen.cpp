@@ -37,7 +37,7 @@ MatrixXd random_symmetric(int n, std::uint64_t seed) {
   return a + a.transpose();
 }
 
-/// value + ε slope, in the lower triangle; above it is what must not be read.
+/// value + ε slope in the lower triangle; the entries above it must not be read.
 template <class D, int N, class Make>
 Eigen::Matrix<D, N, N> lower(const MatrixXd& value, const MatrixXd& slope, Make make) {
   Eigen::Matrix<D, N, N> a(value.rows(), value.rows());
@@ -113,7 +113,7 @@ void check(const MatrixXd& value, const MatrixXd& slope) {
   }
 }
 
-/// The largest part of order `order` and below of what must vanish: A v − λ v, VᵀV − 1.
+/// The largest part, up to order `order`, of the residuals A v − λ v and VᵀV − 1.
 template <class A, class E>
 double worst_part(const A& a, const E& e) {
   using S = typename A::Scalar;
@@ -162,8 +162,8 @@ TEST_CASE("symmetric_eigen: dynamic sizes give the same results") {
   }
 }
 
-// A = R(t) diag(1 + t, 4, 9) R(t)ᵀ with R a rotation by t about the third axis: two vectors turn
-// with unit speed.
+// A = R(t) diag(1 + t, 4, 9) R(t)ᵀ with R a rotation by t about the third axis: two vectors
+// rotate with unit speed.
 TEST_CASE("symmetric_eigen: agrees with a closed form to third order") {
   using series = taylor<double, 3>;
   const series t = series::variable(0.3);
@@ -252,13 +252,13 @@ TEST_CASE("symmetric_eigen: repeated eigenvalues throw unless A is constant") {
   a.setConstant(D(0, 1));
   CHECK(message(a) == "duet: symmetric_eigen: eigenvalues 0 and 1, both 0 with a gap of 0, have no "
                       "derivatives, as A is not constant");
-  // A gap that is only small is one: 64 ε, and vectors that turn by 1/gap.
+  // A small gap of 64 ε suffices; the vectors rotate at the rate 1/gap.
   constexpr double max_abs_difference = 64 * std::numeric_limits<double>::epsilon();
   a = Eigen::Vector3d(1, 1 + max_abs_difference, -1).asDiagonal().toDenseMatrix().cast<D>();
   a(1, 0) = D(0, 1);
   const auto v = symmetric_eigen(a).vectors.col(1).eval();
   CHECK(v[1].epsilon() * v[0].value() == doctest::Approx(-1 / max_abs_difference));
-  // Rounding keeps two eigenvalues of a full matrix apart, but not far enough to be two.
+  // Round-off separates two eigenvalues of a full matrix, but too little to count as distinct.
   for (std::uint64_t seed = 0; seed < 100; ++seed) {
     duet_test::random_source random(seed);
     const int n = random.integer(2, 12);

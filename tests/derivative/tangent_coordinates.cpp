@@ -96,7 +96,7 @@ TEST_CASE("jacobian in a frame: vectors to rotations, Euler rates and exponentia
         1e-15);
   CHECK(max_abs_difference(jacobian(exponential, vector(0, 0, 0), body).jacobian,
                            matrix::Identity()) == 0);
-  // And back: the logarithm's is the inverse.
+  // The Jacobian of the logarithm is the inverse.
   const auto logarithm = [](const auto& x) { return duet::rotation_vector(x); };
   CHECK(max_abs_difference(jacobian(logarithm, duet::from_rotation_vector(w), spatial).jacobian,
                            left_jacobian.inverse()) < 1e-14);

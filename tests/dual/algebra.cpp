@@ -138,7 +138,7 @@ static_assert(duet::scalar_traits<dual<taylor<double, 3>, 2, outer_tag>>::order 
 
 } // namespace
 
-// Run time takes another path through the packets than constant evaluation does.
+// Run time uses packets, which constant evaluation does not.
 template <class T, int N>
 void check_packed() {
   using D = dual<T, N>;

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-// Nothing is lazy: what lazy libraries make dangle or refuse to compile just works.
+// Duals are plain values: code that dangles or does not compile with lazy libraries works.
 
 namespace test_dual_eager {
 

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-// Eigen's Geometry module over duals: a frame that turns about n at unit rate has Ṙ = [n]× R.
+// Eigen's Geometry module over duals: a frame that rotates about n at unit rate has Ṙ = [n]× R.
 
 namespace test_dual_eigen_geometry {
 
@@ -109,7 +109,7 @@ TEST_CASE("Eigen geometry over dual: products of vectors") {
   CHECK(a.unitOrthogonal().dot(a).epsilon() == doctest::Approx(0).epsilon(1e-15));
 }
 
-// What the page "With Eigen" calls right: zeros, equal values, the identity and half turns.
+// Members that the page "With Eigen" lists as right: zeros, equal values, identity, half turns.
 namespace {
 
 /// Members of Eigen at structured inputs that move with t.

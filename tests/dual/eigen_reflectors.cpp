@@ -88,7 +88,7 @@ TEST_CASE("Eigen over dual: HouseholderQR has the values that it has over double
     const auto a = seeded<dual<double>, Dynamic, Dynamic>(p.a, p.a_slope);
     const MatrixXd expected = p.a.householderQr().matrixQR();
     CHECK((values(a.householderQr().matrixQR()) - expected).norm() <= 1e-14 * expected.norm());
-    // What stays triangular needs no reflectors.
+    // A matrix that stays triangular needs no reflectors.
     const MatrixXd upper = p.a.triangularView<Eigen::Upper>();
     const auto dual_upper = seeded<dual<double>, Dynamic, Dynamic>(upper, MatrixXd::Zero(n, n));
     CHECK(values(dual_upper.householderQr().matrixQR()) == upper);

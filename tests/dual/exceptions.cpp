@@ -11,8 +11,8 @@
 #include <limits>
 #include <string>
 
-// Floating-point exceptions: a quiet NaN raises none, as in <cmath>, and neither do derivatives
-// where they are finite. (Where they are not, 1/√0 divides by zero.)
+// Floating-point exceptions: a quiet NaN raises none, as in <cmath>, and neither do finite
+// derivatives. (An infinite one, such as 1/√0, divides by zero.)
 
 namespace test_dual_exceptions {
 namespace {
@@ -22,7 +22,7 @@ using duet::dual;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// What f(x…) raises. The volatile result keeps compilers from doing without it.
+/// Exceptions raised by f(x…). The volatile result keeps compilers from dropping the call.
 template <class F, class... T>
 int raised(const F& f, const T&... x) {
   std::feclearexcept(FE_ALL_EXCEPT);
@@ -34,14 +34,14 @@ int raised(const F& f, const T&... x) {
   return std::fetestexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW);
 }
 
-/// clang optimises as if nobody read flags: it turns quiet comparisons into others.
+/// clang optimises as if flags were never read: it replaces quiet comparisons by signalling ones.
 #if defined(__clang__) && defined(__OPTIMIZE__)
 constexpr bool has_flags = false;
 #else
 constexpr bool has_flags = true;
 #endif
 
-/// f raises nothing at x that it does not without derivatives.
+/// Checks that f raises no exception at x that it does not raise without derivatives.
 template <class F>
 void check(const std::string& name, const F& f, double at) {
   CAPTURE(name);

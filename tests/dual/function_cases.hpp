@@ -15,7 +15,7 @@
 
 namespace duet_test {
 
-/// Where a function is tested.
+/// Points at which a function is tested.
 struct domain {
   std::vector<double> inputs;
 

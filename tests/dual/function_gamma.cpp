@@ -61,7 +61,7 @@ TEST_CASE("gamma functions: derivatives agree with series") {
 namespace {
 
 /// ψ^(n)(x) for n = 0…6: (−1)^(n+1) n! Σ 1/(x + k)^(n+1), the terms from 60 on by Euler's and
-/// Maclaurin's formula. Nothing of what the rules do: no reflection.
+/// Maclaurin's formula. Unlike the rules it uses no reflection.
 std::array<real_100, 7> polygammas(const real_100& x) {
   std::array<real_100, 7> result{};
   real_100 z = x;

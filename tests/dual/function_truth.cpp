@@ -13,8 +13,8 @@ using duet_test::central_difference;
 using duet_test::domain;
 using duet_test::real_100;
 
-// The truth the other tests compare with must be true: derivatives by hand agree with difference
-// quotients of the functions themselves.
+// Checks the references of the other tests: derivatives by hand agree with difference quotients of
+// the functions themselves.
 TEST_CASE("function_cases: derivatives by hand agree with difference quotients") {
   duet_test::for_each_function([](const std::string& name, auto f, auto df, const domain& d,
                                   auto length) {

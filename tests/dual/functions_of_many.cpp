@@ -28,7 +28,7 @@ using std::atan2, std::fma, std::fmod, std::hypot, std::lerp, std::pow, std::rem
 namespace {
 
 /// f of M arguments: values against <cmath>, partials against `slopes` in 100 digits. One ulp is
-/// that of |f_i| + Σ_j |f_ij x_j|. Every argument in turn is also given as a constant.
+/// that of |f_i| + Σ_j |f_ij x_j|. Every argument is also passed as a constant, one at a time.
 template <std::size_t M, class F, class Slopes>
 void check(const std::string& name, F f, Slopes slopes,
            const std::vector<std::array<double, M>>& inputs, double limit = 16) {
@@ -61,7 +61,7 @@ void check(const std::string& name, F f, Slopes slopes,
       }
       for (std::size_t i = 0; i < M; ++i) {
         worst.add(ulps(y.partial(int(i)), exact[i], scales[i]), i, x[I]...);
-        // The same with the other arguments constant, which may take another path.
+        // Again with the other arguments constant, which may use other code.
         const auto alone =
             f(((void)I, I == i ? dual<double>::variable(x[I]) : dual<double>(x[I]))...);
         CHECK(alone.value() == y.value());
@@ -223,7 +223,7 @@ TEST_CASE("fmod, remainder and remquo: values and partials") {
 
 namespace {
 
-/// The derivatives along the first argument, in turn from the value's, at y: `exact[k]` to order 4.
+/// Checks the derivatives along the first argument at y, `exact[k]` up to order 4.
 template <class F>
 void add_series(worst_error& worst, F f, double x, const std::array<R, 5>& exact) {
   const auto series = f(duet::taylor<double, 4>::variable(x));
@@ -234,7 +234,7 @@ void add_series(worst_error& worst, F f, double x, const std::array<R, 5>& exact
 
 } // namespace
 
-// By closed forms: what a difference could tell of x²/r³ beside 1/r needs more than 100 digits.
+// By closed forms: differences would need more than 100 digits to resolve x²/r³ beside 1/r.
 TEST_CASE("hypot and atan2: arguments decades apart keep their digits to the fourth derivative") {
   worst_error worst_hypot("hypot");
   worst_error worst_hypot_3("hypot of three");

@@ -43,7 +43,7 @@ TEST_CASE(
     worst_error worst(name);
     for (const double x : d.inputs) {
       const real_100 wide(x);
-      // Of an even derivative that nearly vanishes a difference quotient keeps no digits.
+      // A difference quotient keeps no digits of an even derivative that nearly vanishes.
       if (x != 0 && abs(wide) < 1e-10 * length(wide)) {
         continue;
       }
@@ -57,7 +57,8 @@ TEST_CASE(
           CHECK_FALSE(std::isfinite(computed)); // infinite, or NaN from sums of infinities
           return;
         }
-        // At 0 the vanishing derivatives of odd and even functions are exact but for the quotient.
+        // At 0 the vanishing derivatives of odd and even functions are exact except for the
+        // quotient.
         const real_100 noise = x == 0 ? real_100(1e-20) : real_100(0);
         worst.add(ulps(computed, exact[k], real_100(scale(exact[k], exact[k + 1], wide) + noise)),
                   how, k, x);

@@ -18,14 +18,14 @@
 #include <sstream>
 #include <type_traits>
 
-// What an infinitesimal number has to say of itself, tried by one that duet does not know. (Its tag
-// is duet's: so duet's functions are found for it.)
+// The interface `Level`, implemented by a number defined here. (Its tag is duet's, so that duet's
+// functions are found for it.)
 
 namespace test_dual_level {
 
 using slope_tag = duet::derivative_tag<struct of_sloped>;
 
-/// x₀ + x₁ε: what dual<T, 1> is, with nothing but what `Level` asks for.
+/// x₀ + x₁ε as dual<T, 1>, with only the members that `Level` requires.
 template <class T, class Tag = slope_tag>
 class sloped : duet::detail::infinitesimal_operators<sloped<T, Tag>, T> {
 public:
@@ -139,7 +139,7 @@ static_assert(duet::Level<dual<double>> && duet::Level<dual<dual<float, 3>, 2, s
 static_assert(duet::Level<duet::dynamic_dual<double, 4>> && duet::Level<taylor<double, 3>>);
 static_assert(duet::Level<second_order_dual<double, 2>> && !duet::Level<double>);
 
-/// Functions of everything that asks levels what they are.
+/// Uses every function that depends on the interface of levels.
 template <class D>
 D tried(const D& x) {
   using std::atan2;

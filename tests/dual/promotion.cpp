@@ -9,7 +9,7 @@
 #include <concepts>
 #include <type_traits>
 
-// Which scalars meet in which nesting, and which must not meet at all.
+// The common nesting of two scalars, and scalars that must not meet at all.
 
 namespace test_dual_promotion {
 
@@ -57,7 +57,7 @@ constexpr bool meets_in() {
          CanCompare<A, B> && CanCompare<B, A>;
 }
 
-// To g++ a function that is refused is there: std::pow, in a namespace of these types.
+// g++ finds a deleted function: std::pow, in a namespace of these types.
 #ifdef __clang__
 constexpr bool deleted_functions_are_found = false;
 #else
@@ -120,7 +120,7 @@ static_assert(duet::ConstantOf<a, dual<a, 1, tag_bb>>);
 static_assert(!duet::ConstantOf<dual<a, 1, tag_bb>, a> && !duet::ConstantOf<a, a>);
 static_assert(!duet::ConstantOf<d, dual<float>>);
 
-// What can have no meaning does not compile.
+// Combinations without meaning do not compile.
 static_assert(never_meet<dual<double, 2>, dual<double, 3>>());
 static_assert(never_meet<taylor<double, 2>, taylor<double, 3>>());
 static_assert(never_meet<dual<double>, taylor<double, 1>>());
@@ -133,7 +133,7 @@ static_assert(impossible<dual<d, 1, screw_tag>, d>);
 static_assert(impossible<dual<double, 2>, dual<double, 3>>);
 static_assert(impossible<const char*, d>);
 
-// Implicit where nothing is lost, explicit where derivatives or digits are.
+// Conversions are implicit if nothing is lost, explicit if derivatives or digits are lost.
 static_assert(implicit<int, d> && implicit<double, d> && implicit<double, dual<float>>);
 static_assert(implicit<d, dual<d, 1, screw_tag>> && implicit<screw, dual<d, 1, screw_tag>>);
 static_assert(implicit<dual<float>, dual<double>> && implicit<dual<double>, dual<long double>>);

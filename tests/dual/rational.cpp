@@ -39,7 +39,7 @@ static_assert(std::same_as<promote_t<D, int>, D> && std::same_as<promote_t<Q, ne
 static_assert(std::is_convertible_v<int, D> && std::is_convertible_v<Q, D>);
 static_assert(std::is_convertible_v<Q, nested> && std::is_convertible_v<unsigned char, D>);
 
-// A fraction of binary floating point is no rational constant: nothing is truncated.
+// A floating-point number is not a rational constant, so that none is truncated.
 static_assert(!std::constructible_from<D, double> && !CanAdd<D, double> && !CanCompare<D, float>);
 static_assert(!CanAdd<dual<double>, Q> && !CanAdd<D, dual<double>>);
 static_assert(!std::constructible_from<double, D>);

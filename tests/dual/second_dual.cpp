@@ -101,7 +101,7 @@ TEST_CASE("second_order_dual: every function of one argument") {
         CAPTURE(name);
         for (const double x : d.inputs) {
           if (std::abs(x) > 1e100 || (x != 0 && std::abs(x) < 1e-100)) {
-            continue; // where the nested slopes overflow on the way
+            continue; // the nested slopes overflow in intermediate results
           }
           CAPTURE(x);
           check_same<1, double>(f(second_order_dual<double, 1>::variable(x)),
@@ -139,14 +139,14 @@ TEST_CASE("second_order_dual: the square of a norm at 0 has no finite second der
   CHECK(square.second_partial(0, 0) == 2);
   CHECK(square.second_partial(1, 1) == 2);
   CHECK(square.second_partial(0, 1) == 0);
-  // No number of two ε has this square, which is no square of a linear form: ∞, and not a wrong 0.
+  // √(x² + y²) has no second-order expansion at 0: the result is ∞, not a wrong 0.
   const D norm = sqrt(square);
   CHECK(norm.partial(0) == 0);
   CHECK(norm.second_partial(0, 0) == std::numeric_limits<double>::infinity());
   CHECK(std::isnan((norm * norm).second_partial(0, 0)));
   CHECK(std::isnan(pow(norm, 2).second_partial(1, 1)));
   CHECK((norm * norm).partial(0) == 0);
-  // Beside 0 it is right to rounding.
+  // Near 0 it is right to round-off.
   const D near = sqrt((x + 1e-90) * (x + 1e-90) + y * y);
   CHECK((near * near).second_partial(0, 0) == doctest::Approx(2).epsilon(1e-14));
   CHECK((near * near).second_partial(1, 1) == doctest::Approx(2).epsilon(1e-14));

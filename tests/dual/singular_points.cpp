@@ -60,7 +60,7 @@ bool agrees(T x, double expected) {
   return std::abs(x - T(expected)) <= 4 * std::numeric_limits<T>::epsilon() * T(abs(expected));
 }
 
-/// Are all infinitesimal parts of y what is expected?
+/// True if all infinitesimal parts of y are the expected ones.
 template <class D>
 [[gnu::noinline]] bool parts_agree(const D& y, double expected) {
   const auto part_agrees = [&](const auto& part) {
@@ -88,7 +88,7 @@ template <class D>
   return result;
 }
 
-// The checks are functions of their own: within `check_line` they would be compiled for every
+// The checks are separate functions: within `check_line` they would be compiled for every
 // function.
 
 template <class T>
@@ -135,7 +135,7 @@ template <class D, std::size_t M, class F>
   check_parts("y", y, constant);
 }
 
-/// The derivative by argument I.
+/// The derivative with respect to argument I.
 template <std::size_t I, std::size_t M, class F>
 [[gnu::noinline]] void check_variable(F f, const numbers<M>& x, double slope, double constant) {
   // Argument I is `moving`, the others are constants of type U.
@@ -182,7 +182,7 @@ template <std::size_t I, std::size_t M, class F>
   check_agrees("single.epsilon()", single.epsilon(), slope);
 }
 
-/// One line of a table: the value at x, the derivatives by every argument, and those of constants.
+/// One line of a table: value at x, derivatives with respect to every argument and of constants.
 template <std::size_t M>
 struct line {
   numbers<M> x;

@@ -23,7 +23,7 @@
 #include <valarray>
 #include <vector>
 
-// What is written for double works with dual and Taylor numbers: literals of every arithmetic type,
+// Code for double works with dual and Taylor numbers: literals of every arithmetic type,
 // the conditional operator, algorithms and containers. (std::complex: complex_of_dual.cpp.)
 
 namespace test_dual_standard_library {

@@ -69,9 +69,9 @@ TEST_CASE("structural zero: power of two variables") {
   check_pair(pow(first(0), second(0)), 1, 0, -infinity);  // 5: f = 0, g = 0: jumps in g
   CHECK(pow(first(0), second(-1)).value() == infinity);   // 6: f = 0, g < 0
   CHECK_FALSE(std::isfinite(pow(first(0), second(-1)).partial(0)));
-  check_pair(pow(first(-2), pair(2)), 4, -4, 0);          // 7: f < 0, g a whole constant
-  check_pair(pow(first(-2), second(3)), -8, 12, nan);     // 8: f < 0, g whole but variable
-  CHECK(std::isnan(pow(first(-2), second(0.5)).value())); // 9: f < 0, g not whole
+  check_pair(pow(first(-2), pair(2)), 4, -4, 0);          // 7: f < 0, g an integer constant
+  check_pair(pow(first(-2), second(3)), -8, 12, nan);     // 8: f < 0, g an integer but variable
+  CHECK(std::isnan(pow(first(-2), second(0.5)).value())); // 9: f < 0, g not an integer
 }
 
 TEST_CASE("structural zero: power with constants") {
@@ -120,7 +120,8 @@ TEST_CASE("structural zero: higher derivatives of powers at 0") {
   CHECK(mixed.epsilon().value() == std::log(4.0));
   CHECK(mixed.epsilon().epsilon() == 0.25);
   CHECK(pow(nested(D(4), 1), nested(D(0, 1))).epsilon().epsilon() == 0.25);
-  // 0^p log 0 is flat for p > 1 in the first derivative by the base, singular at p = 1.
+  // 0^p log 0 is flat for p > 1 in the first derivative with respect to the base, singular at p
+  // = 1.
   CHECK(pow(nested(D(0, 1)), nested(D(2), 1)).epsilon().epsilon() == 0);
   CHECK(pow(nested(D(0, 1)), nested(D(1), 1)).epsilon().value() == 0);
   CHECK_FALSE(std::isfinite(pow(nested(D(0, 1)), nested(D(1), 1)).epsilon().epsilon()));
@@ -231,7 +232,7 @@ TEST_CASE("structural zero: arithmetic constants keep infinite values at every n
 
 namespace {
 
-/// Of N variables the last is x; the others must not notice what happens to it.
+/// x is the last of N variables; the zeros of the others must survive its singularity.
 template <int N>
 void check_last_of() {
   using row = dual<double, N>;

@@ -6,7 +6,7 @@
 
 #include <type_traits>
 
-// Tags keep the infinitesimals of nested differentiations apart.
+// Tags distinguish the infinitesimals of nested differentiations.
 
 namespace test_dual_tags {
 
@@ -19,7 +19,7 @@ namespace {
 struct my_tag;
 struct other_tag;
 
-/// The coefficient of the ε tagged Tag, at whatever depth it stands; the other levels remain.
+/// The coefficient of the ε tagged Tag at any nesting depth; the other levels remain.
 template <class Tag, class T, class DTag>
 constexpr auto part_of(const dual<T, 1, DTag>& x) {
   if constexpr (std::is_same_v<Tag, DTag>) {
@@ -32,7 +32,7 @@ constexpr auto part_of(const dual<T, 1, DTag>& x) {
 
 } // namespace
 
-// d/dx (x · d/dy (x + y)|₁)|₁ = 1. With one ε for both it is 2, as other libraries say.
+// d/dx (x · d/dy (x + y)|₁)|₁ = 1. With one ε for both the result is 2, as in other libraries.
 TEST_CASE("tags: nested derivatives do not confuse their perturbations") {
   const auto x = dual<double, 1, derivative_tag<my_tag>>::variable(1);
   const auto y = dual<double, 1, derivative_tag<other_tag>>::variable(1);

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-// Command lines of the examples: what is accepted is within what --help says.
+// Command lines of the examples: accepted options are within the ranges that --help states.
 
 namespace test_fuzz_command_lines {
 namespace {

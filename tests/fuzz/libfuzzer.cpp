@@ -22,7 +22,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return 0;
 }
 
-// Now and then a seed takes the input's place.
+// Occasionally replaces the input by a seed.
 std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
                                     unsigned number) {
   static const std::vector<std::string> seeds = DUET_FUZZ_TARGET::seeds();

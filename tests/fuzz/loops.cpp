@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-// Files of loops: what is read is finite, what is not is told on one line.
+// Files of loops: numbers that are read are finite, errors are messages of one line.
 
 namespace test_fuzz_loops {
 

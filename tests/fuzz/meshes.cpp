@@ -13,13 +13,13 @@
 #include <string>
 #include <vector>
 
-// Surfaces: what is read are triangles of finite corners, no more of them than the file has room
-// for; what is not is told on one line.
+// Surfaces: the result consists of triangles with finite vertices, no more than the file can
+// contain; errors are messages of one line.
 
 namespace test_fuzz_meshes {
 
 std::vector<std::string> seeds() {
-  const auto word = [](unsigned x) { // least byte first
+  const auto word = [](unsigned x) { // lowest byte first
     return std::string{char(x & 0xffU), char(x >> 8 & 0xffU), char(x >> 16 & 0xffU), char(x >> 24)};
   };
   const auto binary = [&](unsigned last) {
@@ -85,8 +85,8 @@ void target(const std::string& input) {
     try {
       const auto corners = duet::read_mesh(path).corners;
       duet_fuzz::require(!corners.empty() && corners.size() % 3 == 0, "triangles");
-      // Two bytes for each further corner of a face are the least that a triangle takes; there may
-      // be instances of what COLLADA has.
+      // A triangle takes at least two bytes, for each further vertex of a face; COLLADA files may
+      // instantiate meshes repeatedly.
       duet_fuzz::require(corners.size() / 3 <= (ending == ".dae" ? 5'000'000 : input.size() / 2),
                          "in proportion to the file");
       for (const auto& x : corners) {

@@ -12,9 +12,9 @@
 #include <vector>
 
 /// \file
-/// What programs read from outside, tried with mutated inputs. Each file of this folder has
-/// `seeds()`, inputs that are right or nearly so, and `target(input)`, which throws `finding` where
-/// a promise is broken; libfuzzer.cpp makes a fuzzer of it, and the seeded loop a quick test.
+/// Tests of parsers with mutated inputs. Each file of this folder has `seeds()`, inputs that are
+/// right or nearly so, and `target(input)`, which throws `finding` if a guarantee is broken;
+/// libfuzzer.cpp makes a fuzzer of it, and the seeded loop a quick test.
 
 namespace duet_fuzz {
 
@@ -28,7 +28,7 @@ inline void require(bool is_kept, const std::string& promise) {
   }
 }
 
-/// One line, without what a terminal would obey.
+/// Requires a message of one line without terminal commands.
 inline void require_message(std::string_view message, std::string_view begin) {
   require(message.starts_with(begin), "begins with '" + std::string(begin) + "'");
   for (const char c : message) {
@@ -105,7 +105,7 @@ inline std::string mutated(std::string text, const std::vector<std::string>& see
   return text;
 }
 
-/// The seeds and so many mutated ones, always the same.
+/// Runs the seeds and `count` mutated ones, the same in every run.
 template <class Target>
 void run_seeded(const std::vector<std::string>& seeds, const Target& target, int count) {
   duet_test::random_source random(1);

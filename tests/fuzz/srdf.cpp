@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-// Pairs of links: what is read stands in the file, what is not is told on one line.
+// Pairs of links: the names that are read occur in the file, errors are messages of one line.
 
 namespace test_fuzz_srdf {
 
@@ -32,7 +32,7 @@ void target(const std::string& input) {
   std::ofstream(path, std::ios::binary) << input;
   try {
     const auto pairs = duet::read_disabled_collisions(path);
-    // `<disable_collisions link1="a" link2="b"/>` is the least that a pair takes.
+    // `<disable_collisions link1="a" link2="b"/>` is the shortest text of a pair.
     duet_fuzz::require(pairs.size() * 41 <= input.size(), "pairs of the file");
     for (const duet::link_pair& each : pairs) {
       duet_fuzz::require(!each.first.empty() && !each.second.empty() && each.first != each.second,

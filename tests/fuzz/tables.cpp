@@ -17,8 +17,7 @@
 #include <string>
 #include <vector>
 
-// Tables: what is loaded can be put a curve through and is read back as it was written, in every
-// format.
+// Tables: loaded samples can be interpolated and are read back as written, in every format.
 
 namespace test_fuzz_tables {
 namespace {

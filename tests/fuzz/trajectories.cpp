@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-// Recorded motion: rows in order, what is left out named, and read back as it was written.
+// Recorded motion: rows are in order, omitted rows are listed, and rows are read back as written.
 
 namespace test_fuzz_trajectories {
 

@@ -15,11 +15,11 @@
 #include <string>
 #include <vector>
 
-// Robot descriptions: what is read is a chain and a tree, what is not is told on one line.
+// Robot descriptions: the result is a valid chain and tree, errors are messages of one line.
 
 namespace test_fuzz_urdf {
 
-/// The first, cut from the Panda's description, is whole.
+/// The first, an excerpt of the Panda's description, is complete.
 std::vector<std::string> seeds() {
   const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>";
   const std::string joint = "<joint name=\"q\" type=\"prismatic\"><parent link=\"b\"/>"
@@ -57,10 +57,10 @@ std::vector<std::string> seeds() {
           "<axis xyz=\"0 0 -1\"/></joint></robot>"};
 }
 
-/// Rotations are rotations, places are finite.
+/// Requires rotations of unit norm and finite positions.
 void require_pose(const duet::dual_quaternion<double>& a) {
   duet_fuzz::require(std::abs(norm(duet::rotation(a)) - 1) < 1e-12, "rotations");
-  duet_fuzz::require(duet::translation(a).allFinite(), "finite places");
+  duet_fuzz::require(duet::translation(a).allFinite(), "finite positions");
 }
 
 /// \param names  of its coordinates
@@ -77,7 +77,7 @@ Eigen::VectorXd coordinates_of(const Robot& robot, const std::vector<std::string
   return q;
 }
 
-/// Calls `read`, which may say that it does not.
+/// Calls `read`, which may throw invalid_input with a valid message.
 template <class Read>
 void require_result_or_message(const Read& read) {
   try {

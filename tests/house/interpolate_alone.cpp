@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Whoever interpolates includes one header: it has every curve, every end, rotations and poses.
+// One header suffices for interpolation: it has every curve and end condition, rotations and poses.
 
 #include <duet/spline/interpolate.hpp>
 
@@ -10,7 +10,7 @@ namespace {
 
 using namespace duet;
 
-/// Every curve through rows over T, with every end.
+/// Every curve through samples over T, with every end condition.
 template <class T, class V>
 void interpolate_all(const std::vector<double>& u, const std::vector<quaternion<T>>& rows,
                      const V& v) {

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Names that the headers of systems define as macros, those of Windows above all, are nobody's
-// identifiers. What other libraries need is included before.
+// Names that system headers define as macros, above all those of Windows, are not used as
+// identifiers. Headers that other libraries need are included before.
 
 #include "everything_else.hpp"
 

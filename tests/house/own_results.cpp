@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 // No public function whose result type is deduced returns an expression of Eigen: it would refer to
-// arguments and local variables that are gone where the result is kept by `auto`.
+// arguments and local variables that are gone when `auto` keeps the result.
 
 #include <duet/duet.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace duet;
 
-/// What holds its numbers itself.
+/// Types that own their numbers.
 template <class X>
 concept Own = !detail::refers_elsewhere<X>;
 
@@ -29,7 +29,7 @@ using pose_type = dual_quaternion<double>;
 using joints = Eigen::Matrix<double, 7, 1>;
 using several = Eigen::VectorXd;
 
-// As arguments, expressions are welcome.
+// Expressions are accepted as arguments.
 void check_vectors(const vector& x, const several& y) {
   const auto twice = [](const auto& v) { return (v + v).eval(); };
   const auto [a, j] = jacobian(twice, x + x);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Formulas of all kinds, for compilers under -fsanitize=undefined: what it adds makes some
-// addresses and divisions no constants any more.
+// Formulas of all kinds, compiled with -fsanitize=undefined: with its checks some addresses and
+// divisions are no longer constants.
 
 #include <duet/expression/condition.hpp>
 #include <duet/expression/derivative.hpp>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// What small programs do, compiled with more warnings than the project's own.
+// Typical small programs, compiled with more warnings than the project uses.
 
 #include <duet/derivative/sparse.hpp>
 #include <duet/duet.hpp>

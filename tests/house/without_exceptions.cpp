@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 // Arithmetic, rotations, curves, arms and robot descriptions compile without exceptions and without
-// RTTI, and give what they are known to; errors end in the handler. See without_exceptions.cmake.
+// RTTI, and give known results; errors end in the handler. See without_exceptions.cmake.
 //
 // usage: without_exceptions [handled|unhandled|returns <error>]
 
@@ -81,7 +81,7 @@ void check_arms() {
   const auto result = inverse_kinematics(arm, goal, theta);
   check(result.reason == stop_reason::reached, "inverse kinematics");
   check((translation(arm.pose(result.joints)) - translation(goal)).norm() < 1e-6,
-        "pose of the joints found");
+        "pose of the resulting joints");
 }
 
 void check_descriptions() {

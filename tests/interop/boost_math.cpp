@@ -40,7 +40,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 constexpr wide pi = std::numbers::pi_v<wide>;
 
 /// f′ by the central difference of order 8; the step is small against the distance of x from
-/// whatever singularity there is.
+/// the nearest singularity.
 template <class F>
 wide difference(F f, wide x, wide length) {
   const wide h = length / 64;
@@ -48,7 +48,7 @@ wide difference(F f, wide x, wide length) {
   return (odd(1) * 4 / 5 - odd(2) / 5 + odd(3) * 4 / 105 - odd(4) / 280) / h;
 }
 
-/// Where f is approximated piece by piece, the pieces' slopes are a little worse than their values.
+/// If f is approximated piecewise, the derivatives are slightly less accurate than the values.
 constexpr double tolerance = 64 * epsilon;
 
 /// f‴ of a slope of order `order` − 1 by differences of order 6, to ten digits.
@@ -64,7 +64,7 @@ wide high_difference(F df, int order, wide x, wide length) {
   return (odd(1) * -488 + odd(2) * 338 - odd(3) * 72 + odd(4) * 7) / (240 * h * h * h);
 }
 
-/// f and f″ against differences, f′ against its closed form `df` where there is one, and f‴ and f⁗
+/// f and f″ against differences, f′ against its closed form `df` if there is one, and f‴ and f⁗
 /// to six digits.
 template <class F, class DF>
 void check(const char* name, F f, DF df, std::initializer_list<double> points, wide length = 1) {
@@ -92,7 +92,7 @@ void check(const char* name, F f, DF df, std::initializer_list<double> points, w
   }
 }
 
-/// The same where f′ has no closed form.
+/// As above, if f′ has no closed form.
 template <class F>
 void check(const char* name, F f, std::initializer_list<double> points, wide length = 1) {
   check(
@@ -228,7 +228,7 @@ TEST_CASE(
 }
 
 // Boost answers these arguments from a table or a special case, mostly by a constant. They are in
-// docs/boost.md; when this test fails with a newer Boost, so is better news.
+// docs/boost.md. If this test fails with a newer Boost, update that page.
 TEST_CASE("Boost.Math over dual: known errors at arguments that Boost compares with a constant") {
   const auto lost = [](const D& y) { return y.epsilon() == 0; };
   const auto at = [](double x) { return D::variable(x); };
@@ -248,7 +248,7 @@ TEST_CASE("Boost.Math over dual: known errors at arguments that Boost compares w
   const T zero = T::variable(0);
   CHECK(bm::cyl_bessel_j(0, zero).derivative(2) == 0); // −½
   CHECK(bm::cyl_bessel_i(0, zero).derivative(2) == 0); // ½
-  // Series and continued fractions end where the value is right: √(π/2x) e^−x is 6 % off.
+  // Series and continued fractions stop when the value is right: √(π/2x) e^−x is 6 % off.
   const double k = std::sqrt(double(pi)) / 2 * std::exp(-2.0); // K_½(2)
   const double third = bm::cyl_bessel_k(T(0.5), T::variable(2)).derivative(3);
   CHECK(std::abs(third + 2.546875 * k) > 0.01 * k);

@@ -93,7 +93,7 @@ TEST_CASE("bracketing root finders: see values only; one Newton step repairs the
       tools::toms748_solve(cubic(p), D(0.5), D(5), tools::eps_tolerance<D>(digits), iterations);
   CHECK(near(below.value(), root));
   CHECK(near(above.value(), root));
-  // Whatever derivative the bracket carries, it is that of its last interpolation.
+  // The derivative carried by the bracket is that of its last interpolation.
   CHECK(near(polished(D(below.value()), p).epsilon(), root_slope));
 
   const T q = T::variable(p0);
@@ -113,7 +113,7 @@ TEST_CASE("brent_find_minima: finds the minimiser; the envelope theorem gives th
   const auto [x, minimum] = tools::brent_find_minima(f, D(-1), D(2), digits / 2);
   CHECK(std::abs(x.value() - 0.75) <= 1e-7); // half the digits, as for doubles
   CHECK(near(minimum.value(), 1.5625));
-  // At the place found, as a constant, the minimum has the right slope to the digits of the place.
+  // At the minimiser, taken as a constant, the derivative of the minimum is as accurate as it is.
   CHECK(std::abs(f(D(x.value())).epsilon() - 1.5) <= 1e-7);
 }
 
@@ -141,7 +141,7 @@ void check_parameter(Integrate integrate, double units) {
   CHECK(near(s.derivative(2), area_curvature, units));
 }
 
-/// The same with the dual as the upper limit: the slope is the integrand there.
+/// The integral with the dual as upper limit: its derivative is the integrand at that limit.
 template <class Integrate>
 void check_limit(Integrate integrate, double units) {
   const D b = D::variable(1);

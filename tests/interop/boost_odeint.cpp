@@ -20,7 +20,7 @@
 #include <cmath>
 #include <vector>
 
-// Sensitivities of a pendulum's motion, ẍ = −p sin x, to p and to where it starts: by states of
+// Sensitivities of a pendulum's motion, ẍ = −p sin x, to p and to its initial angle: by states of
 // dual numbers, against the variational equations.
 
 namespace test_interop_boost_odeint {
@@ -44,7 +44,7 @@ auto pendulum(const P& p) {
   };
 }
 
-/// x, v and their derivatives by p and x₀, as six equations of plain numbers.
+/// x, v and their derivatives with respect to p and x₀, as six equations of plain numbers.
 using extended = std::array<double, 6>;
 void variational(const extended& y, extended& dy, double) {
   const double s = std::sin(y[0]);
@@ -78,7 +78,7 @@ void check(const State& x, const extended& exact, double tolerance) {
   }
 }
 
-/// The same method and steps on the extended system are the same arithmetic but for rounding.
+/// The same method and steps on the extended system are the same arithmetic except for rounding.
 template <class Stepper, class State>
 void check_constant_steps() {
   const auto p = D::variable(stiffness, 0);
@@ -96,7 +96,7 @@ void check_controlled_steps() {
   auto x = dual_start<State>();
   const auto steps = odeint::integrate_adaptive(
       odeint::make_controlled<Stepper>(tolerance, tolerance), pendulum(p), x, 0.0, end, step);
-  // As many steps as plain numbers take, and to the same place.
+  // The same number of steps and the same final state as with plain numbers.
   using plain = std::array<double, 2>;
   plain z{start, 0};
   const auto plain_steps = odeint::integrate_adaptive(
@@ -105,7 +105,7 @@ void check_controlled_steps() {
   CHECK(steps == plain_steps);
   CHECK(std::abs(x[0].value() - z[0]) <= 1e-13);
   CHECK(std::abs(x[1].value() - z[1]) <= 1e-13);
-  // The truth: the variational equations, far more accurately.
+  // Reference: the variational equations, solved far more accurately.
   extended y = extended_start;
   odeint::integrate_adaptive(
       odeint::make_controlled<odeint::runge_kutta_dopri5<extended>>(1e-14, 1e-14), variational, y,

@@ -20,7 +20,7 @@
 #include <string>
 
 // The special functions of <cmath> over Taylor numbers: values by the standard library, derivatives
-// to the third by differences of what defines the functions, integrals and series in 100 digits.
+// to the third by differences of the defining integrals and series in 100 digits.
 
 namespace test_interop_special_functions {
 namespace {
@@ -50,7 +50,7 @@ void check(const char* name, F f, Standard standard, Exact exact, std::initializ
     }
     CHECK_MESSAGE(std::abs(y.value() - standard(x)) <= 1e-13 * (std::abs(standard(x)) + 1), name);
     for (std::size_t k = 0; k <= 3; ++k) {
-      if (abs(reference[k]) < 1e-25) { // 0 but for what a difference makes of it
+      if (abs(reference[k]) < 1e-25) { // 0 except for the error of the difference
         CHECK_MESSAGE(std::abs(y.derivative(int(k))) <= 1e-14, name);
         continue;
       }
@@ -61,8 +61,8 @@ void check(const char* name, F f, Standard standard, Exact exact, std::initializ
   CHECK_MESSAGE(worst <= limit, worst);
 }
 
-/// Are f and its derivatives at x what `expected` says, in all numbers that carry them? NaN there
-/// stands for any finite number.
+/// Checks f and its derivatives at x against `expected` in all numbers that carry them. NaN in
+/// `expected` stands for any finite number.
 template <class F, class Expected>
 void check_all_numbers(F f, double x, Expected expected) {
   using D = duet::dual<double>;
@@ -109,7 +109,7 @@ TEST_CASE("special functions: Bessel functions") {
         [=](double x) { return std::cyl_bessel_i(double(nu), x); },
         [=](const R& x) { return bessel_series(nu, x, 1); }, {0.25, 1, 2.4, 7.5, 13});
   }
-  for (const double nu : {1.0 / 3, 1.5, 2.25}) { // at 1e-8 as well, where a power is all of it
+  for (const double nu : {1.0 / 3, 1.5, 2.25}) { // also at 1e-8, where the leading power dominates
     const R order = nu;
     const auto at = {1e-8, 0.25, 1.0, 7.5};
     check(
@@ -162,7 +162,7 @@ TEST_CASE("special functions: Bessel functions") {
 TEST_CASE("special functions: Bessel functions at and near 0, where derivatives are infinite") {
   const double inf = std::numeric_limits<double>::infinity();
   const double nothing = 0;
-  // Near 0 every one is c x^p, but for integers of the first kind: 0, ±∞ or what x^p gives.
+  // Near 0 all are c x^p, except for integer orders of the first kind: 0, ±∞ or the value of x^p.
   const auto check_power = [&](const auto& f, double p, bool is_negative) {
     CAPTURE(p);
     const double sign = is_negative ? -1 : 1;
@@ -171,7 +171,7 @@ TEST_CASE("special functions: Bessel functions at and near 0, where derivatives 
       factor *= k == 0 ? 1 : p + 1 - k;
       return p == k ? std::numeric_limits<double>::quiet_NaN() : p > k ? nothing : factor * inf;
     });
-    // Where x^p is in range, its derivatives have the ratios p, p(p − 1), …
+    // If x^p is in range, its derivatives have the ratios p, p(p − 1), …
     const double x = 1e-50;
     const auto y = f(duet::taylor<double, 3>::variable(x));
     CHECK(y.value() * sign > 0);
@@ -199,7 +199,7 @@ TEST_CASE("special functions: Bessel functions at and near 0, where derivatives 
   check_all_numbers([](const auto& x) { return cyl_neumann(0, x); }, 0, signs);
   check_all_numbers([](const auto& x) { return cyl_bessel_k(0, x); }, 0,
                     [&](int k) { return -signs(k); });
-  // Where values overflow, too.
+  // Also if values overflow.
   check_all_numbers([](const auto& x) { return cyl_neumann(5, x); }, 1e-100, signs);
   check_all_numbers([](const auto& x) { return sph_neumann(3, x); }, 1e-300, signs);
   CHECK(cyl_bessel_j(0.5, duet::dual<double>(0)).epsilon() == 0); // a constant
@@ -225,7 +225,7 @@ TEST_CASE("special functions: elliptic integrals") {
       [](double k) { return std::comp_ellint_2(k); }, [=](const R& k) { return series(k, true); },
       {-0.4, 0, 0.001, 0.3, 0.45});
 
-  // By φ the integrand is the derivative.
+  // The derivative with respect to φ is the integrand.
   const auto check_integral = [](const auto& f, const auto& standard, const auto& integrand) {
     for (const double phi : {0.2, 1.0, 1.4}) {
       const auto y = f(duet::taylor<double, 3>::variable(phi));
@@ -428,7 +428,7 @@ TEST_CASE("special functions: sinc, Lambert's W and the like of Boost.Math are d
     CHECK(y.derivative(1) == doctest::Approx(c - s / x).epsilon(1e-14).scale(0));
     CHECK(y.derivative(2) == doctest::Approx(-s - 2 * (c - s / x) / x).epsilon(1e-13).scale(0));
   }
-  using D = duet::dual<double>; // for which Boost has a template of its own
+  using D = duet::dual<double>; // for which Boost has a separate template
   CHECK(boost::math::sinc_pi(D::variable(0.001)).epsilon() ==
         doctest::Approx(-0.001 / 3 * (1 - 1e-7)).epsilon(1e-13).scale(0));
   using lanes = duet::batch<double, 2>;

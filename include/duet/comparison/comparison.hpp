@@ -44,7 +44,7 @@ struct worst_errors {
   double ulps = 0;     ///< largest difference in units of the last place
   std::string input{}; ///< input with the largest `ulps`
   /// number of digits compared if a function returned fewer digits than the scalar has and these
-  /// were decisive: the last place is then theirs. Otherwise 0.
+  /// were decisive: the last place is then that of the function. Otherwise 0.
   int compared_digits = 0;
 };
 

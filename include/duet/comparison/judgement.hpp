@@ -139,7 +139,8 @@ template <class Pair>
 
 /// Records in c that fewer digits were decisive, and counts errors in those.
 ///
-/// \param shorter  for every precision, as measured where it did; unchanged if it did nowhere
+/// \param shorter  for every precision, as measured for the points at which it was decisive;
+///   unchanged if there are none
 inline void count_in_shorter(comparison& c, std::span<const difference> shorter) {
   for (std::size_t k = 0; k < shorter.size(); ++k) {
     if (shorter[k].ulps_in_shorter > 1) {

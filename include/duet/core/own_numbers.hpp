@@ -9,7 +9,7 @@
 #include <utility>
 
 /// \file
-/// Distinction of objects that own their numbers from expressions that refer to those of others.
+/// Distinction of objects that own their numbers from expressions that refer to other objects.
 
 namespace Eigen {
 

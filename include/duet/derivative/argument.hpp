@@ -179,7 +179,7 @@ template <class F, class X>
     if constexpr (is_tuple<X>) {
       return !std::is_invocable_v<F&, const X&>;
     } else {
-      return false; // without a call, so that compilers come to f by f(x) alone
+      return false; // without a call, so that compilers instantiate f only by f(x)
     }
   }();
   if constexpr (takes_several) {

@@ -128,8 +128,8 @@ private:
       if (remaining.norm() <= (1 - fraction / 4) * step.norm()) {
         return false;
       }
-      // Small steps over which the Jacobian does not change, and yet no gain: the rest of the
-      // residual is round-off.
+      // Small steps over which the Jacobian does not change bring no gain: the remaining residual
+      // is round-off.
       const vector next = jacobian.solve(-residual);
       if (fraction == 1 && step.norm() <= std::sqrt(epsilon) * std::max(1.0, magnitude()) &&
           (next - remaining).norm() <= next.norm() / 2 && jacobian.is_invertible()) {

@@ -40,7 +40,7 @@ struct polar_decomposition {
   matrix u, v; ///< R₀ = u vᵀ
   R scale; ///< a power of two that brings A near 1, so that its residual keeps its digits beside 1
   Eigen::Matrix<R, N, 1> lambda; ///< λ times `scale`
-  R gap; ///< the least sum of two λ: 0 if more than one rotation is nearest
+  R gap; ///< smallest sum of two λ: 0 if the nearest rotation is not unique
   R rounding;
 
   /// The correction of R for a real residual of `polar_residual`, both as columns.

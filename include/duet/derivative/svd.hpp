@@ -54,7 +54,7 @@ struct real_svd {
   real_svd(const char* function, const A& a) {
     require(a.size() > 0, "duet: ", function, ": A is empty");
     require_finite(function, a);
-    // Zeros that make it square are rotated with nothing. Thin matrices cost compilers 7 s in
+    // Padding with zeros to a square matrix adds no rotations. Thin matrices take compilers 7 s in
     // Eigen.
     constexpr int size = rank == Eigen::Dynamic ? Eigen::Dynamic : std::max(Rows, Columns);
     using matrix = Eigen::Matrix<R, size, size>;

@@ -89,7 +89,7 @@ struct NumTraits<D> : NumTraits<duet::real_type_t<D>> {
   static constexpr D quiet_NaN() { return std::numeric_limits<D>::quiet_NaN(); }
 };
 
-/// A matrix of duals meets a matrix of doubles, or of duals below or beside it.
+/// Result scalar of a matrix of duals and a matrix of doubles or of duals of another nesting.
 template <class A, class B, class Operation>
   requires(!std::same_as<A, B> && duet::detail::MixedScalars<A, B>)
 struct ScalarBinaryOpTraits<A, B, Operation> {

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 /// \file
-/// Tags that keep infinitesimals of different meaning apart, and the common type of two scalars:
+/// Tags that distinguish infinitesimals of different meaning, and the common type of two scalars:
 /// one nesting of levels that holds both. For those who extend duet.
 
 namespace duet {

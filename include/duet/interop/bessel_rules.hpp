@@ -39,8 +39,8 @@ enum class bessel { j, y, i, k };
 
 /// 2 C_ν′ = ±C_{ν−1} ± C_{ν+1}, without a division by x.
 ///
-/// If x² is negligible beside 1, one of the two terms is the whole sum: the rest of the other, and
-/// of its derivatives, would be ∞ − ∞.
+/// If x² is negligible beside 1, one of the two terms is the complete sum: the rest of the other,
+/// and of its derivatives, would be ∞ − ∞.
 template <bessel Kind>
 struct cylinder : rule_by_boost<cylinder<Kind>> {
   static constexpr bool is_second = Kind == bessel::y || Kind == bessel::k;

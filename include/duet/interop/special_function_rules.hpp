@@ -167,7 +167,7 @@ template <class D>
   }
   const D power = pow(n, D(-s));
   if (innermost(power) == 0) {
-    return sum; // what it multiplies overflows
+    return sum; // its factor overflows
   }
   D rising = s / n; // s (s + 1) … (s + 2k − 2)/n^(2k−1)
   D tail = real(0.5) + n / (s - 1);

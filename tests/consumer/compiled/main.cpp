@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Every bit of what the library's functions return.
+// Prints every bit of the results of the library's functions.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/mechanism/loop_positions.hpp>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Prints numbers of all that vectors are in: compiled in plain C++20 it must print the same digits.
+// Prints results of all code that uses vectors: compiled in plain C++20, the digits must be equal.
 
 #include <duet/duet.hpp>
 
@@ -23,7 +23,7 @@ void print(double x) {
   }
 }
 
-/// Numbers that the compiler does not know.
+/// Numbers that are unknown at compile time.
 double unknown(double x) {
   volatile double y = x;
   return y;

@@ -2,7 +2,7 @@
 
 // expect: constant expression|non-.constexpr. function
 
-// What throws where programs run does not compile in constants.
+// An error that throws at run time does not compile in a constant expression.
 
 #include <duet/mechanism/denavit_hartenberg.hpp>
 

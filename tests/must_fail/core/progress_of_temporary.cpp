@@ -6,7 +6,7 @@
 const auto proceed = [](const duet::progress&) { return true; };
 
 #ifdef DUET_MUST_FAIL
-// What it refers to is gone when the run begins.
+// The lambda it refers to is destroyed before the run begins.
 const duet::execution how{2, [](const duet::progress&) { return true; }};
 #else
 const duet::execution how{2, proceed};

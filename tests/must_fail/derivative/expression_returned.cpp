@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 // expect: duet: a function returns an expression of Eigen
 
-// Every driver refuses functions that return expressions: they refer to variables that are gone.
+// Every driver rejects functions that return expressions: they refer to variables that are gone.
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/implicit_function.hpp>
@@ -23,7 +23,7 @@ const duet::vector3<double> x(4, 5, 6);
 
 #ifdef DUET_MUST_FAIL
 
-// With a number each, as compilers complain of a type only once.
+// Each has a number, because compilers report an error for a type only once.
 template <int>
 struct of_scalar {
   auto operator()(const auto& s) const { return t * s; }
@@ -75,7 +75,7 @@ int main() {
   static_cast<void>(mixed_hessian(square<4>(), x, t));                 // mistake
   static_cast<void>(implicit_solution(equations<0>(), x, 1.0));        // mistake
   static_cast<void>(implicit_function<1>(equations<1>(), x, 1.0));     // mistake
-  // Parts of vectors, arrays, what is inside of something, and what is tied.
+  // Parts of vectors, arrays, expressions inside containers, and tied references.
   static_cast<void>(jacobian([](const auto& y) { return y.template head<2>(); }, x)); // mistake
   static_cast<void>(jacobian([](const auto& y) { return (y + y).array(); }, x));      // mistake
   static_cast<void>(derivative([](auto s) { return std::tuple(s, t * s); }, 1.0));    // mistake

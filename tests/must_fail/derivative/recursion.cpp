@@ -3,8 +3,8 @@
 
 #include <duet/derivative/derivative.hpp>
 
-// The n-th derivative of x³ by recursion through one function type: the levels cannot be told
-// apart.
+// The n-th derivative of x³ by recursion through one function type: the levels cannot be
+// distinguished.
 #ifdef DUET_MUST_FAIL
 struct slope {
   template <class T>

@@ -9,7 +9,7 @@ using real_50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_flo
                                               boost::multiprecision::et_off>;
 using number = duet::dual<real_50>;
 
-// The standard library has π of 36 digits in it.
+// The standard library's arcsine uses π of 36 digits.
 #ifdef DUET_MUST_FAIL
 auto arcsine(const std::complex<number>& z) { return std::asin(z); }
 #else

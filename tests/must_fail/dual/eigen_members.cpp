@@ -11,7 +11,7 @@
 using D = duet::dual<double>;
 using matrix = Eigen::Matrix<D, 3, 3>;
 
-// Members of Eigen that use what is refused.
+// Members of Eigen that use rejected decompositions.
 #if DUET_MUST_FAIL == 1
 auto f(const Eigen::Transform<D, 3, Eigen::Affine>& t) { return matrix(t.rotation()); }
 #elif DUET_MUST_FAIL == 2

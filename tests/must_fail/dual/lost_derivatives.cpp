@@ -3,7 +3,7 @@
 
 #include <duet/dual/math.hpp>
 
-// A dual does not become a double by itself: derivatives would be lost unnoticed.
+// A dual does not convert to a double implicitly: derivatives would be lost unnoticed.
 const duet::dual<double> x(1, 2);
 #ifdef DUET_MUST_FAIL
 const double y = x;

@@ -2,7 +2,7 @@
 // expect: duet: this type has no tangent coordinates
 // flags: -Wall -Wno-ignored-attributes
 
-// What few headers lead to (which is why this has flags of its own: nothing is precompiled for it).
+// Needs few headers only, so separate flags keep the precompiled header out.
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>

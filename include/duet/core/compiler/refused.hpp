@@ -4,9 +4,9 @@
 #include <duet/core/config.hpp>
 
 /// \file
-/// Overloads that catch mistakes: compilers choose them if no other fits, and print a remedy for
-/// that line first. (A failed static_assert in a header is reported after the path by which the
-/// header was included.)
+/// Overloads that catch mistakes: compilers choose them if no other overload fits, and first print
+/// a remedy for the line of the mistake. (A failed static_assert in a header is reported after the
+/// path by which the header was included.)
 
 /// Precedes a declaration whose use is a mistake. It has no body, and a result of the expected
 /// type, as far as it is known: otherwise compilers first report that the result cannot be used, as

@@ -72,7 +72,7 @@ public:
     }
   }
 
-  /// Its rows, at least one, in order.
+  /// Rows of the file, at least one, in order.
   [[nodiscard]] const std::vector<csv_row>& rows() const { return rows_; }
   /// Names of the columns, empty if the file has none: rows are in the order of the file, so check
   /// the names if you rely on another order.

@@ -51,7 +51,7 @@ template <std::floating_point T>
   std::snprintf(buffer, sizeof buffer, "%.*Le", count - 1, static_cast<long double>(x));
   decimal_digits result;
   const char* at = buffer;
-  for (; *at != 'e'; ++at) { // whatever the locale writes for the point
+  for (; *at != 'e'; ++at) { // skips the decimal point of any locale
     if (*at >= '0' && *at <= '9') {
       result.digits += *at;
     }
@@ -68,8 +68,8 @@ template <std::floating_point T>
     if (count >= std::numeric_limits<T>::max_digits10 || result.spells(x)) {
       return result;
     }
-    // Above a power of two numbers are twice as far apart as below: a text farther from it may be
-    // valid if a nearer one is not. (After a 9 it has fewer digits, and was checked.)
+    // The spacing of numbers above a power of two is twice that below: a text farther from it may
+    // be valid if a nearer one is not. (After a 9 it has fewer digits, and was checked.)
     if (result.digits.back() != '9') {
       ++result.digits.back();
       if (result.spells(x)) {

@@ -9,8 +9,8 @@
 #include <cmath>
 
 /// \file
-/// Lifts the rule of a function to the function over infinitesimal numbers; and sin x with cos x,
-/// both of which are needed by each derivative.
+/// Lifts the rule of a function to the function over infinitesimal numbers, and sin x together with
+/// cos x, as each derivative needs both.
 
 namespace duet::rule {
 
