@@ -117,7 +117,7 @@ TEST_CASE("zero divisors have no inverse and no direction") {
   const dual_quaternion divisor =
       make_dual_quaternion(quaternion(0, 0, 0, 0), quaternion(1, 2, 3, 4));
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::inverse(divisor)),
-                       "duet: inverse of the zero quaternion", duet::invalid_input);
+                       "duet: inverse: the quaternion is zero", duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(duet::normalized(divisor)), duet::invalid_input);
 }
 

@@ -181,10 +181,12 @@ TEST_CASE("derivatives to third order, against 50-digit differences of 50-digit 
 TEST_CASE("what has no mean") {
   const std::vector<rotation> q = {rotation(1, 0, 0, 0), rotation(0, 1, 0, 0)};
   CHECK(message(std::vector<rotation>(), {}) == "duet: average: there are no elements");
-  CHECK(message(q, {1}) == "duet: average: 1 weights for 2 elements");
-  CHECK(message(q, {1, -2}) == "duet: average: weight 1 is -2, not a number from 0 up");
-  CHECK(message(q, {1, NAN}) == "duet: average: weight 1 is nan, not a number from 0 up");
-  CHECK(message(q, {0, 0}) == "duet: average: all weights are 0");
+  CHECK(message(q, {1}) ==
+        "duet: average: 1 weights for 2 elements (expected as many weights as elements)");
+  CHECK(message(q, {1, -2}) == "duet: average: weight 1 is -2 (expected a finite number >= 0)");
+  CHECK(message(q, {1, NAN}) == "duet: average: weight 1 is nan (expected a finite number >= 0)");
+  CHECK(message(q, {0, 0}) ==
+        "duet: average: all weights are 0 (expected at least one positive weight)");
 }
 
 TEST_CASE("weights count in proportion, however large or small") {

@@ -43,8 +43,10 @@ TEST_CASE("the distance is a metric that knows no fixed frame") {
   const auto b = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 1.1), vector(1, 2, 4));
   CHECK(distance(a, b, 10.0) == doctest::Approx(std::sqrt(1 + 64)).epsilon(1e-15));
   CHECK(distance(a, b, 0.0) == doctest::Approx(1).epsilon(1e-15));
-  CHECK_THROWS_WITH_AS(static_cast<void>(distance(a, b, -1)),
-                       "duet: distance: length is -1, not a number from 0 up", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(distance(a, b, -1)),
+      "duet: distance: characteristic_length is -1 (expected a finite number >= 0)",
+      duet::invalid_input);
 }
 
 TEST_CASE("distances whose squares overflow, and the nearest place among such") {

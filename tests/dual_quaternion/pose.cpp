@@ -145,7 +145,7 @@ TEST_CASE("matrices that are no poses") {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m(3, 0) = 0.5;
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::from_transform_matrix(m)),
-                       "duet: from_transform_matrix: the last row is 0.5 0 0 1, not 0 0 0 1",
+                       "duet: from_transform_matrix: the last row is 0.5 0 0 1 (expected 0 0 0 1)",
                        duet::invalid_input);
   m(3, 0) = 0;
   m(0, 0) = 2;
@@ -165,9 +165,10 @@ TEST_CASE("a rotation matrix and a translation") {
 
 TEST_CASE("a rotation that is no unit makes no pose, which would scale what it carries") {
   const vector t(1, 2, 3);
-  CHECK_THROWS_WITH_AS(static_cast<void>(duet::pose(duet::quaternion<double>(2), t)),
-                       "duet: pose: the rotation (2, 0, 0, 0) is no unit quaternion: normalized(q)",
-                       duet::invalid_input);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(duet::pose(duet::quaternion<double>(2), t)),
+      "duet: pose: the rotation (2, 0, 0, 0) is not a unit quaternion (use normalized(q))",
+      duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(duet::pose(duet::quaternion<double>(), t)),
                   duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(duet::pose(duet::quaternion<double>(.707, .707, 0, 0), t)),

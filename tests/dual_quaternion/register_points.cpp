@@ -154,10 +154,11 @@ TEST_CASE("sets that determine no rotation are rejected") {
   CHECK(message(octahedron, octahedron, {1, 1, 0, 0, 0, 0}).find(undetermined) == 0);
   CHECK(message(MatrixXd(3, 0), MatrixXd(3, 0)) == "duet: register_points: there are no elements");
   CHECK(message(octahedron, square) ==
-        "duet: register_points: 6 points cannot be registered with 4");
-  CHECK(message(MatrixXd(2, 4), square) ==
-        "duet: register_points: points are columns of three rows, not of 2 and 3");
-  CHECK(message(octahedron, octahedron, {1}) == "duet: register_points: 1 weights for 6 elements");
+        "duet: register_points: the sets have 6 and 4 points (expected equal numbers)");
+  CHECK(message(MatrixXd(2, 4), square) == "duet: register_points: the matrices have 2 and 3 rows "
+                                           "(expected 3 rows: points are columns)");
+  CHECK(message(octahedron, octahedron, {1}) ==
+        "duet: register_points: 1 weights for 6 elements (expected as many weights as elements)");
   MatrixXd infinite = square;
   infinite(1, 2) = std::numeric_limits<double>::infinity();
   CHECK(message(square, infinite) == "duet: register_points: entry (1, 2) of A is not finite");

@@ -37,7 +37,7 @@ function(expect_end how error fails output_regex error_regex)
   endif()
 endfunction()
 foreach(case IN ITEMS
-    "zero:duet: normalized of the zero quaternion"
+    "zero:duet: normalized: the quaternion is zero"
     "row:duet: spline evaluated at 9, outside its domain [^\n]*"
     "joints:duet: a chain of 7 moving joints, but 2 coordinates"
     "file:duet: without_exceptions.urdf:2: mismatched tag, in <link> of line 1")
@@ -49,4 +49,4 @@ foreach(case IN ITEMS
 endforeach()
 
 # A handler that returns does not make the program go on. (What it wrote may be lost in std::abort.)
-expect_end(returns zero TRUE "(handled: [^\n]*\n)?" "duet: normalized of the zero quaternion\n")
+expect_end(returns zero TRUE "(handled: [^\n]*\n)?" "duet: normalized: the quaternion is zero\n")

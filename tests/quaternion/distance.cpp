@@ -66,7 +66,7 @@ TEST_CASE("the angle between rotations, of whatever sign") {
   CHECK(distance(start, start) == 0);
   CHECK(distance(start, -start) == 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(distance(start, quaternion())),
-                       "duet: distance of the zero quaternion", duet::invalid_input);
+                       "duet: distance: the quaternion is zero", duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(squared_distance(quaternion(), start)), duet::invalid_input);
 }
 

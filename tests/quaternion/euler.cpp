@@ -330,9 +330,9 @@ TEST_CASE("rates of the angles do not depend on the norm, however far from 1") {
 
 TEST_CASE("the zero quaternion has no angles") {
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::euler<duet::zyx>(quaternion<double>())),
-                       "duet: euler of the zero quaternion", duet::invalid_input);
+                       "duet: euler: the quaternion is zero", duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::euler<duet::zxz>(quaternion<duet::dual<double>>())),
-                       "duet: euler of the zero quaternion", duet::invalid_input);
+                       "duet: euler: the quaternion is zero", duet::invalid_input);
 }
 
 // The value at gimbal lock is right; derivatives there do not exist.

@@ -129,13 +129,13 @@ TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives ar
 
 TEST_CASE("the zero quaternion has no logarithm, no power, no direction and no inverse") {
   const quaternion<double> zero;
-  CHECK_THROWS_WITH_AS(static_cast<void>(log(zero)), "duet: log of the zero quaternion",
+  CHECK_THROWS_WITH_AS(static_cast<void>(log(zero)), "duet: log: the quaternion is zero",
                        duet::invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(pow(zero, 2)), "duet: pow of the zero quaternion",
+  CHECK_THROWS_WITH_AS(static_cast<void>(pow(zero, 2)), "duet: pow: the quaternion is zero",
                        duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(normalized(zero)),
-                       "duet: normalized of the zero quaternion", duet::invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(inverse(zero)), "duet: inverse of the zero quaternion",
+                       "duet: normalized: the quaternion is zero", duet::invalid_input);
+  CHECK_THROWS_WITH_AS(static_cast<void>(inverse(zero)), "duet: inverse: the quaternion is zero",
                        duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(slerp(zero, quaternion<double>(1), 0.5)), duet::invalid_input);
   CHECK(norm(zero) == 0);

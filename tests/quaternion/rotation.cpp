@@ -110,7 +110,7 @@ TEST_CASE("rotation vectors: there and back, the same for q and -q, at most pi l
   CHECK(rotation_vector(quaternion<double>(0, 0, -1, 0)) == vector3<double>(0, -pi, 0));
   CHECK(rotation_vector(quaternion<double>(-1, 0, 0, 0)).norm() == 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(rotation_vector(quaternion<double>())),
-                       "duet: rotation_vector of the zero quaternion", duet::invalid_input);
+                       "duet: rotation_vector: the quaternion is zero", duet::invalid_input);
 }
 
 TEST_CASE("the rotation vector has derivatives everywhere but across a half turn") {

@@ -98,7 +98,8 @@ TEST_CASE("what is not a rotation is refused, and the message says why") {
   matrix3<double> m = matrix3<double>::Identity();
   CHECK(message(m) == "");
   m(0, 0) = -1;
-  CHECK(message(m) == "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = 0, det R = -1");
+  CHECK(message(m) == "duet: from_rotation_matrix: the matrix is not a rotation: |R R^T - 1| = 0, "
+                      "det R = -1 (expected 0 and 1)");
   m(0, 0) = 2;
   CHECK(message(m).find("|R R^T - 1| = 3") != std::string::npos);
   CHECK(message(matrix3<double>::Zero()) != "");

@@ -89,7 +89,7 @@ struct displacement {
 template <class Q, class V>
 displacement(Q, V) -> displacement<Q, V>;
 
-/// First b, then a, in fixed axes.
+/// Composition: b first, then a, in fixed axes.
 template <class Q, class V, class P, class U>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const displacement<Q, V>& a,
                                                           const displacement<P, U>& b) {

@@ -17,7 +17,7 @@
 /// Dual numbers, vectors and quaternions of rigid motion, and their parts (N10–N16).
 ///
 /// A dual quaternion is a quaternion over dual numbers. Product, norm, exponential, logarithm and
-/// powers are those of quaternion/, of which there is no second version.
+/// powers are those of quaternion/; there is no second implementation.
 
 namespace duet {
 
@@ -89,13 +89,13 @@ template <class T>
 [[nodiscard]] constexpr screw_dual<T> dual_conj(const screw_dual<T>& d) {
   return {d.value(), -d.epsilon()};
 }
-/// N15: the second conjugate p − εq, which keeps products: (AB)° = A° B°.
+/// N15: the second conjugate p − εq, which preserves products: (AB)° = A° B°.
 template <class T>
 [[nodiscard]] constexpr dual_quaternion<T> dual_conj(const dual_quaternion<T>& a) {
   return {dual_conj(a.w()), dual_conj(a.x()), dual_conj(a.y()), dual_conj(a.z())};
 }
-/// N15: the third conjugate p* − εq*, which carries points: A (1 + εx) A^(3) = 1 + ε(Rx + t). (The
-/// first is `conj`: p* + εq*, the inverse of a unit, which carries lines.)
+/// N15: the third conjugate p* − εq*, which transforms points: A (1 + εx) A^(3) = 1 + ε(Rx + t).
+/// (The first conjugate is `conj`: p* + εq*, the inverse of a pose, which transforms lines.)
 template <class T>
 [[nodiscard]] constexpr dual_quaternion<T> point_conj(const dual_quaternion<T>& a) {
   return dual_conj(conj(a));
@@ -117,8 +117,8 @@ template <Real T>
 [[nodiscard]] std::string to_text(const dual_quaternion<T>& a) {
   using std::abs;
   const screw_dual<T> square = squared_norm(a);
-  const T length = norm(dual_part(a));
-  if (!(abs(square.value() - 1) <= 1e-6 && abs(square.epsilon()) <= 1e-6 * (1 + length))) {
+  const T dual_norm = norm(dual_part(a));
+  if (!(abs(square.value() - 1) <= 1e-6 && abs(square.epsilon()) <= 1e-6 * (1 + dual_norm))) {
     return detail::message(a);
   }
   const vector3<T> t = translation(a);

@@ -34,31 +34,33 @@ template <class T, class S>
                                                 S(motion.angle * tau), S(motion.translation * tau));
 }
 
-/// A screw motion and a pose, values only; finds all minima of their squared distance f(τ).
+/// Finds all minima of the squared distance f(τ) of a screw motion and a pose, over real numbers.
 template <class R>
 class distance_minima {
 public:
   distance_minima(const dual_quaternion<R>& start, const screw_motion<R>& motion,
-                  const dual_quaternion<R>& p, double length)
-      : start_(start), motion_(motion), p_(p), length_(length) {}
+                  const dual_quaternion<R>& p, double characteristic_length)
+      : start_(start), motion_(motion), p_(p), characteristic_length_(characteristic_length) {}
 
   /// The τ in [0, 1] that minimises f.
   ///
   /// f is (τd − h)², h the height of P along the axis, and a function of period 2π of the angle τφ.
-  /// A minimum that is farther than a full turn from the τ in [0, 1] nearest to h/d has another one
-  /// nearer by, so two full turns are searched at most. In each, the angle between the rotations
+  /// If a minimum is farther than a full turn from the τ in [0, 1] nearest to h/d, another one is
+  /// nearer, so two full turns are searched at most. In each, the angle between the rotations
   /// has one kink, at its maximum π; elsewhere f is smooth, and between samples 1/32 of a full turn
   /// apart f′ has at most one zero or one extremum.
-  [[nodiscard]] R least() {
+  [[nodiscard]] R minimizer() {
     using std::abs;
     using std::atan2;
     using std::ceil;
-    const R turn = 2 * constant::pi<R>() / abs(motion_.angle); // infinite without rotation
+    const R full_turn =
+        2 * constant::pi<R>() / abs(motion_.angle); // infinite if there is no rotation
     const R height = motion_.axis.dot(translation(dual_quaternion<R>(conj(start_) * p_)));
     const R ratio = motion_.translation != 0 ? R(height / motion_.translation) : R(0);
     const R centre = ratio > 0 ? std::min(ratio, R(1)) : R(0);
-    const R low = std::max(R(centre - turn), R(0)), high = std::min(R(centre + turn), R(1));
-    const int cells = high - low > turn ? 64 : 32;
+    const R low = std::max(R(centre - full_turn), R(0)),
+            high = std::min(R(centre + full_turn), R(1));
+    const int cells = high - low > full_turn ? 64 : 32;
     std::vector<R> taus;
     for (int i = 0; i < cells; ++i) {
       taus.push_back(low + (high - low) * R(i) / R(cells));
@@ -68,9 +70,9 @@ public:
     const quaternion<R> q = rotation(dual_quaternion<R>(conj(p_) * start_));
     const R along = vector3<R>(q.x(), q.y(), q.z()).dot(motion_.axis);
     const R kink = 2 * atan2(q.w(), along) / motion_.angle;
-    const R first = ceil((low - kink) / turn);
+    const R first = ceil((low - kink) / full_turn);
     for (const double k : {-1e-9, 1e-9, 1 - 1e-9, 1 + 1e-9, 2 - 1e-9, 2 + 1e-9}) {
-      if (const R tau = kink + (first + R(k)) * turn; tau > low && tau < high) {
+      if (const R tau = kink + (first + R(k)) * full_turn; tau > low && tau < high) {
         taus.push_back(tau);
       }
     }
@@ -80,7 +82,7 @@ public:
     point left = at(taus.front());
     for (std::size_t i = 1; i < taus.size(); ++i) {
       const point right = at(taus[i]);
-      look_between(left, right);
+      search_between(left, right);
       left = right;
     }
     return best_;
@@ -97,34 +99,34 @@ private:
                      [&](const auto& t) {
                        using S = std::decay_t<decltype(t)>;
                        return squared_distance(pose_on_screw(start_, motion_, t),
-                                               dual_quaternion<S>(p_), length_);
+                                               dual_quaternion<S>(p_), characteristic_length_);
                      },
                      tau)};
   }
 
   void keep(const R& tau) {
-    const R f = squared_distance(pose_on_screw(start_, motion_, tau), p_, length_);
-    if (!(f >= least_)) {
-      least_ = f;
+    const R f = squared_distance(pose_on_screw(start_, motion_, tau), p_, characteristic_length_);
+    if (!(f >= min_distance_)) {
+      min_distance_ = f;
       best_ = tau;
     }
   }
 
   /// Keeps the minima between two points.
-  void look_between(point left, point right) {
-    // If f′ has one sign at both ends but an extremum between them, two of its zeros may lie there,
-    // on either side of the extremum, which bisection finds.
+  void search_between(point left, point right) {
+    // If f′ has one sign at both ends but an extremum between them, two of its zeros may lie
+    // on either side of the extremum. Bisection finds the extremum.
     while (left.f[1] * right.f[1] > 0 && left.f[1] * left.f[2] < 0 && right.f[1] * right.f[2] > 0) {
-      const point middle = at(R(left.tau + (right.tau - left.tau) / 2));
-      if (!(middle.tau > left.tau && middle.tau < right.tau)) {
+      const point midpoint = at(R(left.tau + (right.tau - left.tau) / 2));
+      if (!(midpoint.tau > left.tau && midpoint.tau < right.tau)) {
         return;
       }
-      if (!(middle.f[1] * left.f[1] > 0)) {
-        refine(left, middle);
-        refine(middle, right);
+      if (!(midpoint.f[1] * left.f[1] > 0)) {
+        refine(left, midpoint);
+        refine(midpoint, right);
         return;
       }
-      (middle.f[1] * middle.f[2] < 0 ? left : right) = middle;
+      (midpoint.f[1] * midpoint.f[2] < 0 ? left : right) = midpoint;
     }
     refine(left, right);
   }
@@ -155,18 +157,18 @@ private:
   dual_quaternion<R> start_;
   screw_motion<R> motion_;
   dual_quaternion<R> p_;
-  double length_;
-  R best_ = 0, least_ = std::numeric_limits<R>::infinity();
+  double characteristic_length_;
+  R best_ = 0, min_distance_ = std::numeric_limits<R>::infinity();
 };
 
 /// e if the largest length is about 2^e and its square would overflow or vanish, otherwise 0.
 template <class T>
-[[nodiscard]] int extreme_exponent_of_lengths(const dual_quaternion<T>& start,
-                                              const screw_motion<T>& motion,
-                                              const dual_quaternion<T>& p, double length) {
+[[nodiscard]] int
+extreme_exponent_of_lengths(const dual_quaternion<T>& start, const screw_motion<T>& motion,
+                            const dual_quaternion<T>& p, double characteristic_length) {
   using std::abs;
   using R = real_type_t<T>;
-  R largest = std::max(R(abs(length)), R(abs(innermost(motion.translation))));
+  R largest = std::max(R(abs(characteristic_length)), R(abs(innermost(motion.translation))));
   for (const vector3<T>& v : {translation(start), translation(p), motion.moment}) {
     for (int i = 0; i < 3; ++i) {
       largest = std::max(largest, R(abs(innermost(v[i]))));
@@ -197,11 +199,11 @@ struct nearest_result {
 namespace detail {
 
 template <class T>
-[[nodiscard]] nearest_result<T> nearest_place(const dual_quaternion<T>& start,
-                                              const screw_motion<T>& motion,
-                                              const dual_quaternion<T>& p, double length) {
+[[nodiscard]] nearest_result<T>
+find_nearest(const dual_quaternion<T>& start, const screw_motion<T>& motion,
+             const dual_quaternion<T>& p, double characteristic_length) {
   using R = real_type_t<T>;
-  if (const int e = extreme_exponent_of_lengths(start, motion, p, length); e != 0) {
+  if (const int e = extreme_exponent_of_lengths(start, motion, p, characteristic_length); e != 0) {
     using std::ldexp;
     const R unit = ldexp(R(1), -e);
     const auto in_unit = [&](const dual_quaternion<T>& a) {
@@ -209,13 +211,15 @@ template <class T>
     };
     const screw_motion<T> scaled{motion.axis, vector3<T>(motion.moment * unit), motion.angle,
                                  T(motion.translation * unit), motion.kind};
-    const T tau = nearest_place(in_unit(start), scaled, in_unit(p), double(length * unit)).tau;
-    const dual_quaternion<T> there = pose_on_screw(start, motion, tau);
-    return {tau, there, squared_distance(there, p, length)};
+    const T tau =
+        find_nearest(in_unit(start), scaled, in_unit(p), double(characteristic_length * unit)).tau;
+    const dual_quaternion<T> nearest = pose_on_screw(start, motion, tau);
+    return {tau, nearest, squared_distance(nearest, p, characteristic_length)};
   }
   const auto distance_at = [&](const auto& tau) {
     using S = std::decay_t<decltype(tau)>;
-    return squared_distance(pose_on_screw(start, motion, tau), dual_quaternion<S>(p), length);
+    return squared_distance(pose_on_screw(start, motion, tau), dual_quaternion<S>(p),
+                            characteristic_length);
   };
   const auto number = [](const T& x) { return R(innermost(x)); };
   const auto numbers = [&](const dual_quaternion<T>& a) {
@@ -226,8 +230,8 @@ template <class T>
   };
   const screw_motion<R> values{motion.axis.unaryExpr(number), motion.moment.unaryExpr(number),
                                number(motion.angle), number(motion.translation), motion.kind};
-  T tau(distance_minima<R>(numbers(start), values, numbers(p), length).least());
-  // The value is converged. Each step of Newton's method adds an order of derivatives.
+  T tau(distance_minima<R>(numbers(start), values, numbers(p), characteristic_length).minimizer());
+  // The real part has converged. Each step of Newton's method adds an order of derivatives.
   for (int step = 0; step < scalar_traits<T>::order; ++step) {
     const auto d = derivatives<2>(distance_at, tau);
     if (!(innermost(d[2]) > 0)) { // at an end, or at constant distance along the motion
@@ -244,30 +248,30 @@ template <class T>
       break;
     }
   }
-  const dual_quaternion<T> there = pose_on_screw(start, motion, tau);
-  return {tau, there, squared_distance(there, p, length)};
+  const dual_quaternion<T> nearest = pose_on_screw(start, motion, tau);
+  return {tau, nearest, squared_distance(nearest, p, characteristic_length)};
 }
 
 } // namespace detail
 
 /// The τ in [0, 1] at which the motion A exp(½τ(φ + εd)(n + εm)) is nearest to a pose P, by
 /// `squared_distance`. If τ is not an end, derivatives follow from the equation that it solves; if
-/// a whole part of the motion is equally near, they are zero.
+/// an entire part of the motion is equally near, they are zero.
 ///
 /// \param start   A
 /// \param motion  in body axes of A, as `screw_parameters(conj(A) * B)`; the angle, in radians, may
 ///   exceed a full turn
-/// \param length  characteristic length: the translation that counts as much as a rotation by one
-///   radian
+/// \param characteristic_length  translation that counts as much as a rotation by 1 rad
 /// \return `nearest_result<T>`
-/// \throws invalid_input if the length is negative or not finite
+/// \throws invalid_input if the characteristic length is negative or not finite
 template <class A, Promotable<A> M, Promotable<A> P>
 [[nodiscard]] auto nearest_on_screw(const dual_quaternion<A>& start, const screw_motion<M>& motion,
-                                    const dual_quaternion<P>& p, double length) {
+                                    const dual_quaternion<P>& p, double characteristic_length) {
   using T = promote_t<promote_t<A, M>, P>;
   const screw_motion<T> over{motion.axis.template cast<T>(), motion.moment.template cast<T>(),
                              T(motion.angle), T(motion.translation), motion.kind};
-  return detail::nearest_place(dual_quaternion<T>(start), over, dual_quaternion<T>(p), length);
+  return detail::find_nearest(dual_quaternion<T>(start), over, dual_quaternion<T>(p),
+                              characteristic_length);
 }
 
 } // namespace duet

@@ -38,9 +38,9 @@ template <class A, class B>
 }
 
 template <class Q>
-[[noreturn]] DUET_COLD DUET_OUT_OF_LINE void refuse_rotation(Q q) {
+[[noreturn]] DUET_COLD DUET_OUT_OF_LINE void raise_not_unit(Q q) {
   raise(invalid_input(
-      message("duet: pose: the rotation ", q, " is no unit quaternion: normalized(q)")));
+      message("duet: pose: the rotation ", q, " is not a unit quaternion (use normalized(q))")));
 }
 
 } // namespace detail
@@ -48,8 +48,8 @@ template <class Q>
 /// N17: the pose α + εβ with β = ½ t α: first the rotation, a unit quaternion, then the
 /// translation.
 ///
-/// \throws invalid_input if |α|² is not 1 within 1e-6 (1e-3 in single precision): points would be
-///   scaled by it; NaN passes
+/// \throws invalid_input if |α|² is not 1 within 1e-6 (1e-3 in single precision): the
+///   pose would scale points; NaN is accepted
 template <class A, Promotable<A> B>
 [[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<promote_t<A, B>>
 pose(const quaternion<A>& rotation, const vector3<B>& translation) {
@@ -58,7 +58,7 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   constexpr double tolerance = std::numeric_limits<real>::digits > 24 ? 1e-6 : 1e-3;
   const auto alpha = detail::innermost_of(rotation);
   if (any(abs(squared_norm(alpha) - 1) > tolerance)) [[unlikely]] {
-    detail::refuse_rotation(alpha);
+    detail::raise_not_unit(alpha);
   }
   return detail::pose_of_unit(rotation, translation);
 }
@@ -76,9 +76,10 @@ template <class A, Promotable<A> B>
 template <class T, Promotable<T> U>
 [[nodiscard]] vector3<promote_t<T, U>> transform_point(const dual_quaternion<T>& a,
                                                        const vector3<U>& x) {
-  const auto turned = rotate(rotation(a), x);
+  const auto rotated = rotate(rotation(a), x);
   const vector3<T> t = translation(a);
-  return {turned[0] + t[0], turned[1] + t[1], turned[2] + t[2]}; // no packets to be put together
+  return {rotated[0] + t[0], rotated[1] + t[1],
+          rotated[2] + t[2]}; // by components: cheaper than to assemble SIMD packets
 }
 /// Transforms a direction (a vector without position, such as a normal) by a pose: R n.
 template <class T, Promotable<T> U>
@@ -128,14 +129,14 @@ template <class T>
 
 /// The pose of a 4 × 4 homogeneous transformation matrix [R t; 0 1].
 ///
-/// \throws invalid_input if the last row is another, and as `from_rotation_matrix`
+/// \throws invalid_input if the last row is not 0 0 0 1, and as `from_rotation_matrix`
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_transform_matrix(const Eigen::Matrix<T, 4, 4>& m) {
   detail::require(all(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 &&
                       innermost(m(3, 2)) == 0 && innermost(m(3, 3)) == 1),
                   "duet: from_transform_matrix: the last row is ", innermost(m(3, 0)), " ",
                   innermost(m(3, 1)), " ", innermost(m(3, 2)), " ", innermost(m(3, 3)),
-                  ", not 0 0 0 1");
+                  " (expected 0 0 0 1)");
   return pose(matrix3<T>(m.template topLeftCorner<3, 3>()),
               vector3<T>(m.template topRightCorner<3, 1>()));
 }
@@ -148,10 +149,10 @@ DUET_REFUSES_FOREIGN(transform_matrix, Eigen::Matrix4d)
 DUET_REFUSES_FOREIGN(from_transform_matrix, dual_quaternion<double>)
 
 template <class V, class T>
-DUET_REFUSED("first the rotation: pose(q, t)")
+DUET_REFUSED("the rotation is the first argument: pose(q, t)")
 dual_quaternion<T> pose(const Eigen::MatrixBase<V>&, const quaternion<T>&);
 template <Real T, class V>
-DUET_REFUSED("a rotation, which turns vectors: rotate(q, v); poses move points, pose(q, t)")
+DUET_REFUSED("transform_point takes a pose, as pose(q, t); a rotation is applied by rotate(q, v)")
 vector3<T> transform_point(const quaternion<T>&, const Eigen::MatrixBase<V>&);
 
 } // namespace duet

@@ -50,12 +50,11 @@ struct registration {
     static_assert(can_be_same(P::RowsAtCompileTime, 3) && can_be_same(Q::RowsAtCompileTime, 3),
                   "duet: register_points: points are columns of matrices with three rows");
     static_assert(can_be_same(P::ColsAtCompileTime, Q::ColsAtCompileTime),
-                  "duet: register_points: there must be as many points in both sets");
-    require(from.rows() == 3 && to.rows() == 3,
-            "duet: register_points: points are columns of three rows, not of ", from.rows(),
-            " and ", to.rows());
-    require(from.cols() == to.cols(), "duet: register_points: ", from.cols(),
-            " points cannot be registered with ", to.cols());
+                  "duet: register_points: both sets must have the same number of points");
+    require(from.rows() == 3 && to.rows() == 3, "duet: register_points: the matrices have ",
+            from.rows(), " and ", to.rows(), " rows (expected 3 rows: points are columns)");
+    require(from.cols() == to.cols(), "duet: register_points: the sets have ", from.cols(), " and ",
+            to.cols(), " points (expected equal numbers)");
     require_weights("register_points", std::size_t(from.cols()), weights);
     require_finite("register_points", real_values<R>(from));
     require_finite("register_points", real_values<R>(to));
@@ -117,11 +116,11 @@ private:
 /// With the weighted centres p̄, q̄, R = `nearest_rotation(Σ wᵢ (qᵢ − q̄)(pᵢ − p̄)ᵀ)` and
 /// t = q̄ − R p̄ (W. Kabsch, Acta Cryst. A32 (1976) 922–923; S. Umeyama, IEEE Trans. PAMI 13 (1991)
 /// 376–380). Derivatives of every order with respect to both sets follow from the equation of R:
-/// they exist wherever R is unique, also for planar and symmetric sets and for exact data.
+/// they exist if R is unique, also for planar and symmetric sets and for exact data.
 ///
 /// \throws invalid_input if the sets differ in size or are not finite, if weights are not valid for
-///   `average`, and if R is not unique: if the points of a set are collinear, or one set is the
-///   mirror image of the other with too much symmetry
+///   `average`, and if R is not unique: the points of a set are collinear, or one set is the mirror
+///   image of the other and has too much symmetry
 template <class P, class Q>
 [[nodiscard]] auto register_points(const Eigen::MatrixBase<P>& from, const Eigen::MatrixBase<Q>& to,
                                    const std::vector<double>& weights = {}) {

@@ -67,17 +67,17 @@ struct screw_motion {
 template <class T>
 [[nodiscard]] screw_motion<T> screw_parameters(const dual_quaternion<T>& a,
                                                double tolerance = 1e-8) {
-  const dual_quaternion<T> short_way = select(
+  const dual_quaternion<T> shorter_arc = select(
       innermost(a.w()) < 0, [&] { return -a; }, [&] { return a; });
   using std::abs;
   using std::atan2;
   using D = screw_dual<T>;
-  const quaternion<D> v(D(T(0)), short_way.x(), short_way.y(), short_way.z());
+  const quaternion<D> v(D(T(0)), shorter_arc.x(), shorter_arc.y(), shorter_arc.z());
   const auto values = detail::innermost_of(real_part(v));
-  if (!(2 * atan2(norm(values), innermost(short_way.w())) > tolerance)) {
+  if (!(2 * atan2(norm(values), innermost(shorter_arc.w())) > tolerance)) {
     const vector3<T> none = vector3<T>::Zero();
     const vector3<T> shift =
-        2 * dual_part(detail::log_vector(short_way, "screw_parameters")); // d n + φ m
+        2 * dual_part(detail::log_vector(shorter_arc, "screw_parameters")); // d n + φ m
     const T d = norm(quaternion<T>(T(0), shift));
     if (!(innermost(d) > tolerance)) {
       return {none, none, T(0), T(0), screw_kind::none};
@@ -86,7 +86,7 @@ template <class T>
   }
   // Polar form over dual numbers: A = cos ½Φ + (n + εm) sin ½Φ, Φ = φ + εd.
   const D sine = norm(v);
-  const D angle = 2 * atan2(sine, short_way.w());
+  const D angle = 2 * atan2(sine, shorter_arc.w());
   const dual_vector<T> line = (v / sine).vec();
   return {real_part(line), dual_part(line), angle.value(), angle.epsilon(),
           abs(innermost(angle.epsilon())) > tolerance ? screw_kind::screw : screw_kind::rotation};

@@ -23,7 +23,7 @@
 
 namespace duet {
 
-/// [v; ω]: linear, then angular.
+/// [v; ω]: linear part first, then angular part.
 template <class T>
 using vector6 = Eigen::Matrix<T, 6, 1>;
 /// 6 × 6 matrix, a linear map of twists [v; ω].
@@ -85,7 +85,7 @@ template <class A, Promotable<A> B, FrameConstant Frame>
 
 /// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
-DUET_REFUSED("in which axes? twist(a, a_dot, frame::hybrid), frame::spatial or frame::body")
+DUET_REFUSED("the frame is missing: twist(a, a_dot, frame::hybrid), frame::spatial or frame::body")
 vector6<promote_t<A, B>> twist(const dual_quaternion<A>&, const dual_quaternion<B>&);
 
 /// N18: the rate Ȧ of a pose that moves with a twist [v; ω], Ȧ = ½ V^s A = ½ A V^b; in
@@ -103,7 +103,8 @@ template <class A, Promotable<A> B, FrameConstant Frame>
 
 /// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
-DUET_REFUSED("in which axes? pose_rate(a, twist, frame::hybrid), frame::spatial or frame::body")
+DUET_REFUSED(
+    "the frame is missing: pose_rate(a, twist, frame::hybrid), frame::spatial or frame::body")
 dual_quaternion<promote_t<A, B>> pose_rate(const dual_quaternion<A>&, const vector6<B>&);
 
 /// Adjoint matrix [R t̂R; 0 R]: V^s = Ad(A) V^b for twists [v; ω]; changes the frame of a twist.

@@ -18,15 +18,16 @@ namespace duet {
 /// s = q exp(−¼(log(q* next) + log(q* previous))). Signs must be aligned. At an end, without a
 /// neighbour, use q itself.
 ///
-/// \throws invalid_input if one of them is zero
+/// \throws invalid_input if one of the quaternions is zero
 /// \return `quaternion<T>`
 template <class A, Promotable<A> B, Promotable<A> C>
 [[nodiscard]] auto squad_control(const quaternion<A>& previous, const quaternion<B>& q,
                                  const quaternion<C>& next) {
   using T = promote_t<promote_t<A, B>, C>;
-  const vector3<T> forth = detail::log_vector(quaternion<T>(conj(q) * next), "squad_control");
-  const vector3<T> back = detail::log_vector(quaternion<T>(conj(q) * previous), "squad_control");
-  return q * duet::exp(vector3<T>((forth + back) / T(-4)));
+  const vector3<T> to_next = detail::log_vector(quaternion<T>(conj(q) * next), "squad_control");
+  const vector3<T> to_previous =
+      detail::log_vector(quaternion<T>(conj(q) * previous), "squad_control");
+  return q * duet::exp(vector3<T>((to_next + to_previous) / T(-4)));
 }
 
 /// Shoemake's spherical and quadrangle interpolation from a to b with control points p and q:
@@ -63,7 +64,7 @@ template <class Points, class S>
 
 /// Bézier curve of n + 1 control points at τ ∈ [0, 1] by de Casteljau's algorithm with SLERP, each
 /// along the shorter arc. It starts at the first point with n times the velocity of SLERP to the
-/// second, and ends likewise. Does not allocate memory.
+/// second, and ends in the same way. Does not allocate memory.
 template <class T, std::size_t N, ScalarFor<T> S>
 [[nodiscard]] quaternion<promote_t<T, S>> bezier(const std::array<quaternion<T>, N>& points,
                                                  const S& tau) {

@@ -29,14 +29,15 @@ template <class A, class B>
 
 /// Squared angle between two rotations, φ² = |2 log(a* b)|², φ ∈ [0, π] in radians, for a and b of
 /// unit norm. It is the same for b and −b, and in every frame. Smooth if φ < π, also at a = b; at
-/// φ = π both arcs have the same length, and derivatives are those of the arc of b's own sign.
+/// φ = π both arcs have the same length, and derivatives are those of the arc given by the sign of
+/// b.
 ///
 /// \throws invalid_input if a or b is zero
 template <class A, Promotable<A> B>
   requires(!detail::contains_tag<promote_t<A, B>, screw_tag>())
 [[nodiscard]] promote_t<A, B> squared_distance(const quaternion<A>& a, const quaternion<B>& b) {
-  const auto turn = detail::rotation_vector_between(a, b);
-  return turn[0] * turn[0] + turn[1] * turn[1] + turn[2] * turn[2];
+  const auto r = detail::rotation_vector_between(a, b);
+  return r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
 }
 
 /// Distance between two rotations, the angle φ ∈ [0, π] between them in radians: the root of

@@ -24,7 +24,7 @@
 
 namespace duet::detail {
 
-/// a b + c d to two units in its own last place, unless something overflows or underflows.
+/// a b + c d to two units in its last place, unless something overflows or underflows.
 template <Real R>
 [[nodiscard]] R sum_of_products(const R& a, const R& b, const R& c, const R& d) {
   if constexpr (std::floating_point<R>) { // Kahan's
@@ -91,7 +91,7 @@ template <euler_sequence Sequence, class T>
           T(Sequence.sign() * v[std::size_t(Sequence.other())])};
 }
 
-/// q times a power of 2 that brings it near 1: products of its components stay in range.
+/// q times a power of 2 that brings it near 1, so that products of its components stay in range.
 template <class T>
 [[nodiscard]] quaternion<T> of_moderate_norm(const quaternion<T>& q) {
   const auto near_one = [](const auto& p, int) { return p; };
@@ -99,7 +99,7 @@ template <class T>
 }
 
 /// Numbers proportional to cos β cos(α+γ), cos β sin(α+γ), sin β cos(α−γ), sin β sin(α−γ), which
-/// with half angles α, β, γ are those components of R_i R_j R_i.
+/// for half angles α, β, γ are those components of R_i R_j R_i.
 ///
 /// A quarter turn about e_j takes e_i to the third axis:
 /// R_i R_j(b) R_k(c) R_j(π/2) = R_i R_j(b + π/2) R_i(∓c).
@@ -113,36 +113,35 @@ template <euler_sequence Sequence, class T>
 }
 
 /// Angles of a real quaternion. A quantity that vanishes with an angle is a sum of two products and
-/// so has a small relative error; the others need not.
+/// so has a small relative error. The other quantities need no small relative error.
 template <euler_sequence Sequence, Real R>
 [[nodiscard]] std::array<R, 3> euler_angles(const quaternion<R>& q) {
   using std::atan2;
   using std::hypot;
   require_not_zero(q, "euler");
-  // So large that no product with the largest component underflows.
+  // The scale is so large that no product with the largest component underflows.
   constexpr int exponent = std::min(std::numeric_limits<R>::max_exponent, 16384) / 2 - 4;
   const std::array<R, 4> components =
       along_axes<Sequence>(scaled_down(q, binary_exponent(largest_component(q)) - exponent));
   const R &s = components[0], &i = components[1], &j = components[2], &k = components[3];
   const std::array<R, 4> halves = proper_components<Sequence>(components);
   const R &w = halves[0], &x = halves[1], &y = halves[2], &z = halves[3];
-  // The sines and cosines of the first angle and of the last, times sin β cos β, and the middle
-  // one.
+  // Sines and cosines of the first and the third angle, times sin β cos β; then the second angle.
   const R cosine_a = w * y - x * z, cosine_c = w * y + x * z;
-  R sine_a, sine_c, middle;
+  R sine_a, sine_c, second;
   if constexpr (Sequence.is_proper()) {
     sine_a = sum_of_products<R>(i, j, s, k);
     sine_c = sum_of_products<R>(i, j, -s, k);
-    middle = 2 * atan2(R(hypot(y, z)), R(hypot(w, x)));
+    second = 2 * atan2(R(hypot(y, z)), R(hypot(w, x)));
   } else {
     sine_a = 2 * sum_of_products<R>(s, i, -j, k);
     sine_c = 2 * Sequence.sign() * sum_of_products<R>(s, k, -i, j);
-    middle = atan2(R(2 * sum_of_products<R>(s, j, i, k)), R(hypot(w, x) * hypot(y, z)));
+    second = atan2(R(2 * sum_of_products<R>(s, j, i, k)), R(hypot(w, x) * hypot(y, z)));
   }
-  // In gimbal lock only α + γ or α − γ is determined: β is given to neither.
+  // In gimbal lock only α + γ or α − γ is determined, and is split equally between both angles.
   const int sign = Sequence.is_proper() ? 1 : -Sequence.sign();
   const auto both = [&](const R& half_sum, int sign_of_last) {
-    return std::array<R, 3>{half_sum, middle, R(R(sign_of_last) * half_sum)};
+    return std::array<R, 3>{half_sum, second, R(R(sign_of_last) * half_sum)};
   };
   return select(
       y == 0 && z == 0, [&] { return both(atan2(x, w), sign); },
@@ -150,12 +149,12 @@ template <euler_sequence Sequence, Real R>
         return select(
             w == 0 && x == 0, [&] { return both(atan2(z, y), -sign); },
             [&] {
-              return std::array<R, 3>{atan2(sine_a, cosine_a), middle, atan2(sine_c, cosine_c)};
+              return std::array<R, 3>{atan2(sine_a, cosine_a), second, atan2(sine_c, cosine_c)};
             });
       });
 }
 
-/// Integers are angles too.
+/// Scalar of an angle: double for integers.
 template <class T>
 using angle_t = std::conditional_t<std::integral<T>, double, T>;
 
@@ -178,7 +177,7 @@ template <euler_sequence Sequence, class A, class B, class C>
 /// Intrinsic Euler angles of a rotation, q of any norm, in the order of the letters, in radians.
 ///
 /// First and third lie in [−π, π]; the second in [0, π] if the first and last letters are equal,
-/// else in [−π/2, π/2]. Each is accurate to a few units in its own last place, however small it is.
+/// else in [−π/2, π/2]. Each is accurate to a few units in its last place, however small it is.
 /// At either end of the second angle's range (gimbal lock) only the sum or the difference of the
 /// others is determined; the angles returned still give the rotation, but have no derivatives
 /// there.
@@ -190,21 +189,21 @@ template <euler_sequence Sequence, class T>
     using std::atan2;
     using std::hypot;
     const auto values = euler<Sequence>(detail::innermost_of(q));
-    // Infinitesimal parts of α + γ and α − γ keep their digits near gimbal lock too.
+    // Infinitesimal parts of α + γ and α − γ stay accurate near gimbal lock too.
     const std::array<T, 4> components = detail::along_axes<Sequence>(detail::of_moderate_norm(q));
     const auto [w, x, y, z] = detail::proper_components<Sequence>(components);
     const T sum = atan2(x, w);
     const T difference = atan2(z, y);
-    T middle;
+    T second;
     if constexpr (Sequence.is_proper()) {
-      middle = 2 * atan2(hypot(y, z), hypot(w, x));
-    } else { // the sine and the cosine, from numbers as small as it is
+      second = 2 * atan2(hypot(y, z), hypot(w, x));
+    } else { // sine and cosine by numbers as small as the angle, so that nothing cancels
       const auto& [s, i, j, k] = components;
-      middle = atan2(T(2 * (s * j + i * k)), hypot(T(w * y + x * z), T(w * z - x * y)));
+      second = atan2(T(2 * (s * j + i * k)), hypot(T(w * y + x * z), T(w * z - x * y)));
     }
     constexpr int sign = Sequence.is_proper() ? 1 : -Sequence.sign();
     return {detail::with_innermost(T(sum + difference), values[0]),
-            detail::with_innermost(middle, values[1]),
+            detail::with_innermost(second, values[1]),
             detail::with_innermost(T(sign * (sum - difference)), values[2])};
   } else {
     return detail::by_lane([](const auto& p) { return detail::euler_angles<Sequence>(p); }, q);
@@ -224,8 +223,8 @@ template <euler_sequence Sequence, class A, Promotable<A> B>
   constexpr int i = Sequence.first, j = Sequence.second, other = Sequence.other();
   constexpr int sign = Sequence.sign(); // e_i × e_j = ± e_other
   const T cosine(cos(a)), sine(sin(a));
-  // R_i takes e_other to cos a e_other ∓ sin a e_j. Before, R_j took e_k to the sum of `along` e_i
-  // and `across` e_other.
+  // R_j takes e_k to `along` e_i + `across` e_other; then R_i takes e_other to
+  // cos a e_other ∓ sin a e_j.
   const T along = Sequence.is_proper() ? T(cos(b)) : T(sign * sin(b));
   const T across = Sequence.is_proper() ? T(-sign * sin(b)) : T(cos(b));
   matrix3<T> m;
@@ -240,13 +239,14 @@ template <euler_sequence Sequence, class A, Promotable<A> B>
 }
 
 /// P5 as printed in the available copy: the matrix A_K with ω = A_K [φ′, θ′, ψ′]ᵀ in spatial axes,
-/// for R = R_z(ψ) R_y(θ) R_x(φ), **with a slip, of the copy or of the print**: its element (3, 1)
+/// for R = R_z(ψ) R_y(θ) R_x(φ), **with an error in that copy or in print**: its element (3, 1)
 /// reads −sin ψ. Columns are axes of rotation, of length 1; with −sin ψ the first is not, so that
 /// no sequence of Euler angles has this matrix.
 ///
-/// The true one, −sin θ, is in `euler_rate_matrix<zyx>(psi, theta)`, whose columns are in the order
-/// of the letters: ψ′, θ′, φ′. The two agree if sin ψ = sin θ. Source: Houdek, Verlinden, Hajžman,
-/// "Derivatives of quaternion spline interpolation function for multibody dynamics", equation (5).
+/// The correct element, −sin θ, is in `euler_rate_matrix<zyx>(psi, theta)`, whose columns are in
+/// the order of the letters: ψ′, θ′, φ′. The two agree if sin ψ = sin θ. Source: Houdek, Verlinden,
+/// Hajžman, "Derivatives of quaternion spline interpolation function for multibody dynamics",
+/// equation (5).
 template <class A, Promotable<A> B>
 [[nodiscard]] auto printed_euler_rate_matrix(const A& psi, const B& theta) {
   using std::cos;
@@ -262,13 +262,13 @@ template <class A, Promotable<A> B>
 
 /// Rejected: without a sequence the axes are ambiguous.
 template <class... X>
-DUET_REFUSED("about which axes? from_euler<zyx>(yaw, pitch, roll), in radians")
+DUET_REFUSED("the Euler sequence is missing: from_euler<zyx>(yaw, pitch, roll), in radians")
 quaternion<double> from_euler(const X&...);
 template <class T>
-DUET_REFUSED("about which axes? euler<zyx>(q)")
+DUET_REFUSED("the Euler sequence is missing: euler<zyx>(q)")
 std::array<T, 3> euler(const quaternion<T>&);
 template <class... X>
-DUET_REFUSED("about which axes? euler_rate_matrix<zyx>(yaw, pitch)")
+DUET_REFUSED("the Euler sequence is missing: euler_rate_matrix<zyx>(yaw, pitch)")
 matrix3<double> euler_rate_matrix(const X&...);
 
 template <euler_sequence Sequence, class V>

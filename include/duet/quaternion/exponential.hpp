@@ -46,8 +46,8 @@ template <class T>
 
 namespace detail {
 
-/// exp(b v) for a v that does not depend on all that b depends on: derivatives with respect to b
-/// cost no more than those of a sine and a cosine.
+/// exp(b v). If v does not depend on all variables of b, derivatives with respect to b cost no more
+/// than those of a sine and a cosine.
 template <class S, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>> exp_of_multiple(const S& b,
                                                                              const vector3<T>& v) {
@@ -74,8 +74,7 @@ template <class T>
   using real = real_type_t<T>;
   const real& value = innermost(square);
   return by_range(
-      is_moderate(value) &&
-          !(innermost(q.w()) < 0 && innermost(s) < value * least_moderate<real>()),
+      is_moderate(value) && !(innermost(q.w()) < 0 && innermost(s) < value * min_moderate<real>()),
       q,
       [&]() DUET_INLINE_LAMBDA {
         const T ratio = arc_ratio(s, q.w());
@@ -86,15 +85,15 @@ template <class T>
         const quaternion<P> v(P(0), near_one.x(), near_one.y(), near_one.z());
         const P of_v = squared_norm(v);
         return select(
-            innermost(near_one.w()) > 0 || innermost(of_v) > least_moderate<real_type_t<P>>(),
+            innermost(near_one.w()) > 0 || innermost(of_v) > min_moderate<real_type_t<P>>(),
             [&] {
               const P ratio = arc_ratio(of_v, near_one.w());
               return vector3<P>(v.x() * ratio, v.y() * ratio, v.z() * ratio);
             },
             [&] { // atan2(|v|, w) = π − atan2(|v|, −w)
-              const P short_way = arc_ratio(of_v, P(-near_one.w()));
+              const P shorter_arc = arc_ratio(of_v, P(-near_one.w()));
               const quaternion<P> half_turn = axis_of(near_one) * constant::pi<real_type_t<P>>();
-              return vector3<P>((half_turn - v * short_way).vec());
+              return vector3<P>((half_turn - v * shorter_arc).vec());
             });
       });
 }
@@ -146,7 +145,7 @@ template <class A, class B, class T, class Side>
     require_not_zero(b, function);
   }
   // a* a has no vector part. Subtracting it first avoids cancellation for a small rotation.
-  using end = std::conditional_t<Batched<T>, T, B>; // lanes of a batch differ in sign
+  using end = std::conditional_t<Batched<T>, T, B>; // lanes of a batch may differ in sign
   const quaternion<end> aligned = select(
       other_side, [&] { return quaternion<end>(-b); }, [&] { return quaternion<end>(b); });
   const quaternion<T> difference = conj(a) * (aligned - a);
@@ -167,8 +166,8 @@ pow_of_regular(const quaternion<T>& q, const vector3<T>& v, const S& exponent) {
 /// q^ρ away from a full turn, as q^n q^(ρ−n) with the integer n ≤ 3 nearest to ρ > 0, so that
 /// nothing cancels in the k-th derivative, which vanishes with ρ (ρ − 1) … (ρ − k + 1).
 template <class T, class S>
-[[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>> pow_by_whole(const quaternion<T>& q,
-                                                                          const S& exponent) {
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<promote_t<T, S>> pow_by_integer(const quaternion<T>& q,
+                                                                            const S& exponent) {
   using R = promote_t<T, S>;
   const auto v = log_vector(q, "pow");
   if constexpr (!Infinitesimal<R>) {
@@ -178,12 +177,12 @@ template <class T, class S>
     const real value(innermost(exponent));
     const real square(innermost(squared_norm(q)));
     const auto reaches = [&](int k) { return value > real(k) - real(0.5) && is_moderate(square); };
-    real whole(0);
+    real integer(0);
     for (int k = 1; k <= 3; ++k) {
-      whole = select(
-          reaches(k), [&] { return real(k); }, [&] { return whole; });
+      integer = select(
+          reaches(k), [&] { return real(k); }, [&] { return integer; });
     }
-    quaternion<R> power = pow_of_regular(q, v, exponent - whole);
+    quaternion<R> power = pow_of_regular(q, v, exponent - integer);
     for (int k = 1; k <= 3; ++k) {
       power = select(
           reaches(k), [&] { return quaternion<R>(power * q); }, [&] { return power; });
@@ -195,7 +194,7 @@ template <class T, class S>
 /// q^ρ = (−1)^n exp(ûπ(ρ − n)) (−q)^ρ with the integer n nearest to ρ.
 ///
 /// Near a full turn û varies arbitrarily fast with q; the last factor, being near 1, does not
-/// depend on û, and for integer ρ nothing does.
+/// depend on û, and for integer ρ the power does not depend on û at all.
 template <class T, class S>
 [[nodiscard]] quaternion<promote_t<T, S>> pow_near_full_turn(const quaternion<T>& q,
                                                              const S& exponent) {
@@ -205,11 +204,11 @@ template <class T, class S>
   using std::sin;
   using R = promote_t<T, S>;
   using real = real_type_t<R>;
-  const real whole = round(real(innermost(exponent)));
-  const auto rest = exponent - whole;
-  const auto power = pow_by_whole(-q, exponent);
+  const real integer = round(real(innermost(exponent)));
+  const auto rest = exponent - integer;
+  const auto power = pow_by_integer(-q, exponent);
   const auto half_turns = select(
-      fmod(whole, real(2)) == 0, [&] { return power; }, [&] { return -power; });
+      fmod(integer, real(2)) == 0, [&] { return power; }, [&] { return -power; });
   return select(
       is_structural_zero(rest), [&] { return half_turns; },
       [&] {
@@ -235,7 +234,7 @@ template <class T, ScalarFor<T> S>
         return detail::by_lane(
             [](const auto& p, const auto& r) { return detail::pow_near_full_turn(p, r); }, q, rho);
       },
-      [&]() DUET_INLINE_LAMBDA { return detail::pow_by_whole(q, rho); });
+      [&]() DUET_INLINE_LAMBDA { return detail::pow_by_integer(q, rho); });
 }
 
 /// Arc taken by `slerp`: q and −q are the same rotation, reached by two arcs.
@@ -255,8 +254,8 @@ template <class A, class B>
 }
 
 /// SLERP, spherical linear interpolation from a to b, both of unit norm: a (a* b)^τ (N9), along the
-/// shorter arc by default. If a and b are exactly half a turn apart both arcs have the same length
-/// and b is taken as it is, see `differs_by_half_turn`.
+/// shorter arc by default. If a and b are exactly half a turn apart, both arcs have the same length
+/// and the sign of b is kept, see `differs_by_half_turn`.
 ///
 /// \throws invalid_input if a or b is zero
 /// \return `quaternion<T>`

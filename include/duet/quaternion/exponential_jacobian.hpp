@@ -119,13 +119,14 @@ struct jacobian_coefficients {
 
 /// f(s(t)), truncated, from f's Taylor coefficients at s(0) and s's with respect to t, of which the
 /// first is not used.
-template <std::size_t Count, class T, std::size_t Given, class S>
-[[nodiscard]] DUET_ALWAYS_INLINE std::array<S, Count> composed(const std::array<T, Given>& f,
+template <std::size_t Count, class T, std::size_t InputCount, class S>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<S, Count> composed(const std::array<T, InputCount>& f,
                                                                const std::array<S, Count>& s) {
   std::array<S, Count> result;
   result[0] = S(f[Count - 1]);
   each_index<S, Count - 1>([&](std::size_t done) DUET_INLINE_LAMBDA {
-    const std::size_t i = Count - 2 - done; // result ← f_i + (s − s_0) result, from its end
+    const std::size_t i =
+        Count - 2 - done; // result ← f_i + (s − s_0) result, from the highest order
     each_index<S, Count - 1>([&](std::size_t before) DUET_INLINE_LAMBDA {
       if (before <= done) {
         const std::size_t m = done + 1 - before;
@@ -148,11 +149,11 @@ template <std::size_t Count, class T, std::size_t Given, class S>
 /// coefficients of the Jacobian were computed at x = x_0.
 ///
 /// \tparam S  scalar of the rates: T or above
-template <std::size_t Count, std::size_t Given, class T, class S>
+template <std::size_t Count, std::size_t InputCount, class T, class S>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<vector3<S>, Count>
-half_body_rates(const jacobian_coefficients<Given, T>& jacobian, const vector3<T>& x,
+half_body_rates(const jacobian_coefficients<InputCount, T>& jacobian, const vector3<T>& x,
                 const std::array<vector3<S>, Count>& rates) {
-  static_assert(Count <= Given);
+  static_assert(Count <= InputCount);
   using R = real_type_t<S>;
   // With dx = ẋ: p = x·ẋ; s = x·x, ṡ = 2p; y = x × ẋ.
   const three_vector<T> at = components(x);

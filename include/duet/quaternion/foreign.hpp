@@ -13,8 +13,8 @@
 #include <vector>
 
 /// \file
-/// Rotations, poses and three-vectors of other libraries: overloads that reject them and say what
-/// to write instead.
+/// Rotations, poses and three-vectors of other libraries: overloads that reject them with a
+/// message that names the conversion.
 
 namespace duet::detail {
 
@@ -29,7 +29,7 @@ concept ForeignMotion = requires(const X& x) {
   as_foreign_motion(x);
 };
 
-/// All of Eigen's matrix expressions except columns and matrices of a size known at compile time.
+/// Matches all of Eigen's matrix expressions except columns and matrices of fixed size.
 template <class Derived>
   requires(!std::same_as<Derived, typename Derived::PlainObject> ||
            Derived::RowsAtCompileTime <= 1 || Derived::ColsAtCompileTime < 1)
@@ -58,14 +58,15 @@ concept ForeignRows = requires(const typename Rows::value_type& row) {
   as_foreign_row(row);
 };
 
-/// X is a Q or converts to it implicitly. (Eigen's types seem to, as a constructor rejects them.)
+/// X is a Q or converts to it implicitly. (Types of Eigen only seem to convert, as the
+/// constructor that rejects them takes them.)
 template <class X, class Q>
 concept Becomes = std::convertible_to<X, Q> && !ForeignMotion<std::remove_cvref_t<X>>;
 
 } // namespace duet::detail
 
-/// Rejects foreign arguments of `function`, which takes rotations, poses or vectors; then the type
-/// of its result.
+/// Rejects arguments of other libraries to `function`, which takes rotations, poses or vectors; the
+/// remaining arguments are the type of its result.
 #define DUET_REFUSES_FOREIGN(function, ...)                                                        \
   template <class... X>                                                                            \
     requires(detail::Foreign<X> || ...)                                                            \

@@ -19,7 +19,8 @@
 
 namespace duet {
 
-/// Tolerance on the norm of a given unit quaternion: tables are printed with few digits.
+/// Tolerance on the norm of a unit quaternion that is passed in: tables are printed with few
+/// digits.
 inline constexpr double unit_norm_tolerance = 1e-3;
 
 namespace detail {
@@ -37,15 +38,16 @@ template <Real R>
   return max(max(R(abs(q.w())), R(abs(q.x()))), max(R(abs(q.y())), R(abs(q.z()))));
 }
 
-/// Squares below it or above its inverse, or their powers in derivatives of the first orders,
-/// overflow or lose digits.
+/// Lower bound of moderate squares: squares below it or above its inverse, or their powers in
+/// low-order derivatives,
+/// overflow or lose precision.
 template <Real R>
-[[nodiscard]] R least_moderate() {
+[[nodiscard]] R min_moderate() {
   return R(std::numeric_limits<R>::max_exponent >= 1024 ? 0x1p-100 : 0x1p-20);
 }
 template <Real R>
 [[nodiscard]] auto is_moderate(const R& square) {
-  return square > least_moderate<R>() && square < 1 / least_moderate<R>();
+  return square > min_moderate<R>() && square < 1 / min_moderate<R>();
 }
 
 /// Exactly zero in all components: squares of small numbers vanish too, and NaN is not zero.
@@ -82,7 +84,7 @@ template <class T>
 template <class T>
 void require_not_zero(const quaternion<T>& q, const char* function) {
   if (any(is_zero(q))) {
-    raise(invalid_input(std::string("duet: ") + function + " of the zero quaternion"));
+    raise(invalid_input(std::string("duet: ") + function + ": the quaternion is zero"));
   }
 }
 

@@ -209,17 +209,17 @@ template <class T, detail::ForeignMotion X>
 DUET_REFUSED("a product with a rotation or pose of Eigen: from_eigen(p) * q")
 quaternion<T> operator*(const X&, const quaternion<T>&);
 
-/// Rejects products with vectors and matrices: a vector is rotated by a product on either side, a
-/// point moved by a pose likewise, and a matrix is another representation of a rotation or pose.
+/// Rejects products with vectors and matrices: to rotate a vector, or to transform a point by a
+/// pose, takes a product on either side, and a matrix is another representation of a rotation.
 template <class T, class V>
   requires(V::ColsAtCompileTime == 1)
-DUET_REFUSED("a quaternion times a vector: rotate(q, v) turns it, transform_point(A, v) moves a "
-             "point by a pose")
+DUET_REFUSED("a quaternion times a vector: rotate(q, v) rotates it, transform_point(A, v) "
+             "transforms a point by a pose")
 vector3<T> operator*(const quaternion<T>&, const Eigen::MatrixBase<V>&);
 template <class T, class V>
   requires(V::ColsAtCompileTime == 1)
-DUET_REFUSED("a vector times a quaternion: rotate(q, v) turns it, transform_point(A, v) moves a "
-             "point by a pose")
+DUET_REFUSED("a vector times a quaternion: rotate(q, v) rotates it, transform_point(A, v) "
+             "transforms a point by a pose")
 vector3<T> operator*(const Eigen::MatrixBase<V>&, const quaternion<T>&);
 template <class T, class M>
   requires(M::ColsAtCompileTime != 1)

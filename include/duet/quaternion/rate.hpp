@@ -40,7 +40,7 @@ angular_velocity(const quaternion<A>& q, const quaternion<B>& q_dot, Frame frame
 
 /// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
-DUET_REFUSED("in which axes? angular_velocity(q, q_dot, frame::spatial) or frame::body")
+DUET_REFUSED("the frame is missing: angular_velocity(q, q_dot, frame::spatial) or frame::body")
 vector3<promote_t<A, B>> angular_velocity(const quaternion<A>&, const quaternion<B>&);
 
 /// N7: the rate q̇ of a rotation with a given angular velocity, q̇ = ½ ω^s q = ½ q ω^b
@@ -54,7 +54,7 @@ quaternion_rate(const quaternion<A>& q, const vector3<B>& omega, Frame frame_of_
 
 /// Rejected: without a frame the axes are ambiguous.
 template <class A, class B>
-DUET_REFUSED("in which axes? quaternion_rate(q, omega, frame::spatial) or frame::body")
+DUET_REFUSED("the frame is missing: quaternion_rate(q, omega, frame::spatial) or frame::body")
 quaternion<promote_t<A, B>> quaternion_rate(const quaternion<A>&, const vector3<B>&);
 
 /// Angular acceleration, the rate ω̇ of the angular velocity of N7: vec(2 q̈ q*) in spatial axes,
@@ -68,7 +68,8 @@ angular_acceleration(const quaternion<A>& q, const quaternion<B>& /*q_dot*/,
 
 /// Rejected: without a frame the axes are ambiguous.
 template <class A, class B, class C>
-DUET_REFUSED("in which axes? angular_acceleration(q, q_dot, q_ddot, frame::spatial) or frame::body")
+DUET_REFUSED(
+    "the frame is missing: angular_acceleration(q, q_dot, q_ddot, frame::spatial) or frame::body")
 vector3<promote_t<A, B>> angular_acceleration(const quaternion<A>&, const quaternion<B>&,
                                               const quaternion<C>&);
 
@@ -87,7 +88,7 @@ quaternion_acceleration(const quaternion<A>& q, const vector3<B>& omega, const v
 /// Rejected: without a frame the axes are ambiguous.
 template <class A, class B, class C>
 DUET_REFUSED(
-    "in which axes? quaternion_acceleration(q, omega, alpha, frame::spatial) or frame::body")
+    "the frame is missing: quaternion_acceleration(q, omega, alpha, frame::spatial) or frame::body")
 quaternion<promote_t<A, B>> quaternion_acceleration(const quaternion<A>&, const vector3<B>&,
                                                     const vector3<C>&);
 
@@ -111,7 +112,7 @@ template <class T, class Frame>
 
 /// Rejected: without a frame the axes are ambiguous.
 template <class A>
-DUET_REFUSED("in which axes? quaternion_rate_matrix(q, frame::spatial) or frame::body")
+DUET_REFUSED("the frame is missing: quaternion_rate_matrix(q, frame::spatial) or frame::body")
 Eigen::Matrix<A, 3, 4> quaternion_rate_matrix(const quaternion<A>&);
 
 DUET_REFUSES_FOREIGN(angular_velocity, vector3<double>)

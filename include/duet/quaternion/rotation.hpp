@@ -56,15 +56,15 @@ template <class T>
 }
 
 /// Rotation vector of q, angle times axis, of length at most π: the same for q and −q, q of any
-/// norm. At a half turn (q₀ = 0) both r and −r are rotation vectors; the one of q's own sign is
-/// returned.
+/// norm. At a half turn (q₀ = 0) both r and −r are rotation vectors; the one given by the sign of q
+/// is returned.
 ///
 /// \throws invalid_input for the zero quaternion
 template <class T>
 [[nodiscard]] vector3<T> rotation_vector(const quaternion<T>& q) {
-  const quaternion<T> short_way = select(
+  const quaternion<T> shorter_arc = select(
       innermost(q.w()) < 0, [&] { return -q; }, [&] { return q; });
-  const vector3<T> half = detail::log_vector(short_way, "rotation_vector");
+  const vector3<T> half = detail::log_vector(shorter_arc, "rotation_vector");
   return {2 * half[0], 2 * half[1], 2 * half[2]};
 }
 
@@ -87,7 +87,7 @@ template <class T>
     return largest_component(innermost_of(quaternion<T>(T(0), x)));
   };
   // The sum is perpendicular to u, up to the deviation of u and v from unit length. If the sum is
-  // no larger than that, they are opposite.
+  // no larger than that deviation, u and v are opposite.
   const bool is_determined = same_side || 4 * largest(q.vec()) > largest(sum);
   const auto chosen =
       vector3<real>(innermost(u[0]), innermost(u[1]), innermost(u[2])).unitOrthogonal().eval();
@@ -161,8 +161,8 @@ template <class T>
       (values * values.transpose() - matrix3<real>::Identity()).cwiseAbs().maxCoeff();
   const real tolerance = std::numeric_limits<real>::digits > 24 ? real(1e-6) : real(1e-3);
   require(defect <= tolerance && !(values.determinant() < 0),
-          "duet: from_rotation_matrix: not a rotation: |R R^T - 1| = ", defect,
-          ", det R = ", values.determinant());
+          "duet: from_rotation_matrix: the matrix is not a rotation: |R R^T - 1| = ", defect,
+          ", det R = ", values.determinant(), " (expected 0 and 1)");
   // 4q₀², 4q₁² … from the diagonal; dividing by the largest avoids cancellation.
   const T s[4] = {1 + r(0, 0) + r(1, 1) + r(2, 2), 1 + r(0, 0) - r(1, 1) - r(2, 2),
                   1 - r(0, 0) + r(1, 1) - r(2, 2), 1 - r(0, 0) - r(1, 1) + r(2, 2)};
@@ -206,16 +206,16 @@ DUET_REFUSES_FOREIGN(rotation_matrix, matrix3<double>)
 DUET_REFUSES_FOREIGN(from_rotation_matrix, quaternion<double>)
 
 template <class V, class T>
-DUET_REFUSED("first the rotation: rotate(q, v)")
+DUET_REFUSED("the rotation is the first argument: rotate(q, v)")
 vector3<T> rotate(const Eigen::MatrixBase<V>&, const quaternion<T>&);
 template <Arithmetic S, class V>
-DUET_REFUSED("first the axis: from_axis_angle(n, a)")
+DUET_REFUSED("the axis is the first argument: from_axis_angle(n, a)")
 quaternion<double> from_axis_angle(const S&, const Eigen::MatrixBase<V>&);
 template <class A, class B>
-DUET_REFUSED("how far from p to q? slerp(p, q, t), t from 0 to 1")
+DUET_REFUSED("the parameter is missing: slerp(p, q, tau), tau from 0 to 1")
 quaternion<promote_t<A, B>> slerp(const quaternion<A>&, const quaternion<B>&);
 template <Arithmetic S, class A, class B>
-DUET_REFUSED("first the rotations: slerp(p, q, t)")
+DUET_REFUSED("the rotations are the first arguments: slerp(p, q, tau)")
 quaternion<promote_t<A, B>> slerp(const S&, const quaternion<A>&, const quaternion<B>&);
 
 } // namespace duet

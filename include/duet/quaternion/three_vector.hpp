@@ -10,9 +10,9 @@
 #include <type_traits>
 
 /// \file
-/// Three components in registers, used for vectors inside duet; users pass and get Eigen's vectors.
-/// Eigen's expressions are not `constexpr`, and would load two coefficients at once just after they
-/// were stored one by one, for which the processor waits.
+/// Three components in registers, used for vectors inside duet; users pass and receive Eigen's
+/// vectors. Eigen's expressions are not `constexpr`, and would load two coefficients at once just
+/// after they were stored one by one, which stalls the processor.
 
 namespace duet::detail {
 
@@ -72,7 +72,7 @@ template <class X, class Y, class Z, class U, class V, class W>
   return three_vector{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Instead of Eigen's `m << …`, which takes longer to compile.
+/// Matrix of three rows. (Eigen's `m << …` takes longer to compile.)
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE matrix3<T>
 matrix_of_rows(const three_vector<T>& a, const three_vector<T>& b, const three_vector<T>& c) {

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: how far does a turn by one radian count\?
+// expect: duet: the characteristic length is missing
 
 #include <duet/dual_quaternion/distance.hpp>
 

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (first the|how far from|a rotation, which turns|from_euler takes three)
+// expect: duet: (.*the first argument|the parameter is missing|transform_point takes|from_euler takes)
 // within: 2
 // forms: 7
 

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: about which axes
+// expect: duet: the Euler sequence is missing
 // within: 2
 // forms: 4
 
