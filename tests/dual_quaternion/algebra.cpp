@@ -29,7 +29,7 @@ using number = duet::screw_dual<double>;
 using quaternion = duet::quaternion<double>;
 using dual_quaternion = duet::dual_quaternion<double>;
 
-TEST_CASE("N10, N11: dual numbers") {
+TEST_CASE("N10, N11: products, conjugates and inverses of dual numbers") {
   const number a(2, 3);
   const number b(-4, 5);
   CHECK((a * b).value() == -8);
@@ -48,7 +48,7 @@ TEST_CASE("N10, N11: dual numbers") {
   CHECK(!std::isfinite((1 / divisor).value()));
 }
 
-TEST_CASE("N12: dual vectors, both readings") {
+TEST_CASE("N12: dot and cross products of dual vectors agree in both readings") {
   const vector a(1, 2, 3), b(4, -5, 6), c(0.5, 0.25, -2), d(-1, 3, 2);
   const auto u = make_dual_vector(a, b);
   const auto v = make_dual_vector(c, d);
@@ -65,7 +65,7 @@ TEST_CASE("N12: dual vectors, both readings") {
   CHECK(dual_part(scaled) == vector(2 * b + 3 * a));
 }
 
-TEST_CASE("N13, N14: products in both readings") {
+TEST_CASE("N13, N14: products of dual quaternions agree in both readings") {
   const quaternion p(1, 2, -3, 4), q(0.5, -1, 2, 3), u(2, 0.25, 1, -1), v(-3, 1, 0.5, 2);
   const dual_quaternion a = make_dual_quaternion(p, q);
   const dual_quaternion b = make_dual_quaternion(u, v);
@@ -85,7 +85,7 @@ TEST_CASE("N13, N14: products in both readings") {
         0);
 }
 
-TEST_CASE("N15: three conjugates") {
+TEST_CASE("N15: the three conjugates have their signs and product rules") {
   const quaternion p(1, 2, -3, 4), q(0.5, -1, 2, 3), u(2, 0.25, 1, -1), v(-3, 1, 0.5, 2);
   const dual_quaternion a = make_dual_quaternion(p, q);
   const dual_quaternion b = make_dual_quaternion(u, v);
@@ -97,7 +97,7 @@ TEST_CASE("N15: three conjugates") {
   CHECK(max_abs_difference(point_conj(a * b), point_conj(b) * point_conj(a)) == 0);
 }
 
-TEST_CASE("N16: unit dual quaternions, and how to make one") {
+TEST_CASE("N16: is_unit checks both conditions, normalized restores them") {
   for (const auto& a : duet_test::poses()) {
     CHECK(duet::is_unit(a));
     CHECK(max_abs_difference(a * conj(a), dual_quaternion(number(1))) < 1e-15 * 8);
@@ -113,7 +113,7 @@ TEST_CASE("N16: unit dual quaternions, and how to make one") {
   CHECK(!duet::is_unit(make_dual_quaternion(quaternion(1, 0, 0, 0), quaternion(0.1, 0, 0, 1))));
 }
 
-TEST_CASE("zero divisors have no inverse and no direction") {
+TEST_CASE("zero divisors: inverse and normalized reject them") {
   const dual_quaternion divisor =
       make_dual_quaternion(quaternion(0, 0, 0, 0), quaternion(1, 2, 3, 4));
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::inverse(divisor)),

@@ -57,22 +57,22 @@ std::string message(const std::vector<Q>& q, const std::vector<double>& weights)
   return duet_test::message_of<std::exception>([&] { static_cast<void>(average(q, weights)); });
 }
 
-double gap_of_poses(const dual_quaternion& a, const dual_quaternion& b) {
+double pose_difference(const dual_quaternion& a, const dual_quaternion& b) {
   return std::min(max_abs_difference(a, b), max_abs_difference(a, -b));
 }
 
 } // namespace
 
-TEST_CASE("of two: half way along the screw between them") {
+TEST_CASE("average: the mean of two poses lies on the screw between them") {
   const auto p = some_poses(2, 1.5);
-  CHECK(gap_of_poses(average(p), slerp(p[0], p[1], 0.5)) < 2e-15);
-  CHECK(gap_of_poses(average(p, {3, 1}), slerp(p[0], p[1], 0.25)) < 2e-15);
+  CHECK(pose_difference(average(p), slerp(p[0], p[1], 0.5)) < 2e-15);
+  CHECK(pose_difference(average(p, {3, 1}), slerp(p[0], p[1], 0.25)) < 2e-15);
   CHECK(average({p[0], p[1]}) == average(p));
   CHECK(average({p[0], p[1]}, {3, 1}) == average(p, {3, 1}));
-  CHECK(gap_of_poses(average(p, {0, 2}), p[1]) < 1e-15);
+  CHECK(pose_difference(average(p, {0, 2}), p[1]) < 1e-15);
 }
 
-TEST_CASE("the equation holds, in rotation and translation") {
+TEST_CASE("average: the sum of logarithms vanishes in rotation and translation") {
   for (const double angle : {1e-8, 0.5, 1.5}) {
     const auto p = some_poses(9, angle);
     const auto mean = average(p);
@@ -89,18 +89,18 @@ TEST_CASE("the equation holds, in rotation and translation") {
   }
 }
 
-TEST_CASE("within a quarter turn of one rotation no other has a smaller sum of squares") {
+TEST_CASE("average: minimises the sum of squares within a quarter turn of one rotation") {
   duet_test::random_source random(3);
-  const auto turn = [&](double angle) {
+  const auto rotation_of_angle = [&](double angle) {
     const auto d = random.direction<3>();
     return duet::from_rotation_vector(vector(angle * vector(d[0], d[1], d[2])));
   };
   for (int table = 0; table < 100; ++table) {
-    const rotation middle = turn(random.uniform(0, 3));
+    const rotation centre = rotation_of_angle(random.uniform(0, 3));
     std::vector<rotation> q;
     std::vector<double> w;
     for (int k = 0; k < 2 + table % 8; ++k) {
-      q.push_back(middle * turn(1.57)); // all at the edge
+      q.push_back(centre * rotation_of_angle(1.57)); // all at the boundary of the domain
       w.push_back(random.uniform(0.01, 1));
     }
     const auto direction = [&](const rotation& m) {
@@ -119,17 +119,17 @@ TEST_CASE("within a quarter turn of one rotation no other has a smaller sum of s
       }
       return sum;
     };
-    const double found = squares(average(q, w));
-    for (rotation m : q) { // downhill from each
+    const double sum_at_mean = squares(average(q, w));
+    for (rotation m : q) { // gradient descent from each rotation
       for (int i = 0; i < 100; ++i) {
         m = normalized(m * duet::from_rotation_vector(direction(m)));
       }
-      CHECK(found <= squares(m) * (1 + 1e-9) + 1e-12);
+      CHECK(sum_at_mean <= squares(m) * (1 + 1e-9) + 1e-12);
     }
   }
 }
 
-TEST_CASE("pure translations have the mean of the translations") {
+TEST_CASE("average: pure translations have the mean of the translations") {
   std::vector<dual_quaternion> p;
   for (const vector& t : {vector(1, 2, 3), vector(-2, 0, 1), vector(4, 4, 2)}) {
     p.push_back(duet::pose(rotation(1.0), t));
@@ -137,7 +137,7 @@ TEST_CASE("pure translations have the mean of the translations") {
   CHECK(max_abs_difference(duet::translation(average(p)), vector(1, 2, 2)) < 1e-15);
 }
 
-TEST_CASE("moving all moves the mean along, from either side") {
+TEST_CASE("average: bi-invariant under rigid motions from the left and the right") {
   const auto p = some_poses(7, 1.4);
   const auto c = duet::pose(duet::from_rotation_vector(vector(2, -1, 0.4)), vector(3, 1, -2));
   std::vector<dual_quaternion> left;
@@ -146,16 +146,16 @@ TEST_CASE("moving all moves the mean along, from either side") {
     left.push_back(c * a);
     right.push_back(a * c);
   }
-  CHECK(gap_of_poses(average(left), c * average(p)) < 2e-14);
-  CHECK(gap_of_poses(average(right), average(p) * c) < 2e-14);
+  CHECK(pose_difference(average(left), c * average(p)) < 2e-14);
+  CHECK(pose_difference(average(right), average(p) * c) < 2e-14);
 }
 
-TEST_CASE("derivatives to third order, against 50-digit differences of 50-digit means") {
+TEST_CASE("average: derivatives to third order agree with differences in 50 digits") {
   const auto p = some_poses(5, 1.2);
   const auto moving = [&]<class T>(const T& t) {
     std::vector<duet::dual_quaternion<T>> q(p.begin(), p.end());
-    const duet::vector3<T> turn(T(0.4 * t), T(-0.7 * t * t), T(sin(t)));
-    q[1] = duet::pose(duet::from_rotation_vector(turn), duet::vector3<T>(t, t * t, -t)) * q[1];
+    const duet::vector3<T> r(T(0.4 * t), T(-0.7 * t * t), T(sin(t)));
+    q[1] = duet::pose(duet::from_rotation_vector(r), duet::vector3<T>(t, t * t, -t)) * q[1];
     return average(q);
   };
   const auto d = duet::derivatives<3>(moving, 0.3);
@@ -178,7 +178,7 @@ TEST_CASE("derivatives to third order, against 50-digit differences of 50-digit 
   CHECK(max_abs_difference(d[3], difference({-1, 2, 0, -2, 1}, wide(2 * h * h * h))) < 1e-12);
 }
 
-TEST_CASE("what has no mean") {
+TEST_CASE("average: rejects empty lists and invalid weights") {
   const std::vector<rotation> q = {rotation(1, 0, 0, 0), rotation(0, 1, 0, 0)};
   CHECK(message(std::vector<rotation>(), {}) == "duet: average: there are no elements");
   CHECK(message(q, {1}) ==
@@ -189,15 +189,15 @@ TEST_CASE("what has no mean") {
         "duet: average: all weights are 0 (expected at least one positive weight)");
 }
 
-TEST_CASE("weights count in proportion, however large or small") {
+TEST_CASE("average: only ratios of weights matter, however large or small they are") {
   const std::vector<duet::quaternion<double>> q = {
       duet::from_rotation_vector(duet::vector3<double>(0.2, 0, 0)),
       duet::from_rotation_vector(duet::vector3<double>(0, 0.4, 0))};
   const auto expected = duet::average(q, {1, 3});
   for (const double unit : {4e-324, 1e-310, 5e307}) {
     CAPTURE(unit);
-    const auto found = duet::average(q, {unit, 3 * unit});
-    CHECK(duet::rotation_vector(conj(expected) * found).norm() <= 1e-15);
+    const auto result = duet::average(q, {unit, 3 * unit});
+    CHECK(duet::rotation_vector(conj(expected) * result).norm() <= 1e-15);
   }
 }
 

@@ -26,12 +26,12 @@ namespace {
 
 constexpr double limit = 8;
 
-/// No motion, pure translation, tiny, half a turn, nearly a full turn, random.
+/// The identity, pure translations, tiny motions, half turns, nearly full turns, random motions.
 std::vector<dual_quaternion<double>> displacements() {
   duet_test::random_source random(9);
   std::vector<dual_quaternion<double>> result;
-  const auto add = [&](const vector3<double>& turn, const vector3<double>& shift) {
-    result.push_back(pose(from_rotation_vector(turn), shift));
+  const auto add = [&](const vector3<double>& r, const vector3<double>& shift) {
+    result.push_back(pose(from_rotation_vector(r), shift));
   };
   add({0, 0, 0}, {0, 0, 0});
   add({0, 0, 0}, {1, -2, 3});
@@ -40,15 +40,15 @@ std::vector<dual_quaternion<double>> displacements() {
   add({6.2, 0, 0}, {0.5, 0, 0});
   while (result.size() < 11) {
     const auto number = [&] { return random.uniform(-2, 2); };
-    const vector3<double> turn(number(), number(), number());
-    add(turn, {number(), number(), number()});
+    const vector3<double> r(number(), number(), number());
+    add(r, {number(), number(), number()});
   }
   return result;
 }
 
 } // namespace
 
-TEST_CASE("motions over batches are those of the lanes") {
+TEST_CASE("batches: rigid motions agree with each lane") {
   const auto a = displacements();
   auto b = a;
   std::swap(b[0], b[3]);
@@ -68,7 +68,7 @@ TEST_CASE("motions over batches are those of the lanes") {
       2 * limit, std::vector<dual<double>>{{0.0, 1.0}, {0.3, 1.0}, {1.0, 2.0}});
 }
 
-TEST_CASE("distances that are out of range as squares are those of the lanes") {
+TEST_CASE("batches: distances whose squares overflow or underflow agree with each lane") {
   const auto at = [](double x) {
     return pose(from_rotation_vector(vector3<double>(0, 0, 0.1)), vector3<double>(x, 0, 0));
   };
@@ -77,7 +77,7 @@ TEST_CASE("distances that are out of range as squares are those of the lanes") {
   check_lanes<4>([](const auto& p, const auto& q) { return distance(p, q, 1.0); }, limit, a, b);
 }
 
-TEST_CASE("what is made of motions") {
+TEST_CASE("batches: transformed points, lines, twists and Jacobians agree with each lane") {
   const auto a = displacements();
   auto b = a;
   std::rotate(b.begin(), b.begin() + 4, b.end());
@@ -87,9 +87,9 @@ TEST_CASE("what is made of motions") {
   std::vector<vector7<double>> coordinates;
   for (const auto& p : b) {
     points.push_back(translation(p) + vector3<double>(1, 0, 0));
-    const vector3<double> turn = rotation_vector(rotation(p));
+    const vector3<double> r = rotation_vector(rotation(p));
     twists.emplace_back();
-    twists.back() << translation(p), turn;
+    twists.back() << translation(p), r;
     lines.push_back(dual_vector_of(twists.back()));
     coordinates.push_back(pose_coordinates(p));
   }

@@ -14,7 +14,7 @@
 #include <vector>
 
 /// \file
-/// Poses that formulas stumble over, and random ones.
+/// Poses at which formulas may fail, and random poses.
 
 namespace duet_test {
 

@@ -14,7 +14,7 @@
 #include <array>
 #include <vector>
 
-// Squad and Bézier curves, of poses and so of rotations; the long way round.
+// Squad and Bézier curves, of poses and so of rotations; arcs of ScLERP.
 
 namespace test_dual_quaternion_curves {
 
@@ -50,7 +50,7 @@ duet::vector6<double> body_twist(const D& d) {
 
 } // namespace
 
-TEST_CASE("squad goes through the poses, with one velocity where segments join") {
+TEST_CASE("squad: passes through the poses with continuous velocity") {
   const auto p = table();
   const auto segment = [&](std::size_t i) {
     return [&p, i](const auto& tau) {
@@ -66,15 +66,15 @@ TEST_CASE("squad goes through the poses, with one velocity where segments join")
     CHECK(max_abs_difference(body_twist(end), body_twist(duet::derivative<duet_test::shared_tag>(
                                                   segment(i + 1), 0.0))) < 4e-14);
   }
-  // The velocity there: the mean of the logarithms to both sides.
-  const auto forth = log(conj(p[1]) * p[2]).vec();
-  const auto back = log(conj(p[1]) * p[0]).vec();
-  const duet::dual_vector<double> mean = forth - back;
+  // The velocity at p[1] is the mean of the logarithms to both neighbours.
+  const auto to_next = log(conj(p[1]) * p[2]).vec();
+  const auto to_previous = log(conj(p[1]) * p[0]).vec();
+  const duet::dual_vector<double> mean = to_next - to_previous;
   CHECK(max_abs_difference(body_twist(duet::derivative<duet_test::shared_tag>(segment(1), 0.0)),
                            duet::twist_of(mean)) < 2e-14);
 }
 
-TEST_CASE("Bézier curves start and end along the control polygon, n times as fast") {
+TEST_CASE("bezier: end velocities are n times those of the control polygon") {
   const auto p = table();
   for (std::size_t n = 1; n <= 4; ++n) {
     const std::vector<dual_quaternion> points(p.begin(), p.begin() + int(n) + 1);
@@ -99,7 +99,7 @@ TEST_CASE("Bézier curves start and end along the control polygon, n times as fa
                        "duet: bezier: there are no control points", duet::invalid_input);
 }
 
-TEST_CASE("third derivatives agree with the slopes of second ones") {
+TEST_CASE("bezier: third derivatives agree with derivatives of second derivatives") {
   const auto p = table();
   const auto curve = [&](const auto& tau) { return bezier(p, tau); };
   const auto d = duet::derivatives<3>(curve, 0.4);
@@ -108,22 +108,22 @@ TEST_CASE("third derivatives agree with the slopes of second ones") {
         4e-12);
 }
 
-TEST_CASE("the long way round, the short one, and the one the signs say") {
+TEST_CASE("sclerp: takes the shorter arc, the longer arc or that of the signs") {
   const auto a = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
   const auto b = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 1.0), vector(0, 0, 2));
   for (const auto& goal : {b, -b}) {
-    const auto angle = [&](slerp_arc round) {
+    const auto angle = [&](slerp_arc arc) {
       const auto d = duet::derivative<duet_test::shared_tag>(
-          [&](auto t) { return sclerp(a, goal, t, round); }, 0.0);
-      CHECK(max_abs_difference(duet::transform_matrix(sclerp(a, goal, 1.0, round)),
+          [&](auto t) { return sclerp(a, goal, t, arc); }, 0.0);
+      CHECK(max_abs_difference(duet::transform_matrix(sclerp(a, goal, 1.0, arc)),
                                duet::transform_matrix(b)) < 2e-15);
       return duet::twist(d.value, d.derivative, duet::frame::body)[5];
     };
-    const double long_way = 1 - 2 * 3.141592653589793;
+    const double longer_arc = 1 - 2 * 3.141592653589793;
     CHECK(angle(slerp_arc::shortest) == doctest::Approx(1.0).epsilon(1e-15));
-    CHECK(angle(slerp_arc::longest) == doctest::Approx(long_way).epsilon(1e-15));
+    CHECK(angle(slerp_arc::longest) == doctest::Approx(longer_arc).epsilon(1e-15));
     CHECK(angle(slerp_arc::as_given) ==
-          doctest::Approx(duet::real_part(goal).w() > 0 ? 1.0 : long_way).epsilon(1e-15));
+          doctest::Approx(duet::real_part(goal).w() > 0 ? 1.0 : longer_arc).epsilon(1e-15));
   }
   CHECK_FALSE(differs_by_half_turn(a, b));
   const auto half_turn = duet::pose(duet::quaternion<double>(0, 0.6, 0.8, 0), vector(1, 2, 3));

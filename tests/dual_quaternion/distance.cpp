@@ -25,19 +25,21 @@ using duet_test::poses;
 using duet_test::vector;
 using dual_quaternion = duet::dual_quaternion<double>;
 
-TEST_CASE("the distance is a metric that knows no fixed frame") {
+TEST_CASE("distance: a metric, independent of the fixed frame") {
   const auto all = poses();
-  const double length = 0.5;
+  const double characteristic_length = 0.5;
   for (std::size_t i = 0; i + 7 < all.size(); ++i) {
     const auto& a = all[i];
     const auto& b = all[i + 4];
     const auto& c = all[i + 7];
-    const double ab = distance(a, b, length);
-    CHECK(distance(a, a, length) < 1e-15);
-    CHECK(distance(b, a, length) == doctest::Approx(ab).epsilon(1e-13));
-    CHECK(distance(a, -b, length) == ab);
-    CHECK(distance(c * a, c * b, length) == doctest::Approx(ab).epsilon(1e-12).scale(0.01));
-    CHECK(distance(a, c, length) <= ab + distance(b, c, length) + 1e-14);
+    const double ab = distance(a, b, characteristic_length);
+    CHECK(distance(a, a, characteristic_length) < 1e-15);
+    CHECK(distance(b, a, characteristic_length) == doctest::Approx(ab).epsilon(1e-13));
+    CHECK(distance(a, -b, characteristic_length) == ab);
+    CHECK(distance(c * a, c * b, characteristic_length) ==
+          doctest::Approx(ab).epsilon(1e-12).scale(0.01));
+    CHECK(distance(a, c, characteristic_length) <=
+          ab + distance(b, c, characteristic_length) + 1e-14);
   }
   const auto a = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 0.3), vector(1, 2, 3));
   const auto b = duet::pose(duet::from_axis_angle(vector(0, 0, 1), 1.1), vector(1, 2, 4));
@@ -49,14 +51,14 @@ TEST_CASE("the distance is a metric that knows no fixed frame") {
       duet::invalid_input);
 }
 
-TEST_CASE("distances whose squares overflow, and the nearest place among such") {
+TEST_CASE("distance and nearest_on_screw: correct if squares overflow or underflow") {
   const auto at = [](double x) {
     return duet::pose(duet::quaternion<double>(1.0), vector(x, 0, 0));
   };
   for (const double size : {1e-320, 1e-200, 1e-160, 1e160, 1e300}) {
     CAPTURE(size);
     CHECK(distance(at(0), at(size), 1e-300) == doctest::Approx(size).epsilon(1e-15));
-    const auto slope = duet::derivative<duet_test::shared_tag>(
+    const auto result = duet::derivative<duet_test::shared_tag>(
         [&](const auto& x) {
           using S = std::decay_t<decltype(x)>;
           return distance(
@@ -64,7 +66,7 @@ TEST_CASE("distances whose squares overflow, and the nearest place among such") 
               duet::pose(duet::quaternion<S>(S(1.0)), duet::vector3<S>(x, S(0.0), S(0.0))), 0);
         },
         size);
-    CHECK(slope.derivative == doctest::Approx(1).epsilon(1e-15));
+    CHECK(result.derivative == doctest::Approx(1).epsilon(1e-15));
   }
   for (const double size : {1e-200, 1e200}) {
     CAPTURE(size);
@@ -75,85 +77,87 @@ TEST_CASE("distances whose squares overflow, and the nearest place among such") 
   }
 }
 
-TEST_CASE("a pose on a screw motion, and one beside it, is found again") {
-  // A corkscrew of three turns.
+TEST_CASE("nearest_on_screw: finds poses on and near the screw motion") {
+  // A screw motion of three full turns.
   const duet::screw_motion<double> motion = {vector(0, 0, 1), vector(0, -1, 0),
                                              6 * 3.141592653589793, 0.9, duet::screw_kind::screw};
   const auto start = duet::pose(duet::from_rotation_vector(vector(0.2, -1, 0.4)), vector(1, 0, 2));
   for (const double tau : {0.0, 0.123, 0.5, 0.77, 1.0}) {
     const auto on = start * duet::from_screw(motion.axis, motion.moment, motion.angle * tau,
                                              motion.translation * tau);
-    const auto found = nearest_on_screw(start, motion, on, 0.3);
-    CHECK(found.tau == doctest::Approx(tau).epsilon(1e-12));
-    CHECK(found.squared_distance < 1e-24);
-    const auto beside = on * duet::pose(duet::quaternion<double>(1.0), vector(0.1, 0, 0));
-    const auto near = nearest_on_screw(start, motion, beside, 0.3);
+    const auto result = nearest_on_screw(start, motion, on, 0.3);
+    CHECK(result.tau == doctest::Approx(tau).epsilon(1e-12));
+    CHECK(result.squared_distance < 1e-24);
+    const auto nearby = on * duet::pose(duet::quaternion<double>(1.0), vector(0.1, 0, 0));
+    const auto nearest = nearest_on_screw(start, motion, nearby, 0.3);
     for (int i = 0; i <= 2000; ++i) {
       const double t = i / 2000.0;
-      const auto there = start * duet::from_screw(motion.axis, motion.moment, motion.angle * t,
-                                                  motion.translation * t);
-      CHECK_GE(squared_distance(there, beside, 0.3), near.squared_distance - 1e-15);
+      const auto sample = start * duet::from_screw(motion.axis, motion.moment, motion.angle * t,
+                                                   motion.translation * t);
+      CHECK_GE(squared_distance(sample, nearby, 0.3), nearest.squared_distance - 1e-15);
     }
   }
 }
 
-TEST_CASE("nearest_on_screw: of all turns the nearest, found by brute force as well") {
+TEST_CASE("nearest_on_screw: over several full turns no sampled pose is nearer") {
   const auto start = duet::pose(duet::from_rotation_vector(vector(0.2, -1, 0.4)), vector(1, 0, 2));
-  const double turn = 6.283185307179586;
-  for (const double turns : {-2.5, 0.5, 1.0, 1.5, 2.0, 3.25, 5.0, 1e6}) {
+  const double full_turn = 6.283185307179586;
+  for (const double turn_count : {-2.5, 0.5, 1.0, 1.5, 2.0, 3.25, 5.0, 1e6}) {
     for (const double pitch : {0.3, -0.01, 1e-6}) {
       const duet::screw_motion<double> motion = {vector(0, 0.6, 0.8), vector(0.5, 0, 0),
-                                                 turns * turn, turns * pitch,
+                                                 turn_count * full_turn, turn_count * pitch,
                                                  duet::screw_kind::screw};
       const auto at = [&](double tau) {
         return start * duet::from_screw(motion.axis, motion.moment, motion.angle * tau,
                                         motion.translation * tau);
       };
       for (const double tau : {0.0, 0.01, 0.25, 0.37, 0.5, 0.732, 0.99, 1.0}) {
-        CAPTURE(turns);
+        CAPTURE(turn_count);
         CAPTURE(pitch);
         CAPTURE(tau);
-        for (const double length : {0.0, 0.3, 3.0}) {
-          const auto found = nearest_on_screw(start, motion, at(tau), length);
-          CHECK_LT(std::abs(found.tau - tau), turns == 1e6 ? 1e-7 : 1e-9);
-          CHECK_LT(found.squared_distance, turns == 1e6 ? 1e-15 : 1e-24);
+        for (const double characteristic_length : {0.0, 0.3, 3.0}) {
+          const auto result = nearest_on_screw(start, motion, at(tau), characteristic_length);
+          CHECK_LT(std::abs(result.tau - tau), turn_count == 1e6 ? 1e-7 : 1e-9);
+          CHECK_LT(result.squared_distance, turn_count == 1e6 ? 1e-15 : 1e-24);
         }
-        if (turns == 1e6) {
+        if (turn_count == 1e6) {
           continue;
         }
-        // Far off the motion, rotated by nearly half a turn, two minima lie beside a kink.
+        // For poses far from the motion, rotated by nearly a half turn, two minima lie next to a
+        // kink.
         for (const double angle : {1.0, 3.14}) {
           const auto p = at(tau) * duet::pose(duet::from_rotation_vector(vector(0, -angle, 0)),
                                               vector(0.3, 0.2, 0));
-          const double found = nearest_on_screw(start, motion, p, 0.2).squared_distance;
-          double least = 1e300;
+          const double minimum = nearest_on_screw(start, motion, p, 0.2).squared_distance;
+          double min_sampled = 1e300;
           for (int i = 0; i <= 500; ++i) {
-            least = std::min(least, squared_distance(at(i / 500.), p, 0.2));
+            min_sampled = std::min(min_sampled, squared_distance(at(i / 500.), p, 0.2));
           }
-          CHECK_LE(found, least + 1e-15);
+          CHECK_LE(minimum, min_sampled + 1e-15);
         }
       }
     }
   }
 }
 
-TEST_CASE("nearest_on_screw: a minimum beside the kink where the rotation angle is half a turn") {
+TEST_CASE("nearest_on_screw: finds a minimum next to the kink at a rotation angle of a half turn") {
   duet_test::random_source random(5);
   for (int k = 0; k < 960; ++k) {
     const auto n = random.direction<3>();
     const vector axis(n[0], n[1], n[2]);
     const vector point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const double turns = random.uniform(.2, 3), pitch = random.uniform(-.3, .3);
-    const duet::screw_motion<double> motion = {axis, point.cross(axis), turns * 6.283185307179586,
-                                               turns * pitch, duet::screw_kind::screw};
+    const double turn_count = random.uniform(.2, 3), pitch = random.uniform(-.3, .3);
+    const duet::screw_motion<double> motion = {axis, point.cross(axis),
+                                               turn_count * 6.283185307179586, turn_count * pitch,
+                                               duet::screw_kind::screw};
     const auto d = random.direction<3>();
     const double angle =
         random.integer(0, 1) == 1 ? 3.14159 - random.log_uniform(1e-6, 1) : random.uniform(0, 3.14);
     const double tau = random.uniform(0, 1);
     const vector moved(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const double length = random.log_uniform(1e-3, 3);
+    const double characteristic_length = random.log_uniform(1e-3, 3);
     if (k != 169 && k != 959) {
-      continue; // these have such a minimum, the least of all
+      continue; // cases 169 and 959 have a global minimum next to a kink
     }
     const auto at = [&](double x) {
       return duet::from_screw(motion.axis, motion.moment, motion.angle * x, motion.translation * x);
@@ -163,15 +167,17 @@ TEST_CASE("nearest_on_screw: a minimum beside the kink where the rotation angle 
         duet::pose(duet::from_rotation_vector(vector(angle * d[0], angle * d[1], angle * d[2])),
                    moved);
     const auto start = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
-    double least = std::numeric_limits<double>::infinity();
+    double min_sampled = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= 20000; ++i) {
-      least = std::min(least, squared_distance(at(i / 20000.), p, length));
+      min_sampled =
+          std::min(min_sampled, squared_distance(at(i / 20000.), p, characteristic_length));
     }
-    CHECK_LE(nearest_on_screw(start, motion, p, length).squared_distance, least + 1e-15);
+    CHECK_LE(nearest_on_screw(start, motion, p, characteristic_length).squared_distance,
+             min_sampled + 1e-15);
   }
 }
 
-TEST_CASE("outside, an end is nearest") {
+TEST_CASE("nearest_on_screw: beyond the motion an end is nearest") {
   const auto start = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
   const auto goal = duet::pose(duet::quaternion<double>(1.0), vector(2, 0, 0));
   const auto motion = screw_parameters(conj(start) * goal);
@@ -183,19 +189,20 @@ TEST_CASE("outside, an end is nearest") {
   CHECK(at(-1) == 0);
   CHECK(at(0.5) == doctest::Approx(0.25).epsilon(1e-14));
   CHECK(at(3) == 1);
-  // Turning about the origin, from where all poses of the motion are equally far without angles.
-  const duet::screw_motion<double> turn = {vector(0, 0, 1), vector(0, 0, 0), 1, 0,
-                                           duet::screw_kind::rotation};
-  const auto beside = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 2));
-  const auto any = nearest_on_screw(start, turn, beside, 0.0);
+  // Rotation about the origin: without a weight of angles all poses of the motion are equally far.
+  const duet::screw_motion<double> pure_rotation = {vector(0, 0, 1), vector(0, 0, 0), 1, 0,
+                                                    duet::screw_kind::rotation};
+  const auto raised = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 2));
+  const auto any = nearest_on_screw(start, pure_rotation, raised, 0.0);
   CHECK(any.squared_distance == 4);
   CHECK((any.tau >= 0 && any.tau <= 1));
-  // Beyond half a turn the distance is not convex: an end may still be nearest.
-  const auto beyond = duet::pose(duet::from_axis_angle(vector(0, 0, 1), -2.0), vector(0, 0, 0));
-  CHECK(nearest_on_screw(start, turn, beyond, 1.0).tau == 0);
+  // Beyond a half turn the distance is not convex: an end may still be nearest.
+  const auto rotated_back =
+      duet::pose(duet::from_axis_angle(vector(0, 0, 1), -2.0), vector(0, 0, 0));
+  CHECK(nearest_on_screw(start, pure_rotation, rotated_back, 1.0).tau == 0);
 }
 
-TEST_CASE("the nearest place is differentiated by the equation that it solves") {
+TEST_CASE("nearest_on_screw: the derivative of tau agrees with differences") {
   const auto start = duet::pose(duet::from_rotation_vector(vector(0.2, -1, 0.4)), vector(1, 0, 2));
   const auto goal = duet::pose(duet::from_rotation_vector(vector(1.2, 0.3, 0)), vector(0, 1, 4));
   const auto motion = screw_parameters(conj(start) * goal);
@@ -208,12 +215,14 @@ TEST_CASE("the nearest place is differentiated by the equation that it solves") 
     return nearest_on_screw(duet::dual_quaternion<T>(start), m, p, 0.7).tau;
   };
   const double h = 1e-3;
-  const auto slope = [&](double step) { return (tau(0.4 + step) - tau(0.4 - step)) / (2 * step); };
+  const auto difference = [&](double step) {
+    return (tau(0.4 + step) - tau(0.4 - step)) / (2 * step);
+  };
   CHECK(duet::derivative<duet_test::shared_tag>(tau, 0.4).derivative ==
-        doctest::Approx((4 * slope(h) - slope(2 * h)) / 3).epsilon(1e-8));
+        doctest::Approx((4 * difference(h) - difference(2 * h)) / 3).epsilon(1e-8));
 }
 
-TEST_CASE("N21: J2 takes the rate of [t; α] to the spatial twist, and back") {
+TEST_CASE("N21: J2 maps the rate of [t; α] to the spatial twist, and back") {
   for (const auto& a : poses()) {
     duet::vector6<double> v;
     v << 0.3, -1, 0.4, 0.7, 0.2, -0.5;
@@ -221,7 +230,7 @@ TEST_CASE("N21: J2 takes the rate of [t; α] to the spatial twist, and back") {
     CHECK(max_abs_difference(duet::from_pose_coordinates(gamma), a) < 2e-15);
     const auto rate = duet::pose_coordinates_rate(a, v);
     CHECK(max_abs_difference(duet::pose_rate_matrix(a) * rate, v) < 1e-14);
-    // The same by AD: along A exp(½Vt) in spatial axes.
+    // The rate by AD along exp(½Vt) A, V in spatial axes.
     const auto by_ad = duet::derivative<duet_test::shared_tag>(
         [&](auto t) {
           using S = decltype(t);

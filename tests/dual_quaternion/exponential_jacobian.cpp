@@ -34,7 +34,7 @@ twist make_twist(const vector& v, const vector& w) {
   return x;
 }
 
-/// Nothing, tiny, translations, half turn, either side of the switch of series, near a full turn.
+/// Zero, tiny, translations, half turn, both sides of the switch of series, near a full turn.
 std::vector<twist> twists() {
   std::vector<twist> result;
   const vector zero = vector::Zero();
@@ -55,7 +55,7 @@ auto pose_of(const vector6<T>& x) {
 
 } // namespace
 
-TEST_CASE("rates of poses by AD are J_l ẋ in spatial and J_r ẋ in body axes") {
+TEST_CASE("left_jacobian and right_jacobian: agree with rates of poses by AD") {
   for (const twist& x : twists()) {
     CAPTURE(x.transpose());
     const twist x_dot = make_twist(vector(0.7, -0.4, 0.2), vector(-0.3, 0.5, 0.9));
@@ -75,7 +75,7 @@ TEST_CASE("rates of poses by AD are J_l ẋ in spatial and J_r ẋ in body axes"
   }
 }
 
-TEST_CASE("inverses") {
+TEST_CASE("left_jacobian_inverse and right_jacobian_inverse: inverse except at a full turn") {
   for (const twist& x : twists()) {
     CAPTURE(x.transpose());
     const duet::matrix6<double> one = duet::matrix6<double>::Identity();
@@ -95,7 +95,7 @@ TEST_CASE("inverses") {
   CHECK(std::abs(at_full_turn(0, 0)) > 1e14);
 }
 
-TEST_CASE("the series in ad(x), as the matrix exponential sums it") {
+TEST_CASE("left_jacobian: agrees with the series in ad(x) by the matrix exponential") {
   for (const twist& x : twists()) {
     CAPTURE(x.transpose());
     // exp([ad I; 0 0]) = [e^ad J_l; 0 1]
@@ -108,7 +108,7 @@ TEST_CASE("the series in ad(x), as the matrix exponential sums it") {
   }
 }
 
-TEST_CASE("within 8 ulp of 50 digits, but for the cancellation of the inverse near a full turn") {
+TEST_CASE("Jacobians of exp: within 8 ulp, except for cancellation near a full turn") {
   using wide = duet::real_50;
   for (const twist& x : twists()) {
     CAPTURE(x.transpose());
@@ -129,13 +129,13 @@ TEST_CASE("within 8 ulp of 50 digits, but for the cancellation of the inverse ne
   }
 }
 
-TEST_CASE("wrenches: power does not depend on the frame, and coad is the rate of coAd") {
+TEST_CASE("coAd and coad: power is independent of the frame, coad is the rate of coAd") {
   for (const auto& a : duet_test::poses()) {
     const twist v = make_twist(vector(0.7, -0.4, 0.2), vector(-0.3, 0.5, 0.9));
     const twist f = make_twist(vector(-2, 1, 0.5), vector(0.1, 3, -1));
     const twist moved = duet::coAd(a) * f;
     CHECK(moved.dot(duet::Ad(a) * v) == doctest::Approx(f.dot(v)).epsilon(1e-14));
-    // The force turns along, its moment about the origin grows by t × f.
+    // The force is rotated, and t × f is added to its moment about the origin.
     const vector force = duet::rotate(duet::rotation(a), vector(f.head<3>()));
     CHECK(max_abs_difference(moved.head<3>(), force) < 1e-14);
     const vector moment = duet::rotate(duet::rotation(a), vector(f.tail<3>()));

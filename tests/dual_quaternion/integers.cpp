@@ -22,7 +22,7 @@ namespace {
 const Eigen::Vector3i z(0, 0, 1), odd(1, -3, 2);
 const Eigen::Vector3d z_real(0, 0, 1), odd_real(1, -3, 2);
 
-/// Same values of the same type.
+/// True if both have equal values and the same type.
 template <class A>
 bool same(const A& a, const A& b) {
   return a == b;
@@ -30,7 +30,7 @@ bool same(const A& a, const A& b) {
 
 } // namespace
 
-TEST_CASE("axes and rotation vectors") {
+TEST_CASE("integer axes and rotation vectors give the same values as real ones") {
   CHECK(same(from_axis_angle(z, 0.2), from_axis_angle(z_real, 0.2)));
   CHECK(same(from_axis_angle(odd, 1), from_axis_angle(odd_real, 1.0)));
   CHECK(same(from_axis_angle(odd_real, 1), from_axis_angle(odd_real, 1.0)));
@@ -39,17 +39,18 @@ TEST_CASE("axes and rotation vectors") {
   CHECK(same(duet::exp(odd), duet::exp(odd_real)));
   CHECK(same(from_two_vectors(z, odd), from_two_vectors(z_real, odd_real)));
   CHECK(same(from_two_vectors(z, odd_real), from_two_vectors(z_real, odd_real)));
-  // In all digits of what the axis meets, and differentiated by it.
+  // The precision is that of the other argument, which may be differentiated.
   const real_50 angle(0.3);
   CHECK(same(from_axis_angle(odd, angle), from_axis_angle(vector3<real_50>(1, -3, 2), angle)));
-  const auto turn = [](const auto& n) {
+  const auto rotation_about = [](const auto& n) {
     return [=](const auto& a) { return from_axis_angle(n, a); };
   };
-  CHECK(derivative(turn(odd), 0.7).derivative == derivative(turn(odd_real), 0.7).derivative);
+  CHECK(derivative(rotation_about(odd), 0.7).derivative ==
+        derivative(rotation_about(odd_real), 0.7).derivative);
   CHECK_THROWS_AS(static_cast<void>(from_axis_angle(Eigen::Vector3i(0, 0, 0), 1)), invalid_input);
 }
 
-TEST_CASE("matrices of quarter turns, and Jacobians") {
+TEST_CASE("integer rotation matrices and arguments of Jacobians act as real ones") {
   Eigen::Matrix3i quarter;
   quarter << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   CHECK(same(from_rotation_matrix(quarter),
@@ -60,7 +61,7 @@ TEST_CASE("matrices of quarter turns, and Jacobians") {
   CHECK(same(right_jacobian_inverse(odd), right_jacobian_inverse(odd_real)));
 }
 
-TEST_CASE("velocities: no half of an odd number is lost") {
+TEST_CASE("integer velocities: halves of odd numbers are not truncated") {
   const auto q = from_axis_angle(odd_real, 0.4);
   for (const auto& w : {z, odd}) {
     const Eigen::Vector3d real = w.cast<double>();
@@ -81,7 +82,7 @@ TEST_CASE("velocities: no half of an odd number is lost") {
   CHECK(same(right_jacobian_inverse(twist), right_jacobian_inverse(real)));
 }
 
-TEST_CASE("screws and lines") {
+TEST_CASE("integer screws and lines give the same values as real ones") {
   const Eigen::Vector3i moment(3, 1, 0);
   const Eigen::Vector3d moment_real(3, 1, 0);
   CHECK(same(from_screw(z, moment, 1, 3), from_screw(z_real, moment_real, 1.0, 3.0)));

@@ -18,7 +18,7 @@ namespace test_dual_quaternion_mixed_arguments {
 
 using namespace test_support::mixed;
 
-TEST_CASE("constants mix with derivatives: poses") {
+TEST_CASE("poses: every function accepts constants mixed with derivatives") {
   DUET_CHECK_MIXED(make_dual_vector, u, v);
   DUET_CHECK_MIXED(make_dual_quaternion, p, q);
   DUET_CHECK_MIXED(pose, p, u);

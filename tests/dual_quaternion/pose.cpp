@@ -43,7 +43,7 @@ const vector direction(0.6, 0, -0.8);
 
 } // namespace
 
-/// Three-vectors and displacements, which chains are followed with, are known to the compiler.
+/// Three-vectors and displacements, used by forward kinematics, are constant expressions.
 namespace compiled {
 
 using duet::detail::displacement;
@@ -59,29 +59,31 @@ static_assert(are_equal(cross(i, j), k) && are_equal(cross(j, k), i) && are_equa
 static_assert(are_equal(cross(a, b), {-16, 61, 43}) && dot(a, cross(a, b)) == 0);
 static_assert(are_equal(2 * a - b, {-3, -17, 23}) && dot(a, b) == -84);
 
-// Half a turn about y, about x + y + z a third.
+// A half turn about y, a third of a turn about x + y + z.
 constexpr displacement about_y{duet::quaternion<double>(0, 0, 1, 0), a};
 constexpr displacement third{duet::quaternion<double>(.5, .5, .5, .5), b};
 static_assert(are_equal(about_y.point(b), {-5, 8, 18}) && are_equal(third.point(a), {12, 13, -16}));
 static_assert(are_equal((about_y * third).point(a), about_y.point(third.point(a))));
 static_assert(are_equal((third * about_y).point(a), third.point(about_y.point(a))));
 
-// What is known stays so: where the other factor is infinite or NaN too.
+// Known zeros are preserved even if the other factor is infinite or NaN.
 constexpr static_number<0> o;
 constexpr static_number<1> one;
 static_assert(std::is_same_v<decltype(o * 2.0), static_number<0>>);
 static_assert(std::is_same_v<decltype(one - one), static_number<0>>);
 static_assert(one * 3.0 == 3 && -one * 3.0 == -3 && one - 3.0 == -2 && 3.0 - one == 2);
 static_assert(o - 3.0 == -3 && 3.0 - o == 3 && 3.0 + -one == 2);
-constexpr displacement slide{partially_constant_quaternion{one, o, o, o},
-                             three_vector{o, o, std::numeric_limits<double>::infinity()}};
-static_assert(std::is_same_v<decltype((slide * slide).rotation),
+constexpr displacement infinite_translation{
+    partially_constant_quaternion{one, o, o, o},
+    three_vector{o, o, std::numeric_limits<double>::infinity()}};
+static_assert(std::is_same_v<decltype((infinite_translation * infinite_translation).rotation),
                              decltype(partially_constant_quaternion{one, o, o, o})>);
-static_assert((slide * slide).translation.z == std::numeric_limits<double>::infinity());
+static_assert((infinite_translation * infinite_translation).translation.z ==
+              std::numeric_limits<double>::infinity());
 
 } // namespace compiled
 
-TEST_CASE("there and back") {
+TEST_CASE("pose: rotation, translation and coordinates are recovered") {
   for (const auto& a : poses()) {
     const auto again = duet::pose(duet::rotation(a), duet::translation(a));
     CHECK(max_abs_difference(again, a) < 1e-15);
@@ -93,7 +95,7 @@ TEST_CASE("there and back") {
   CHECK(max_abs_difference(duet::translation(b), vector(1, -2, 3)) < 1e-15);
 }
 
-TEST_CASE("matrices, points and directions") {
+TEST_CASE("pose: matrices, points and directions agree with Eigen's isometries") {
   for (const auto& a : poses()) {
     const auto expected = isometry(a);
     CHECK(max_abs_difference(duet::transform_matrix(a), expected.matrix()) < 1e-14);
@@ -103,7 +105,7 @@ TEST_CASE("matrices, points and directions") {
   }
 }
 
-TEST_CASE("products compose, the conjugate undoes") {
+TEST_CASE("pose: products compose displacements, the conjugate is the inverse") {
   const auto all = poses();
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     const auto& a = all[i];
@@ -115,7 +117,7 @@ TEST_CASE("products compose, the conjugate undoes") {
   }
 }
 
-TEST_CASE("N15 carries points: A (1 + εx) A^(3) = 1 + ε(Rx + t)") {
+TEST_CASE("N15: point_conj transforms points, A (1 + εx) A^(3) = 1 + ε(Rx + t)") {
   for (const auto& a : poses()) {
     const auto x = duet::make_dual_quaternion(duet::quaternion<double>(1.0),
                                               duet::quaternion<double>(0.0, point));
@@ -126,7 +128,7 @@ TEST_CASE("N15 carries points: A (1 + εx) A^(3) = 1 + ε(Rx + t)") {
   }
 }
 
-TEST_CASE("lines in Plücker coordinates and planes") {
+TEST_CASE("transform_line and transform_plane: agree with transformed points") {
   for (const auto& a : poses()) {
     const auto line = duet::make_dual_vector(direction, vector(point.cross(direction)));
     const auto moved = duet::transform_line(a, line);
@@ -141,7 +143,7 @@ TEST_CASE("lines in Plücker coordinates and planes") {
   }
 }
 
-TEST_CASE("matrices that are no poses") {
+TEST_CASE("from_transform_matrix: rejects matrices that are not rigid") {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m(3, 0) = 0.5;
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::from_transform_matrix(m)),
@@ -152,7 +154,7 @@ TEST_CASE("matrices that are no poses") {
   CHECK_THROWS_AS(static_cast<void>(duet::from_transform_matrix(m)), duet::invalid_input);
 }
 
-TEST_CASE("a rotation matrix and a translation") {
+TEST_CASE("pose: accepts a rotation matrix and a translation") {
   const duet::quaternion<double> q = duet::from_rotation_vector(Eigen::Vector3d(.1, -.2, 3));
   const Eigen::Vector3d t(1, -2, 3);
   const auto a = duet::pose(duet::rotation_matrix(q), t);
@@ -163,7 +165,7 @@ TEST_CASE("a rotation matrix and a translation") {
       doctest::Contains("rotation"), duet::invalid_input);
 }
 
-TEST_CASE("a rotation that is no unit makes no pose, which would scale what it carries") {
+TEST_CASE("pose: rejects a rotation that is not a unit quaternion") {
   const vector t(1, 2, 3);
   CHECK_THROWS_WITH_AS(
       static_cast<void>(duet::pose(duet::quaternion<double>(2), t)),

@@ -18,8 +18,8 @@
 #include <array>
 #include <cmath>
 
-// Rigid motion against others: matrix exponential and logarithm, numerical integration, long
-// products.
+// Rigid motion against independent methods: matrix exponential and logarithm, numerical
+// integration, long products.
 
 namespace test_dual_quaternion_references {
 
@@ -33,8 +33,8 @@ namespace {
 
 double size_of(const duet::quaternion<double>& q) { return norm(q); }
 
-/// Near a full turn the part of a motion across the axis is multiplied by φ / sin φ in the
-/// logarithm. Roundings of what goes along the axis are, too, but cancel where nothing is fused.
+/// Near a full turn the logarithm multiplies the part of a motion across the axis by φ / sin φ, and
+/// also the rounding errors of the part along the axis, which cancel unless operations are fused.
 double amplification(const dual_quaternion& a) {
   const duet::quaternion<double> q = duet::real_part(a);
   const double sine = q.vec().norm();
@@ -51,7 +51,7 @@ Eigen::Matrix4d matrix_of(const twist& x) {
 
 } // namespace
 
-TEST_CASE("exp and log are those of 4×4 matrices") {
+TEST_CASE("exp and log: agree with those of 4×4 matrices") {
   for (const auto& a : poses()) {
     const twist x = 2 * duet::twist_of<double>(log(a).vec());
     CAPTURE(x.transpose());
@@ -69,7 +69,7 @@ TEST_CASE("exp and log are those of 4×4 matrices") {
   }
 }
 
-TEST_CASE("exp(log A) = A within 8 ulp") {
+TEST_CASE("exp and log: exp(log A) = A within 8 ulp") {
   for (const auto& a : poses()) {
     const auto v = log(a).vec();
     const auto back = duet::exp(duet::dual_vector<double>(v));
@@ -82,7 +82,7 @@ TEST_CASE("exp(log A) = A within 8 ulp") {
   }
 }
 
-TEST_CASE("Ȧ = ½ V A and q̇ = ½ ω q, integrated") {
+TEST_CASE("pose_rate and quaternion_rate: integrated numerically give the screw motion") {
   using state = std::array<double, 8>;
   const auto pose_of = [](const state& s) {
     return duet::make_dual_quaternion(duet::quaternion<double>(s[0], s[1], s[2], s[3]),
@@ -108,11 +108,11 @@ TEST_CASE("Ȧ = ½ V A and q̇ = ½ ω q, integrated") {
       duet::exp(duet::dual_vector<double>(duet::dual_vector_of(v) * (1.7 / 2))) * start;
   CHECK(max_abs_difference(pose_of(s), expected) < 1e-11);
   // Its real part has integrated q̇ = ½ ω q.
-  const auto turned = duet::exp(duet::vector3<double>(v.tail<3>() * (1.7 / 2))) * p;
-  CHECK(size_of(duet::real_part(pose_of(s)) - turned) < 1e-11);
+  const auto expected_rotation = duet::exp(duet::vector3<double>(v.tail<3>() * (1.7 / 2))) * p;
+  CHECK(size_of(duet::real_part(pose_of(s)) - expected_rotation) < 1e-11);
 }
 
-TEST_CASE("a million products: the drift from a unit is small, and normalising removes it") {
+TEST_CASE("products: the norm drifts little over a million, normalized restores it") {
   duet_test::random_source random(21);
   dual_quaternion a = duet::pose(duet::quaternion<double>(1.0), vector(0, 0, 0));
   std::array<dual_quaternion, 64> steps;

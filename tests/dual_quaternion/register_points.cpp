@@ -31,8 +31,8 @@ namespace {
 const points tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
 const points square{{1, 0, -1, 0}, {0, 1, 0, -1}, {0, 0, 0, 0}};
 
-/// Registration of `from` with a half turn of itself about x that moves on with t, times `size`,
-/// and, with `noise`, single points of both that move as well.
+/// Registration of `from` with its image under a half turn about x that moves on with t, times
+/// `size`; with `noise`, single points of both sets move as well.
 template <class T>
 Eigen::Matrix<T, 3, 4> target(const points& from, const T& t, double size, bool noise) {
   const auto q = duet::from_rotation_vector(duet::vector3<T>(T(t + t * t), T(2 * t), T(-t)));
@@ -49,7 +49,7 @@ Eigen::Matrix<T, 3, 4> target(const points& from, const T& t, double size, bool 
 
 } // namespace
 
-TEST_CASE("derivatives to third order: exact, noisy, planar and mirrored sets") {
+TEST_CASE("register_points: derivatives to third order for exact, noisy, planar, mirrored sets") {
   for (const points& from : {tetrahedron, square}) {
     for (const bool noise : {false, true}) {
       CHECK(error_to_third_order([&](const auto& t) {
@@ -75,7 +75,7 @@ TEST_CASE("derivatives to third order: exact, noisy, planar and mirrored sets") 
   CHECK(error_to_third_order(reflection) <= 1e-12);
 }
 
-TEST_CASE("the pose and scale that made the points, of any size and far away") {
+TEST_CASE("register_points_with_scale: recovers pose and scale at any size and distance") {
   duet_test::random_source random(1);
   for (const double size : {1e-200, 1e-3, 1.0, 1e200}) {
     for (const int count : {3, 4, 50}) {
@@ -88,9 +88,9 @@ TEST_CASE("the pose and scale that made the points, of any size and far away") {
       const Matrix3d r = duet::rotation_matrix(rotation);
       const Vector3d t = size * Vector3d(1, -20, 3);
       const MatrixXd q = (.25 * r * p).colwise() + t;
-      const auto found = register_points_with_scale(p, q);
-      CHECK(found.scale == doctest::Approx(.25).epsilon(1e-12));
-      const Eigen::Matrix4d m = duet::transform_matrix(found.pose);
+      const auto result = register_points_with_scale(p, q);
+      CHECK(result.scale == doctest::Approx(.25).epsilon(1e-12));
+      const Eigen::Matrix4d m = duet::transform_matrix(result.pose);
       CHECK((m.topLeftCorner<3, 3>() - r).norm() <= 1e-12);
       CHECK((m.topRightCorner<3, 1>() / size - t / size).norm() <= 1e-11);
       const Eigen::Matrix4d rigid =
@@ -101,7 +101,7 @@ TEST_CASE("the pose and scale that made the points, of any size and far away") {
   }
 }
 
-TEST_CASE("weights: 0 leaves a point out, 2 counts it twice") {
+TEST_CASE("register_points: weight 0 omits a point, weight 2 counts it twice") {
   points p = tetrahedron, q = tetrahedron;
   q(0, 3) = 7;
   MatrixXd without = p.leftCols(3), twice(3, 5);
@@ -116,8 +116,8 @@ TEST_CASE("weights: 0 leaves a point out, 2 counts it twice") {
   CHECK(equal(register_points(p, q, {1e308, 1e308, 1e308, 1e308}), register_points(p, q)));
 }
 
-TEST_CASE("the gradient of the rotation with respect to measured points at the identity") {
-  // A small motion of point i along e turns the set by N⁻¹ (xᵢ × e), N = Σ (|x|² − x xᵀ).
+TEST_CASE("register_points: the gradient at the identity agrees with its closed form") {
+  // A small motion of point i along e rotates the set by N⁻¹ (xᵢ × e), N = Σ (|x|² − x xᵀ).
   const auto f = [](const auto& x) {
     using T = std::decay_t<decltype(x[0])>;
     Eigen::Matrix<T, 3, 4> to = square.cast<T>();
@@ -129,13 +129,13 @@ TEST_CASE("the gradient of the rotation with respect to measured points at the i
   CHECK((j - Matrix3d{{0, 0, 0}, {0, 0, -.5}, {0, .25, 0}}).norm() <= 1e-15);
 }
 
-TEST_CASE("sets that determine no rotation are rejected") {
+TEST_CASE("register_points: rejects sets that determine no rotation") {
   const auto message = [](const MatrixXd& p, const MatrixXd& q, const std::vector<double>& w = {}) {
     return duet_test::message_of([&] { static_cast<void>(register_points(p, q, w)); });
   };
   const std::string undetermined = "duet: register_points: the points do not determine a rotation";
   duet_test::random_source random(2);
-  for (int k = 0; k < 100; ++k) { // on a line, but for the rounding of coordinates
+  for (int k = 0; k < 100; ++k) { // on a line, except for the rounding of coordinates
     const auto d = random.direction<3>();
     const Vector3d direction(d[0], d[1], d[2]), start = 100 * Vector3d(d[2], d[0], d[1]);
     MatrixXd line(3, 6), others(3, 6);

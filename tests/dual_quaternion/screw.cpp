@@ -31,7 +31,7 @@ using duet_test::vector;
 using number = duet::screw_dual<double>;
 using dual_quaternion = duet::dual_quaternion<double>;
 
-TEST_CASE("exp undoes log, powers add up") {
+TEST_CASE("exp, log and pow: exp inverts log, exponents of powers add up") {
   for (const auto& a : poses()) {
     // Near a full turn the logarithm magnifies the rounding of A by 1/(2π − φ).
     const double tolerance = duet::real_part(a).w() < -0.9999 ? 1e-8 : 4e-15;
@@ -42,7 +42,7 @@ TEST_CASE("exp undoes log, powers add up") {
   }
 }
 
-TEST_CASE("N19: ScLERP goes from A to B, evenly, wherever they are") {
+TEST_CASE("N19: sclerp runs from A to B at constant velocity, invariant under rigid motions") {
   const auto all = poses();
   for (std::size_t i = 0; i + 3 < all.size(); i += 3) {
     const auto& a = all[i];
@@ -52,19 +52,19 @@ TEST_CASE("N19: ScLERP goes from A to B, evenly, wherever they are") {
     CHECK(max_abs_difference(duet::transform_matrix(sclerp(a, b, 1.0)), duet::transform_matrix(b)) <
           4e-14);
     if (std::abs(dot(a, b).value()) < 1e-12) {
-      continue; // half a turn apart: both ways are equally short
+      continue; // at a half turn both arcs are equally long
     }
     CHECK(max_abs_difference(sclerp(a, b, 0.4), sclerp(a, -b, 0.4)) == 0);
-    // Moving both moves what is between them.
+    // Moving both ends moves the poses between them.
     const auto c = duet::pose(duet::from_rotation_vector(vector(0.4, -0.2, 1)), vector(1, 2, -1));
     CHECK(max_abs_difference(sclerp(c * a, c * b, 0.3), c * sclerp(a, b, 0.3)) < 4e-14);
-    // Equal steps are the same displacement.
+    // Equal steps give the same displacement.
     const auto step = conj(sclerp(a, b, 0.25)) * sclerp(a, b, 0.5);
     CHECK(max_abs_difference(conj(sclerp(a, b, 0.5)) * sclerp(a, b, 0.75), step) < 2e-14);
   }
 }
 
-TEST_CASE("a pure translation is a straight line") {
+TEST_CASE("sclerp: a pure translation follows a straight line") {
   const auto a = duet::pose(duet::quaternion<double>(1.0), vector(1, 0, 0));
   const auto b = duet::pose(duet::quaternion<double>(1.0), vector(1, 4, -2));
   CHECK(max_abs_difference(duet::translation(sclerp(a, b, 0.25)), vector(1, 1, -0.5)) == 0);
@@ -73,22 +73,23 @@ TEST_CASE("a pure translation is a straight line") {
   CHECK(max_abs_difference(2 * duet::dual_part(rate).vec(), vector(0, 4, -2)) == 0);
 }
 
-TEST_CASE("screw parameters of known motions") {
-  // A turn by 1.2 about a line through (1, 2, 0) along z, with a shift of 0.5 along it.
+TEST_CASE("screw_parameters: axis, moment, angle and translation of known motions") {
+  // Rotation by 1.2 about the line through (1, 2, 0) along z and translation by 0.5 along it.
   const vector axis(0, 0, 1);
-  const vector place(1, 2, 0);
-  const auto a = duet::from_screw(axis, vector(place.cross(axis)), 1.2, 0.5);
+  const vector point_on_axis(1, 2, 0);
+  const auto a = duet::from_screw(axis, vector(point_on_axis.cross(axis)), 1.2, 0.5);
   for (const auto& s : {screw_parameters(a), screw_parameters(-a)}) {
     CHECK(s.kind == screw_kind::screw);
     CHECK(max_abs_difference(s.axis, axis) < 1e-15);
-    CHECK(max_abs_difference(s.moment, place.cross(axis)) < 1e-15 * 4);
+    CHECK(max_abs_difference(s.moment, point_on_axis.cross(axis)) < 1e-15 * 4);
     CHECK(s.angle == doctest::Approx(1.2).epsilon(1e-15));
     CHECK(s.translation == doctest::Approx(0.5).epsilon(1e-15));
   }
-  CHECK(max_abs_difference(duet::transform_point(a, place), place + 0.5 * axis) < 1e-15);
+  CHECK(max_abs_difference(duet::transform_point(a, point_on_axis), point_on_axis + 0.5 * axis) <
+        1e-15);
 
-  const auto turn = duet::from_screw(axis, vector(place.cross(axis)), 1.2, 0.0);
-  CHECK(screw_parameters(turn).kind == screw_kind::rotation);
+  const auto pure_rotation = duet::from_screw(axis, vector(point_on_axis.cross(axis)), 1.2, 0.0);
+  CHECK(screw_parameters(pure_rotation).kind == screw_kind::rotation);
 
   const auto shift = duet::pose(duet::quaternion<double>(1.0), vector(0, -3, 4));
   const auto s = screw_parameters(shift);
@@ -103,14 +104,14 @@ TEST_CASE("screw parameters of known motions") {
   CHECK(none.axis.isZero(0));
   CHECK(none.translation == 0);
 
-  // The tolerance decides what a tiny rotation is.
-  const auto tiny = duet::from_screw(axis, vector(place.cross(axis)), 1e-9, 0.5);
+  // The tolerance decides if a tiny rotation counts as zero.
+  const auto tiny = duet::from_screw(axis, vector(point_on_axis.cross(axis)), 1e-9, 0.5);
   CHECK(screw_parameters(tiny).kind == screw_kind::translation);
   CHECK(screw_parameters(tiny, 1e-12).kind == screw_kind::screw);
   CHECK(screw_parameters(tiny, 1e-12).angle == doctest::Approx(1e-9).epsilon(1e-12));
 }
 
-TEST_CASE("screw parameters and back") {
+TEST_CASE("from_screw: inverts screw_parameters") {
   for (const auto& a : poses()) {
     const auto s = screw_parameters(a, 1e-300);
     if (s.kind == screw_kind::none || s.kind == screw_kind::translation) {
@@ -127,8 +128,8 @@ TEST_CASE("screw parameters and back") {
   }
 }
 
-TEST_CASE("the derivative of ScLERP is a constant twist, judged in fifty digits") {
-  // Ċ = C log(A* B), whatever τ; poses are made of screws of moderate angle.
+TEST_CASE("sclerp: the derivative is a constant twist, within bounds of 50 digits") {
+  // Ċ = C log(A* B) for all τ; poses are composed of screws of moderate angle.
   const auto ends = [](const auto& w, const auto& t) {
     return std::pair(duet::pose(duet::from_rotation_vector(t), w),
                      duet::pose(duet::from_rotation_vector((w / 2).eval()), t));
@@ -143,7 +144,7 @@ TEST_CASE("the derivative of ScLERP is a constant twist, judged in fifty digits"
     const auto [a, b] = ends(w, t);
     const auto aligned = innermost(dot(a, b)) < 0 ? -b : b;
     const auto logarithm = log(conj(a) * aligned);
-    const auto relative = (logarithm - conj(logarithm)) / 2.0; // less the logarithm of the norm
+    const auto relative = (logarithm - conj(logarithm)) / 2.0; // without the logarithm of the norm
     const auto rate = sclerp(a, b, tau) * relative;
     return std::array{duet::real_part(rate), duet::dual_part(rate)};
   };

@@ -13,7 +13,7 @@
 #include <cmath>
 #include <tuple>
 
-// N18: twists in three frames, Ad and ad, and Jacobians of and into poses.
+// N18: twists in three frames, Ad and ad, and Jacobians with respect to poses and of poses.
 
 namespace test_dual_quaternion_twist {
 
@@ -37,7 +37,7 @@ duet::matrix3<double> hat(const vector& w) {
 
 } // namespace
 
-TEST_CASE("twists of a moving pose, from the motion of its parts") {
+TEST_CASE("N18: twist agrees with the motion of rotation and translation in all frames") {
   // A(t): rotation exp(½ w t) q, translation p + u t + ½ a t².
   const auto q = duet::from_rotation_vector(vector(0.2, 0.5, -1));
   const vector w(0.4, -0.3, 0.9), p(1, 2, 3), u(-1, 0.5, 0.25), a(2, 0, 1);
@@ -48,10 +48,10 @@ TEST_CASE("twists of a moving pose, from the motion of its parts") {
   const double t = 0.6;
   const auto [pose, rate] = duet::derivative<duet_test::shared_tag>(motion, t);
   const vector velocity = u + a * t;
-  const vector place = duet::translation(pose);
+  const vector position = duet::translation(pose);
   const auto R = duet::rotation_matrix(duet::rotation(pose));
   vector6<double> expected;
-  expected << velocity + place.cross(w), w;
+  expected << velocity + position.cross(w), w;
   CHECK(max_abs_difference(twist(pose, rate, frame::spatial), expected) < 1e-14);
   expected << R.transpose() * velocity, R.transpose() * w;
   CHECK(max_abs_difference(twist(pose, rate, frame::body), expected) < 1e-14);
@@ -59,7 +59,7 @@ TEST_CASE("twists of a moving pose, from the motion of its parts") {
   CHECK(max_abs_difference(twist(pose, rate, frame::hybrid), expected) < 1e-14);
 }
 
-TEST_CASE("pose_rate undoes twist, Ad changes the frame") {
+TEST_CASE("N18: pose_rate inverts twist, Ad changes the frame") {
   for (const auto& a : poses()) {
     const auto rate = duet::pose_rate(a, v_body, frame::body);
     CHECK(max_abs_difference(twist(a, rate, frame::body), v_body) < 1e-14);
@@ -68,13 +68,13 @@ TEST_CASE("pose_rate undoes twist, Ad changes the frame") {
     CHECK(max_abs_difference(duet::pose_rate(a, v_spatial, frame::spatial), rate) < 4e-14);
     CHECK(max_abs_difference(duet::pose_rate(a, twist(a, rate, frame::hybrid), frame::hybrid),
                              rate) < 4e-14);
-    // Twists are lines with a pitch: Ad is A V A*.
+    // Twists transform as lines: Ad(A) V is A V A*.
     CHECK(max_abs_difference(duet::twist_of(duet::transform_line(a, duet::dual_vector_of(v_body))),
                              v_spatial) < 4e-14);
   }
 }
 
-TEST_CASE("Ad is a homomorphism, ad its derivative and the Lie bracket") {
+TEST_CASE("Ad is a homomorphism, ad is its derivative and the Lie bracket") {
   const auto all = poses();
   for (std::size_t i = 0; i + 1 < all.size(); ++i) {
     CHECK(max_abs_difference(Ad(all[i] * all[i + 1]), Ad(all[i]) * Ad(all[i + 1])) < 4e-14);
@@ -89,10 +89,10 @@ TEST_CASE("Ad is a homomorphism, ad its derivative and the Lie bracket") {
   CHECK(max_abs_difference(ad(v_body) * w, -(ad(w) * v_body)) < 1e-15);
 }
 
-TEST_CASE("Jacobians of and into poses") {
+TEST_CASE("Jacobians of poses: spatial and body frames agree with Ad and closed forms") {
   for (const auto& a : poses()) {
-    const auto place = [](const auto& x) { return duet::transform_point(x, point); };
-    const auto body = duet::jacobian<duet_test::shared_tag>(place, a, frame::body).jacobian;
+    const auto position = [](const auto& x) { return duet::transform_point(x, point); };
+    const auto body = duet::jacobian<duet_test::shared_tag>(position, a, frame::body).jacobian;
     const auto R = duet::rotation_matrix(duet::rotation(a));
     Eigen::Matrix<double, 3, 6> expected;
     expected.leftCols<3>() = R;
@@ -101,7 +101,7 @@ TEST_CASE("Jacobians of and into poses") {
     }
     CHECK(max_abs_difference(body, expected) < 1e-14);
     CHECK(max_abs_difference(
-              duet::jacobian<duet_test::shared_tag>(place, a, frame::spatial).jacobian * Ad(a),
+              duet::jacobian<duet_test::shared_tag>(position, a, frame::spatial).jacobian * Ad(a),
               body) < 4e-14);
 
     const auto inverse = [](const auto& x) { return conj(x); };
@@ -111,7 +111,7 @@ TEST_CASE("Jacobians of and into poses") {
   }
 }
 
-TEST_CASE("Jacobians of and into poses whose origins move apart from their rotations") {
+TEST_CASE("Jacobians of poses: the hybrid frame moves origin and rotation independently") {
   for (const auto& a : poses()) {
     const duet::matrix3<double> R = duet::rotation_matrix(duet::rotation(a));
     const vector t = duet::translation(a);
@@ -124,10 +124,10 @@ TEST_CASE("Jacobians of and into poses whose origins move apart from their rotat
     const duet::matrix3<double> one = duet::matrix3<double>::Identity();
     const duet::matrix3<double> zero = duet::matrix3<double>::Zero();
 
-    const auto place = [](const auto& x) { return duet::transform_point(x, point); };
-    CHECK(
-        max_abs_difference(duet::jacobian<duet_test::shared_tag>(place, a, frame::hybrid).jacobian,
-                           with_turn(one, -hat(R * point))) < 1e-14);
+    const auto position = [](const auto& x) { return duet::transform_point(x, point); };
+    CHECK(max_abs_difference(
+              duet::jacobian<duet_test::shared_tag>(position, a, frame::hybrid).jacobian,
+              with_turn(one, -hat(R * point))) < 1e-14);
 
     const auto same = [](const auto& x) { return x; };
     const auto [value, J] = duet::jacobian<duet_test::shared_tag>(same, a, frame::hybrid);
@@ -144,7 +144,7 @@ TEST_CASE("Jacobians of and into poses whose origins move apart from their rotat
   }
 }
 
-TEST_CASE("a pose, a rotation and a number in the hybrid frame") {
+TEST_CASE("Jacobians: a pose, a rotation and a number together in the hybrid frame") {
   const auto a = poses().front();
   const auto q = duet::from_rotation_vector(vector(0.2, 0.5, -1));
   const auto f = [](const auto& x, const auto& r, const auto& s) {
@@ -152,15 +152,15 @@ TEST_CASE("a pose, a rotation and a number in the hybrid frame") {
   };
   const auto J =
       duet::jacobian<duet_test::shared_tag>(f, std::tuple(a, q, 2.0), frame::hybrid).jacobian;
-  const vector turned = duet::rotate(q * duet::rotation(a), point);
+  const vector rotated_point = duet::rotate(q * duet::rotation(a), point);
   CHECK(max_abs_difference(J.leftCols<3>(), duet::matrix3<double>::Identity()) < 1e-15);
-  CHECK(max_abs_difference(J.middleCols<3>(3), -2 * hat(turned) * duet::rotation_matrix(q)) <
+  CHECK(max_abs_difference(J.middleCols<3>(3), -2 * hat(rotated_point) * duet::rotation_matrix(q)) <
         4e-14);
-  CHECK(max_abs_difference(J.middleCols<3>(6), -2 * hat(turned)) < 4e-14);
-  CHECK(max_abs_difference(J.col(9), turned) < 1e-14);
+  CHECK(max_abs_difference(J.middleCols<3>(6), -2 * hat(rotated_point)) < 4e-14);
+  CHECK(max_abs_difference(J.col(9), rotated_point) < 1e-14);
 }
 
-TEST_CASE("gradients and Hessians by poses: half the squared distance of a point") {
+TEST_CASE("gradient and hessian: half the squared distance of a point, with respect to a pose") {
   const vector goal(2, -0.5, 1.5);
   const auto f = [&](const auto& x) {
     return ((duet::transform_point(x, point) - goal).squaredNorm() / 2);
@@ -184,19 +184,19 @@ TEST_CASE("gradients and Hessians by poses: half the squared distance of a point
                                          (d * r.transpose() + r * d.transpose()) / 2 -
                                          r.dot(d) * duet::matrix3<double>::Identity();
     CHECK(max_abs_difference(H, expected) < 1e-14 * scale);
-    // Along screws: one form in two axes.
+    // Along screws the Hessian has one form in both axes.
     const duet::matrix6<double> spatial = duet::hessian(f, a, frame::spatial).hessian;
     CHECK(max_abs_difference(Ad(a).transpose() * spatial * Ad(a),
                              duet::hessian(f, a, frame::body).hessian) < 1e-13 * scale * scale);
   }
 }
 
-TEST_CASE("a pose far from the origin, moved in the hybrid frame, is itself") {
+TEST_CASE("hybrid frame: perturbing a pose far from the origin does not lose accuracy") {
   const auto a =
       duet::pose(duet::from_rotation_vector(vector(0.3, -0.2, 1.1)), vector(1e8, 3e8, -1e8));
   const vector6<double> none = vector6<double>::Zero();
   CHECK(duet::manifold<duet::dual_quaternion<double>>::plus(a, none, frame::hybrid) == a);
-  // Moved by much it is where it should be.
+  // A large perturbation gives the expected pose.
   const vector6<double> much = (vector6<double>() << 1, 2, 3, 2.5, -0.4, 1.3).finished();
   for (const auto& b : poses()) {
     const auto moved = duet::manifold<duet::dual_quaternion<double>>::plus(b, much, frame::hybrid);
@@ -209,7 +209,7 @@ TEST_CASE("a pose far from the origin, moved in the hybrid frame, is itself") {
   }
 }
 
-TEST_CASE("accelerations: the classical one is not the derivative of the spatial twist") {
+TEST_CASE("accelerations: the classical one differs from the derivative of the spatial twist") {
   // Uniform rotation about z of a body at distance 2: the origin of the body accelerates inwards.
   const auto motion = [](auto t) {
     using T = decltype(t);

@@ -29,7 +29,7 @@ namespace {
 struct outer;
 using nested = dual<dual<double>, 2, outer>;
 
-/// Small whole numbers, also in the infinitesimal parts: sums and products are exact.
+/// Small integers, also in the infinitesimal parts: sums and products are exact.
 template <class T>
 T whole(random_source& random) {
   if constexpr (!duet::Infinitesimal<T>) {
@@ -45,12 +45,12 @@ T whole(random_source& random) {
   }
 }
 template <class T>
-quaternion<T> whole_quaternion(random_source& random) {
+quaternion<T> integer_quaternion(random_source& random) {
   const T w = whole<T>(random), x = whole<T>(random), y = whole<T>(random), z = whole<T>(random);
   return {w, x, y, z};
 }
 
-// Each operation compiled once per scalar: inlined into every law they take minutes.
+// Each operation is compiled once per scalar: inlined into every law, they take minutes to compile.
 template <class T>
 __attribute__((noinline)) quaternion<T> sum(const quaternion<T>& p, const quaternion<T>& q) {
   return p + q;
@@ -68,7 +68,7 @@ __attribute__((noinline)) quaternion<T> scaled(const T& a, const quaternion<T>& 
   return a * q;
 }
 
-/// Equal in all infinitesimal parts too.
+/// True if all infinitesimal parts are equal too.
 template <class T>
 __attribute__((noinline)) bool same(const T& a, const T& b) {
   return duet::detail::is_structural_zero(T(a - b));
@@ -101,7 +101,7 @@ static_assert(std::is_same_v<decltype(one * quaternion<float>()), quaternion<dou
 static_assert(std::is_same_v<decltype(one * quaternion<dual<double>>()), quaternion<dual<double>>>);
 static_assert(std::is_same_v<decltype(one * dual<double>(2)), quaternion<dual<double>>>);
 static_assert(std::is_trivially_copyable_v<quaternion<double>> && sizeof(quaternion<double>) == 32);
-// Nothing is lost silently.
+// No conversion loses precision implicitly.
 static_assert(std::is_convertible_v<quaternion<float>, quaternion<double>>);
 static_assert(!std::is_convertible_v<quaternion<double>, quaternion<float>>);
 static_assert(std::is_constructible_v<quaternion<float>, quaternion<double>>);
@@ -117,14 +117,15 @@ static_assert([] {
          r.z().epsilon() == 0;
 }());
 
-TEST_CASE_TEMPLATE("N1-N3: the laws of the algebra", T, float, double, long double, dual<double>,
-                   dual<double, 3>, nested, duet::taylor<double, 3>,
-                   duet::taylor<dual<float>, 2, outer>, duet_test::real_50) {
+TEST_CASE_TEMPLATE("N1-N3: product, conjugate and norm obey the laws of the algebra", T, float,
+                   double, long double, dual<double>, dual<double, 3>, nested,
+                   duet::taylor<double, 3>, duet::taylor<dual<float>, 2, outer>,
+                   duet_test::real_50) {
   random_source random(51);
   for (int n = 0; n < 20; ++n) {
-    const auto p = whole_quaternion<T>(random);
-    const auto q = whole_quaternion<T>(random);
-    const auto r = whole_quaternion<T>(random);
+    const auto p = integer_quaternion<T>(random);
+    const auto q = integer_quaternion<T>(random);
+    const auto r = integer_quaternion<T>(random);
     const T a = whole<T>(random);
     const auto pq = product(p, q);
     CHECK(same(product(pq, r), product(p, product(q, r))));
@@ -151,7 +152,7 @@ TEST_CASE_TEMPLATE("N1-N3: the laws of the algebra", T, float, double, long doub
   }
 }
 
-TEST_CASE("N1: the product, against 100 digits") {
+TEST_CASE("N1: the product agrees with 100 digits") {
   random_source random(52);
   worst_error worst("product");
   for (int n = 0; n < 300; ++n) {
@@ -169,11 +170,11 @@ TEST_CASE("N1: the product, against 100 digits") {
 }
 
 // The order matters: q ṗ would be wrong.
-TEST_CASE("N6: d(pq) = ṗq + pq̇") {
+TEST_CASE("N6: the derivative of a product is ṗq + pq̇, in this order") {
   random_source random(53);
   for (int n = 0; n < 20; ++n) {
-    const auto p = whole_quaternion<double>(random), p_dot = whole_quaternion<double>(random);
-    const auto q = whole_quaternion<double>(random), q_dot = whole_quaternion<double>(random);
+    const auto p = integer_quaternion<double>(random), p_dot = integer_quaternion<double>(random);
+    const auto q = integer_quaternion<double>(random), q_dot = integer_quaternion<double>(random);
     const auto [y, dy] = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) { return (p + t * p_dot) * (q + t * q_dot); }, 0.0);
     CHECK(y == p * q);
@@ -184,7 +185,7 @@ TEST_CASE("N6: d(pq) = ṗq + pq̇") {
   }
 }
 
-TEST_CASE("components and text") {
+TEST_CASE("quaternion: components, assignment operators and text output") {
   const quaternion<double> q(1, 2, 3, 4);
   CHECK(q.vec() == duet::vector3<double>(2, 3, 4));
   CHECK(quaternion<double>(1, duet::vector3<double>(2, 3, 4)) == q);

@@ -78,7 +78,7 @@ std::vector<vector3<T>> vectors() {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("exp, log and powers", T, double, dual<double>) {
+TEST_CASE_TEMPLATE("batches: exp, log and pow agree with each lane", T, double, dual<double>) {
   const auto q = orientations<T>();
   check_lanes<4>([](const auto& v) { return duet::exp(v); }, limit, vectors<T>());
   check_lanes<4>([](const auto& a) { return log(a); }, limit, q);
@@ -88,7 +88,8 @@ TEST_CASE_TEMPLATE("exp, log and powers", T, double, dual<double>) {
                  std::vector<T>{T(0.5), T(1), T(0), T(-1.7), T(3)});
 }
 
-TEST_CASE_TEMPLATE("norm, normalisation and inverse", T, double, dual<double>) {
+TEST_CASE_TEMPLATE("batches: norm, normalized and inverse agree with each lane", T, double,
+                   dual<double>) {
   const auto q = orientations<T>();
   check_lanes<4>([](const auto& a) { return norm(a); }, limit, q);
   check_lanes<4>([](const auto& a) { return normalized(a); }, limit, q);
@@ -97,7 +98,7 @@ TEST_CASE_TEMPLATE("norm, normalisation and inverse", T, double, dual<double>) {
                  q);
 }
 
-TEST_CASE_TEMPLATE("slerp", T, double, dual<double>) {
+TEST_CASE_TEMPLATE("batches: slerp agrees with each lane, on every arc", T, double, dual<double>) {
   std::vector<quaternion<T>> a, b;
   for (const auto& q : orientations<T>()) {
     a.push_back(normalized(q));
@@ -106,16 +107,16 @@ TEST_CASE_TEMPLATE("slerp", T, double, dual<double>) {
   std::swap(b[1], b[4]);
   std::swap(b[6], b[12]);
   b[13] = -b[13];
-  for (const auto way :
+  for (const auto arc :
        {duet::slerp_arc::shortest, duet::slerp_arc::longest, duet::slerp_arc::as_given}) {
-    // The longest way between equal orientations is undetermined.
-    if (way == duet::slerp_arc::shortest) {
-      check_lanes<4>([&](const auto& p, const auto& r) { return slerp(p, r, 0.3, way); }, limit, a,
+    // The longer arc between equal orientations is undetermined.
+    if (arc == duet::slerp_arc::shortest) {
+      check_lanes<4>([&](const auto& p, const auto& r) { return slerp(p, r, 0.3, arc); }, limit, a,
                      b);
     } else {
       check_lanes<4>(
           [&](const auto& p) {
-            return slerp(quaternion<double>(0.5, 0.5, -0.5, 0.5), p, 0.3, way);
+            return slerp(quaternion<double>(0.5, 0.5, -0.5, 0.5), p, 0.3, arc);
           },
           limit, a);
     }
@@ -127,7 +128,8 @@ TEST_CASE_TEMPLATE("slerp", T, double, dual<double>) {
       limit, std::vector<T>{T(0), T(0.4), T(1), T(1e-9)});
 }
 
-TEST_CASE_TEMPLATE("rotations", T, double, dual<double>) {
+TEST_CASE_TEMPLATE("batches: rotations and their conversions agree with each lane", T, double,
+                   dual<double>) {
   const auto q = orientations<T>();
   std::vector<quaternion<T>> unit;
   std::vector<duet::matrix3<T>> matrices;
@@ -151,7 +153,7 @@ TEST_CASE_TEMPLATE("rotations", T, double, dual<double>) {
       unit, unit);
 }
 
-TEST_CASE("functions of numbers, over nested derivatives") {
+TEST_CASE("batches: scalar functions over nested duals agree with each lane") {
   using D = dual<dual<double, 1, struct outer>, 1, struct inner>;
   std::vector<D> x;
   for (const double value : {0.2, 0.7, 0.9, 1e-5, 0.999, 0.5}) {
@@ -165,7 +167,7 @@ TEST_CASE("functions of numbers, over nested derivatives") {
                  64, x);
 }
 
-TEST_CASE("zeros survive infinite slopes lane by lane") {
+TEST_CASE("batches: structural zeros survive infinite slopes in each lane") {
   using D = dual<double, 2>;
   std::vector<D> x{D(0), D::variable(0, 1), D::variable(4, 0), D(1)};
   check_lanes<4>([](const auto& a) { return sqrt(a); }, limit, x);
@@ -173,14 +175,14 @@ TEST_CASE("zeros survive infinite slopes lane by lane") {
   check_lanes<4>([](const auto& a) { return pow(a, 0.5); }, limit, x);
 }
 
-TEST_CASE("the zero quaternion in one lane is an error") {
+TEST_CASE("batches: the zero quaternion in one lane is rejected") {
   using B = batch<double, 4>;
   const quaternion<B> q(B::from_lanes([](int i) { return i - 2.0; }), B(0), B(0), B(0));
   CHECK_THROWS_AS(static_cast<void>(normalized(q)), duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(log(q)), duet::invalid_input);
 }
 
-TEST_CASE("curves, Euler angles, rates and Jacobians of exp") {
+TEST_CASE("batches: curves, Euler angles, rates and Jacobians of exp agree with each lane") {
   std::vector<quaternion<double>> q;
   for (const auto& a : orientations<double>()) {
     q.push_back(normalized(a));
@@ -189,8 +191,8 @@ TEST_CASE("curves, Euler angles, rates and Jacobians of exp") {
   std::rotate(p.begin(), p.begin() + 4, p.end());
   const std::vector<double> numbers{0, 0.3, 1, 1e-9, 0.8};
   const std::vector<double> angles{0, 0.4, -3.1, 1e-9, 1.5707963267948966, 2};
-  auto turns = vectors<double>();
-  turns[3] /= 1000; // J⁻¹ is as uncertain as its argument is large
+  auto rotation_vectors = vectors<double>();
+  rotation_vectors[3] /= 1000; // the error of J⁻¹ grows with its argument
   const auto left = [&](const auto& a, const auto& b) { return squad_control(a, b, a); };
   check_lanes<4>(left, 2 * limit, q, p);
   check_lanes<4>(
@@ -219,13 +221,15 @@ TEST_CASE("curves, Euler angles, rates and Jacobians of exp") {
       limit, q, vectors<double>());
   check_lanes<4>([](const auto& a, const auto& b) { return dot(a, b) + squared_norm(a); }, limit, q,
                  p);
-  check_lanes<4>([](const auto& r) { return duet::left_jacobian(r); }, limit, turns);
-  check_lanes<4>([](const auto& r) { return duet::right_jacobian(r); }, limit, turns);
-  check_lanes<4>([](const auto& r) { return duet::left_jacobian_inverse(r); }, 2 * limit, turns);
-  check_lanes<4>([](const auto& r) { return duet::right_jacobian_inverse(r); }, 2 * limit, turns);
+  check_lanes<4>([](const auto& r) { return duet::left_jacobian(r); }, limit, rotation_vectors);
+  check_lanes<4>([](const auto& r) { return duet::right_jacobian(r); }, limit, rotation_vectors);
+  check_lanes<4>([](const auto& r) { return duet::left_jacobian_inverse(r); }, 2 * limit,
+                 rotation_vectors);
+  check_lanes<4>([](const auto& r) { return duet::right_jacobian_inverse(r); }, 2 * limit,
+                 rotation_vectors);
 }
 
-TEST_CASE("eight and sixteen lanes, in as many registers as the machine needs for them") {
+TEST_CASE("batches: eight and sixteen lanes, in several registers, agree with each lane") {
   const auto q = orientations<double>();
   check_lanes<8>([](const auto& v) { return duet::exp(v); }, limit, vectors<double>());
   check_lanes<8>([](const auto& a) { return log(normalized(a)); }, limit, q);

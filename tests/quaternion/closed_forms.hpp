@@ -7,8 +7,8 @@
 #include <Eigen/Geometry>
 
 /// \file
-/// Derivatives of exp, log and powers in closed form, by the Jacobians of the rotation group: what
-/// automatic differentiation is compared with.
+/// Derivatives of exp, log and powers in closed form, by the Jacobians of the rotation group, as
+/// references for automatic differentiation.
 
 namespace duet_test::closed_form {
 
@@ -48,7 +48,7 @@ template <class T>
   return {rate.w(), inverse_right_jacobian(log(q).vec(), rate.vec())};
 }
 
-/// d q^ρ where q moves by q̇ and ρ by ρ̇.
+/// d q^ρ if q changes by q̇ and ρ by ρ̇.
 template <class T>
 [[nodiscard]] quaternion<T> pow_derivative(const quaternion<T>& q, const quaternion<T>& q_dot,
                                            const T& rho, const T& rho_dot) {

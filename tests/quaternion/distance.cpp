@@ -35,23 +35,25 @@ namespace {
 const vector axis(2.0 / 7, -3.0 / 7, 6.0 / 7);
 const quaternion start = duet::from_rotation_vector(vector(0.3, -1.2, 0.7));
 
-/// By the angle's definition, with 50 digits of rotations as they are.
+/// Angle by its definition in 50 digits, for the given rounded rotations.
 double exact_distance(const quaternion& a, const quaternion& b) {
-  const duet::quaternion<duet::real_50> turn =
+  const duet::quaternion<duet::real_50> rotation =
       conj(duet::quaternion<duet::real_50>(a)) * duet::quaternion<duet::real_50>(b);
-  const duet::real_50 sine = sqrt(turn.x() * turn.x() + turn.y() * turn.y() + turn.z() * turn.z());
-  return double(2 * atan2(sine, abs(turn.w())));
+  const duet::real_50 sine =
+      sqrt(rotation.x() * rotation.x() + rotation.y() * rotation.y() + rotation.z() * rotation.z());
+  return double(2 * atan2(sine, abs(rotation.w())));
 }
 
 } // namespace
 
-TEST_CASE("the angle between rotations, of whatever sign") {
+TEST_CASE("distance: equals the rotation angle for all signs of both quaternions") {
   for (const double angle : {0.0, 1e-200, 1e-12, 1e-4, 0.3, 1.0, 2.5, pi - 1e-9, pi}) {
     CAPTURE(angle);
-    const quaternion turn = duet::from_rotation_vector(vector(angle * axis));
-    CHECK(distance(quaternion(1), turn) == doctest::Approx(angle).epsilon(1e-15));
-    CHECK(std::abs(squared_distance(turn, quaternion(1)) - angle * angle) <= 2e-15 * angle * angle);
-    for (const quaternion& b : {turn * start, -(start * turn)}) {
+    const quaternion rotation = duet::from_rotation_vector(vector(angle * axis));
+    CHECK(distance(quaternion(1), rotation) == doctest::Approx(angle).epsilon(1e-15));
+    CHECK(std::abs(squared_distance(rotation, quaternion(1)) - angle * angle) <=
+          2e-15 * angle * angle);
+    for (const quaternion& b : {rotation * start, -(start * rotation)}) {
       CHECK(std::abs(distance(start, b) - angle) < 1e-15);
       CHECK(distance(start, b) == doctest::Approx(exact_distance(start, b)).epsilon(4e-15));
       CHECK(distance(b, start) == doctest::Approx(distance(start, b)).epsilon(4e-15));
@@ -70,7 +72,7 @@ TEST_CASE("the angle between rotations, of whatever sign") {
   CHECK_THROWS_AS(static_cast<void>(squared_distance(quaternion(), start)), duet::invalid_input);
 }
 
-TEST_CASE("rotations near each other: all digits, and a metric") {
+TEST_CASE("distance: accurate for nearby rotations, invariant, and obeys the triangle inequality") {
   duet_test::random_source random(7);
   for (int i = 0; i < 100; ++i) {
     const auto some = [&](double size) {
@@ -87,7 +89,7 @@ TEST_CASE("rotations near each other: all digits, and a metric") {
   }
 }
 
-TEST_CASE("derivatives, also at and near zero") {
+TEST_CASE("distance: gradients and Hessians have closed forms, also at and near zero") {
   // b = exp(r/2) a moves as exp(δ/2) b. The gradient of θ² = |r|² is 2r, the Hessian
   // 2 ((θ/2) cot(θ/2) (1 − r̂r̂ᵀ) + r̂r̂ᵀ); those of θ are r̂ and ½ cot(θ/2) (1 − r̂r̂ᵀ).
   const auto square = [](const auto& b) { return squared_distance(start, b); };
@@ -114,7 +116,7 @@ TEST_CASE("derivatives, also at and near zero") {
   CHECK(value == 0);
   CHECK(slope.norm() == 0);
   CHECK(max_abs_difference(curvature, matrix(2 * matrix::Identity())) < 1e-15);
-  // From the identity nothing is rounded, however small the angle.
+  // From the identity the difference is exact for any angle, however small.
   const auto from_one = [](const auto& b) { return distance(quaternion(1), b); };
   for (const double theta : {1e-300, 1e-150, 1e-8}) {
     const quaternion b = duet::from_rotation_vector(vector(theta * axis));
@@ -122,7 +124,7 @@ TEST_CASE("derivatives, also at and near zero") {
               duet::gradient<duet_test::shared_tag>(from_one, b, frame::spatial).gradient, axis) <
           1e-15);
   }
-  // By both ends.
+  // Gradient with respect to both arguments.
   const auto both = [](const auto& a, const auto& b) { return squared_distance(a, b); };
   const quaternion end = duet::from_rotation_vector(vector(0.8 * axis)) * start;
   const auto g =
@@ -131,18 +133,18 @@ TEST_CASE("derivatives, also at and near zero") {
   CHECK(max_abs_difference(g.tail<3>(), vector(1.6 * axis)) < 4e-15);
 }
 
-TEST_CASE("half a turn apart the derivative is that of the sign as given") {
+TEST_CASE("squared_distance: at a half turn the gradient belongs to the arc of the given sign") {
   const quaternion half_turn(0, 1, 0, 0);
   const auto square = [](const auto& b) { return squared_distance(quaternion(1), b); };
-  const auto way = [&](const quaternion& b) {
+  const auto gradient_at = [&](const quaternion& b) {
     return vector(duet::gradient<duet_test::shared_tag>(square, b, frame::spatial).gradient);
   };
   CHECK(square(half_turn) == doctest::Approx(pi * pi).epsilon(1e-15));
-  CHECK(max_abs_difference(way(half_turn), vector(2 * pi, 0, 0)) < 4e-15);
-  CHECK(max_abs_difference(way(-half_turn), vector(-2 * pi, 0, 0)) < 4e-15);
+  CHECK(max_abs_difference(gradient_at(half_turn), vector(2 * pi, 0, 0)) < 4e-15);
+  CHECK(max_abs_difference(gradient_at(-half_turn), vector(-2 * pi, 0, 0)) < 4e-15);
 }
 
-TEST_CASE("over batches") {
+TEST_CASE("distance: batches agree with each lane") {
   std::vector<quaternion> a, b;
   for (const double angle : {0.0, 1e-170, 1e-9, 0.4, 2.0, pi, 4.0, 6.28}) {
     a.push_back(start);

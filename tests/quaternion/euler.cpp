@@ -55,7 +55,7 @@ void for_each_sequence(const F& f) {
   f.template operator()<zyz>();
 }
 
-/// The matrix of a turn about a coordinate axis, entry by entry.
+/// The matrix of a rotation about a coordinate axis, entry by entry.
 Eigen::Matrix3d elementary(int axis, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   Eigen::Matrix3d m;
@@ -81,7 +81,7 @@ double second_angle(random_source& random, double margin) {
                        : random.uniform(-pi / 2 + margin, pi / 2 - margin);
 }
 
-/// The angles give q back, and lie in their ranges.
+/// Checks that the angles reproduce q and lie in their ranges.
 template <euler_sequence S>
 double defect(const quaternion<double>& q) {
   const auto [a, b, c] = duet::euler<S>(q);
@@ -93,7 +93,7 @@ double defect(const quaternion<double>& q) {
 
 } // namespace
 
-TEST_CASE("from_euler is the product of elementary rotations in the letters' order") {
+TEST_CASE("from_euler: equals the product of elementary rotations in the order of the letters") {
   for_each_sequence([]<euler_sequence S>() {
     random_source random(81);
     for (int i = 0; i < 30; ++i) {
@@ -102,7 +102,7 @@ TEST_CASE("from_euler is the product of elementary rotations in the letters' ord
                 .norm() <= 3e-15);
     }
   });
-  // Yaw, pitch, roll of a vehicle, x forward, z up: pitching by 90 degrees turns x to −z.
+  // Yaw, pitch, roll of a vehicle, x forward, z up: pitching by 90 degrees takes x to −z.
   const auto pitched = duet::from_euler<duet::zyx>(0.0, pi / 2, 0.0);
   CHECK(
       (rotate(pitched, duet::vector3<double>(1, 0, 0)) - duet::vector3<double>(0, 0, -1)).norm() <=
@@ -110,7 +110,7 @@ TEST_CASE("from_euler is the product of elementary rotations in the letters' ord
   CHECK((duet::from_euler<duet::zyx>(1, 0, 2) == duet::from_euler<duet::zyx>(1.0, 0.0, 2.0)));
 }
 
-TEST_CASE("angles survive the way there and back") {
+TEST_CASE("euler: recovers the angles of from_euler in every sequence") {
   for_each_sequence([]<euler_sequence S>() {
     random_source random(82);
     for (int i = 0; i < 100; ++i) {
@@ -128,7 +128,7 @@ TEST_CASE("angles survive the way there and back") {
   });
 }
 
-TEST_CASE("any rotation has angles in their ranges, in and near gimbal lock too") {
+TEST_CASE("euler: angles of any rotation lie in their ranges, also in and near gimbal lock") {
   for_each_sequence([]<euler_sequence S>() {
     random_source random(83);
     for (int i = 0; i < 50; ++i) {
@@ -161,7 +161,7 @@ std::array<T, 3> angles_along(const T& t, double b) {
 
 } // namespace
 
-TEST_CASE("rates of the angles: AD of euler(q(t)), and the inverse of euler_rate_matrix") {
+TEST_CASE("euler: derivatives agree with the inverse of euler_rate_matrix") {
   for_each_sequence([]<euler_sequence S>() {
     for (const double b : {0.2, 0.8, 1.3}) {
       const auto curve = [=](const auto& t) {
@@ -169,18 +169,19 @@ TEST_CASE("rates of the angles: AD of euler(q(t)), and the inverse of euler_rate
         return duet::from_euler<S>(x, y, z);
       };
       const double t = 0.1;
-      const auto there = duet::derivative<duet_test::shared_tag>(
+      const auto expected = duet::derivative<duet_test::shared_tag>(
           [=](const auto& u) { return angles_along<std::decay_t<decltype(u)>, S>(u, b); }, t);
-      const auto back = duet::derivative<duet_test::shared_tag>(
+      const auto recovered = duet::derivative<duet_test::shared_tag>(
           [&](const auto& u) { return duet::euler<S>(curve(u)); }, t);
       const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(curve, t);
       const duet::vector3<double> omega = angular_velocity(q, q_dot, duet::frame::spatial);
-      const duet::matrix3<double> A = duet::euler_rate_matrix<S>(there.value[0], there.value[1]);
+      const duet::matrix3<double> A =
+          duet::euler_rate_matrix<S>(expected.value[0], expected.value[1]);
       const duet::vector3<double> by_matrix = A.inverse() * omega;
       for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(std::abs(back.value[i] - there.value[i]) <= 1e-14);
-        CHECK(std::abs(back.derivative[i] - there.derivative[i]) <= 1e-13);
-        CHECK(std::abs(by_matrix[int(i)] - there.derivative[i]) <= 1e-13);
+        CHECK(std::abs(recovered.value[i] - expected.value[i]) <= 1e-14);
+        CHECK(std::abs(recovered.derivative[i] - expected.derivative[i]) <= 1e-13);
+        CHECK(std::abs(by_matrix[int(i)] - expected.derivative[i]) <= 1e-13);
       }
     }
   });
@@ -188,7 +189,7 @@ TEST_CASE("rates of the angles: AD of euler(q(t)), and the inverse of euler_rate
 
 namespace {
 
-/// The angles by the entries of the rotation matrix, in 100 digits; not a number where
+/// The angles by the entries of the rotation matrix, in 100 digits; NaN if
 /// undetermined.
 template <euler_sequence S, class T>
 std::array<duet_test::real_100, 3> exact_angles(const quaternion<T>& q) {
@@ -218,7 +219,7 @@ std::array<duet_test::real_100, 3> exact_angles(const quaternion<T>& q) {
           angle(-sign * entry(i, j), entry(i, i))};
 }
 
-/// Numbers of every size, and those near which angles vanish only by cancellation.
+/// Quaternions of every norm, among them those near which angles vanish only by cancellation.
 template <euler_sequence S>
 std::vector<quaternion<double>> hard_attitudes() {
   random_source random(84);
@@ -228,15 +229,15 @@ std::vector<quaternion<double>> hard_attitudes() {
     for (const double b : sizes) {
       for (const double c : sizes) {
         if (random.uniform(0, 1) > 0.06) {
-          continue; // of 343 a few
+          continue; // keep about 6 % of the 343 triples
         }
-        const auto turned = [&](double angle) { // some near a half turn, some negative
-          const double there = random.uniform(0, 1) < 0.2 ? pi - angle : angle;
-          return random.uniform(0, 1) < 0.5 ? -there : there;
+        const auto varied = [&](double angle) { // sometimes near a half turn, sometimes negative
+          const double result = random.uniform(0, 1) < 0.2 ? pi - angle : angle;
+          return random.uniform(0, 1) < 0.5 ? -result : result;
         };
-        result.push_back(duet::from_euler<S>(turned(a), turned(b), turned(c)));
+        result.push_back(duet::from_euler<S>(varied(a), varied(b), varied(c)));
         const double size = random.log_uniform(1e-150, 1e150);
-        result.push_back(duet::from_euler<S>(turned(a), turned(b - pi / 2), turned(c)) * size);
+        result.push_back(duet::from_euler<S>(varied(a), varied(b - pi / 2), varied(c)) * size);
       }
     }
   }
@@ -252,25 +253,25 @@ std::vector<quaternion<double>> hard_attitudes() {
 
 /// The errors of angles over T in ulps of themselves.
 template <class T, euler_sequence S>
-void add_errors(duet_test::worst_error& worst, const quaternion<double>& given) {
+void add_errors(duet_test::worst_error& worst, const quaternion<double>& input) {
   using real = duet_test::real_100;
-  const quaternion<T> q(T(given.w()), T(given.x()), T(given.y()), T(given.z()));
+  const quaternion<T> q(T(input.w()), T(input.x()), T(input.y()), T(input.z()));
   const auto exact = exact_angles<S>(q);
   const auto angles = duet::euler<S>(q);
   for (std::size_t i = 0; i < 3; ++i) {
     if (exact[i] == exact[i]) {
       real error = abs(real(real(angles[i]) - exact[i]));
-      if (error > 6) { // π and −π are the same
+      if (error > 6) { // π and −π are the same angle
         error = abs(real(error - 2 * duet::constant::pi<real>()));
       }
-      worst.add(duet_test::ulps_of_error<T>(error, exact[i]), i, given, S.first, S.second, S.third);
+      worst.add(duet_test::ulps_of_error<T>(error, exact[i]), i, input, S.first, S.second, S.third);
     }
   }
 }
 
 } // namespace
 
-TEST_CASE("each angle is right to 8 ulp of itself, however small, in every sequence") {
+TEST_CASE("euler: each angle is accurate to 8 ulp of itself in every sequence") {
   duet_test::worst_error in_double("euler"), in_float("float"), in_long_double("long double"),
       in_50_digits("50 digits");
   for_each_sequence([&]<euler_sequence S>() {
@@ -293,13 +294,13 @@ TEST_CASE("each angle is right to 8 ulp of itself, however small, in every seque
   CHECK_MESSAGE(in_50_digits <= 8, in_50_digits);
 }
 
-TEST_CASE("a pitch too small for the difference of two quarter turns") {
+TEST_CASE("euler: a tiny second angle is not lost to cancellation") {
   for (const double pitch : {1e-10, 1e-20, -1e-300}) {
     CHECK(duet::euler<duet::zyx>(quaternion<double>(1, 0, pitch / 2, 0))[1] == pitch);
   }
 }
 
-TEST_CASE("a pitch that small has a rate as exact") {
+TEST_CASE("euler: the derivative of a tiny second angle is accurate") {
   using D = duet::dual<double>;
   for (const double size : {1e-5, 1e-20, 1e-300}) {
     const auto pitch =
@@ -309,7 +310,7 @@ TEST_CASE("a pitch that small has a rate as exact") {
   }
 }
 
-TEST_CASE("rates of the angles do not depend on the norm, however far from 1") {
+TEST_CASE("euler: derivatives do not depend on the norm from 1e-300 to 1e300") {
   using D = duet::dual<double>;
   for_each_sequence([]<euler_sequence S>() {
     const auto rates = [](double norm) {
@@ -320,23 +321,23 @@ TEST_CASE("rates of the angles do not depend on the norm, however far from 1") {
     };
     const auto at_one = rates(1);
     for (const double norm : {1e-300, 1e-170, 1e160, 1e300}) {
-      const auto there = rates(norm);
+      const auto scaled = rates(norm);
       for (std::size_t i = 0; i < 3; ++i) {
-        CHECK(there[i] == doctest::Approx(at_one[i]).epsilon(1e-13));
+        CHECK(scaled[i] == doctest::Approx(at_one[i]).epsilon(1e-13));
       }
     }
   });
 }
 
-TEST_CASE("the zero quaternion has no angles") {
+TEST_CASE("euler: the zero quaternion is rejected") {
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::euler<duet::zyx>(quaternion<double>())),
                        "duet: euler: the quaternion is zero", duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::euler<duet::zxz>(quaternion<duet::dual<double>>())),
                        "duet: euler: the quaternion is zero", duet::invalid_input);
 }
 
-// The value at gimbal lock is right; derivatives there do not exist.
-TEST_CASE("in gimbal lock the angles give the rotation, without derivatives") {
+// In gimbal lock the value is correct; derivatives do not exist.
+TEST_CASE("euler: in gimbal lock values give the rotation and derivatives are NaN") {
   const auto q = duet::from_euler<duet::zyx>(0.3, pi / 2, 0.1);
   CHECK(defect<duet::zyx>(q) <= 1e-15);
   const auto [value, slope] = duet::derivative<duet_test::shared_tag>(

@@ -45,7 +45,7 @@ M in_paper_order(const M& letters) {
   return m;
 }
 
-/// ω of given angles and rates by AD of the quaternion alone.
+/// ω of angles and their rates, by AD of the quaternion alone.
 duet::vector3<double> automatic(double psi, double theta, double phi, double psi_rate,
                                 double theta_rate, double phi_rate) {
   const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(
@@ -59,7 +59,7 @@ duet::vector3<double> automatic(double psi, double theta, double phi, double psi
 
 } // namespace
 
-TEST_CASE("P5: the true matrix, by hand, by the library, by AD and in 50 digits") {
+TEST_CASE("P5: euler_rate_matrix agrees with the hand-written matrix, AD and 50 digits") {
   random_source random(91);
   worst_error library("euler_rate_matrix<zyx>");
   const double quarter = 1.5707963267948966; // its cosine is 6e-17
@@ -73,13 +73,14 @@ TEST_CASE("P5: the true matrix, by hand, by the library, by AD and in 50 digits"
     CHECK((a * rates - automatic(psi, theta, phi, rates[2], rates[1], rates[0])).norm() <= 1e-14);
     const auto exact = by_hand(real_50(psi), real_50(theta));
     for (int k = 0; k < 9; ++k) {
-      library.add(duet_test::ulps(a(k), exact(k), exact(k)), k, psi, theta); // of itself
+      library.add(duet_test::ulps(a(k), exact(k), exact(k)), k, psi,
+                  theta); // relative to the element itself
     }
   }
   CHECK_MESSAGE(library <= 4, library);
 }
 
-TEST_CASE("P5: as printed, element (3, 1) is -sin psi, and the angular velocity is wrong") {
+TEST_CASE("P5: the printed matrix has -sin psi at (3, 1) and a wrong angular velocity") {
   random_source random(92);
   for (int i = 0; i < 100; ++i) {
     const double psi = random.uniform(-3, 3), theta = random.uniform(-1.5, 1.5);
@@ -88,7 +89,7 @@ TEST_CASE("P5: as printed, element (3, 1) is -sin psi, and the angular velocity 
     CHECK(difference(2, 0) == std::sin(theta) - std::sin(psi));
     CHECK(difference.cwiseAbs().sum() == std::abs(difference(2, 0)));
   }
-  // Where yaw and pitch are equal the slip does not show.
+  // If yaw and pitch are equal, the error of the print has no effect.
   CHECK(duet::printed_euler_rate_matrix(0.4, 0.4) == by_hand(0.4, 0.4));
 
   const double psi = 0.1, theta = -0.7, phi = 0.3;
@@ -99,7 +100,7 @@ TEST_CASE("P5: as printed, element (3, 1) is -sin psi, and the angular velocity 
         doctest::Approx(std::abs(std::sin(theta) - std::sin(psi)) * rates[0]));
 }
 
-TEST_CASE("P5: the derivative of delta, A'{...} + A{...}'', is AD's second derivative") {
+TEST_CASE("P5: the derivative of delta, A'{...} + A{...}'', agrees with AD") {
   const auto angles = [](const auto& u) {
     using std::cos;
     using std::sin;

@@ -25,7 +25,7 @@ namespace reference = duet_test::reference;
 
 namespace {
 
-/// Vector parts of every size, and on either side of where the algorithm changes: s = |v|² = 1 and
+/// Vector parts of every size, and on both sides of the switches of the algorithm: s = |v|² = 1 and
 /// 9.8696, for s and, in derivatives, for 4s.
 std::vector<double> lengths() {
   std::vector<double> result{0, 1e-300, 1e-160, 1e-30, 1e-8, 1e-4, 0.01, 0.3};
@@ -59,7 +59,7 @@ std::vector<quaternion<double>> inputs() {
 
 } // namespace
 
-TEST_CASE("N4: exp, value and first derivative") {
+TEST_CASE("N4: exp and its first derivative agree with 100 digits") {
   random_source random(2);
   worst_error value("exp");
   worst_error slope("exp, derivative by AD");
@@ -91,7 +91,7 @@ TEST_CASE("N4: exp, value and first derivative") {
   CHECK_MESSAGE(closed <= 16, closed);
 }
 
-TEST_CASE("N4: exp of a vector is exp of the quaternion without scalar part") {
+TEST_CASE("N4: exp of a vector equals exp of the pure quaternion") {
   const duet::vector3<double> v(0.3, -1.2, 0.5);
   CHECK(duet::exp(v) == exp(quaternion<double>(0, v)));
   CHECK(norm(duet::exp(v)) == doctest::Approx(1).epsilon(1e-15));

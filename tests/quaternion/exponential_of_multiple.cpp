@@ -16,7 +16,7 @@
 #include <vector>
 
 // exp(b v) by the universal functions of b and |v|² against the exponential of the product, whose
-// own tests are against many digits. The two share no formula for derivatives by b.
+// own tests are against many digits. The two share no formula for derivatives with respect to b.
 
 namespace test_quaternion_exponential_of_multiple {
 
@@ -25,7 +25,7 @@ using duet::detail::exp_of_multiple;
 
 namespace {
 
-/// The largest of all real numbers in x − y.
+/// Largest absolute value of all real numbers in x − y.
 template <class T>
 double difference(const T& x, const T& y) {
   double result = 0;
@@ -47,7 +47,7 @@ void check(const S& b, const vector3<T>& v, double tolerance) {
   CHECK(difference(q.z(), expected.z()) <= tolerance);
 }
 
-/// |v| = 0, tiny, small, and either side of where the algorithm changes: |bv| = 1 and 2 at b = ½.
+/// |v| = 0, tiny, small, and both sides of the switches of the algorithm: |bv| = 1 and 2 at b = ½.
 const std::vector<double> lengths{0, 1e-200, 1e-9, 0.01, 0.7, 1.999, 2.001, 3.999, 4.001, 9};
 
 vector3<double> vector_of(double length) { return vector3<double>(2, -1, 2) * (length / 3); }
@@ -65,7 +65,7 @@ void for_all(const F& f) {
 
 } // namespace
 
-TEST_CASE("derivatives by the multiple") {
+TEST_CASE("exp_of_multiple: derivatives with respect to the factor agree with exp of the product") {
   for_all([](double b, const vector3<double>& v, double scale) {
     check(b, v, 1e-15);
     check(dual<double, 2>(b, dual<double, 2>::partials_type::unit(1)), v, 1e-15 * scale);
@@ -78,7 +78,7 @@ TEST_CASE("derivatives by the multiple") {
   });
 }
 
-TEST_CASE("screws, and derivatives by both") {
+TEST_CASE("exp_of_multiple: over screws, derivatives with respect to both arguments agree") {
   struct of_data;
   using moving = dual<double, 1, of_data>;
   for_all([](double b, const vector3<double>& v, double scale) {
@@ -97,7 +97,7 @@ TEST_CASE("screws, and derivatives by both") {
   });
 }
 
-TEST_CASE("slope by a screw of exactly no rotation is that of a translation") {
+TEST_CASE("exp_of_multiple: at zero rotation the derivative is that of a translation") {
   const auto q =
       exp_of_multiple(taylor<double, 2>::variable(0.25),
                       make_dual_vector(vector3<double>::Zero().eval(), vector3<double>(1, 2, 3)));
@@ -107,7 +107,7 @@ TEST_CASE("slope by a screw of exactly no rotation is that of a translation") {
   CHECK(q.y().epsilon().coefficient(2) == 0);
 }
 
-TEST_CASE("lanes on either side of where the algorithm changes") {
+TEST_CASE("exp_of_multiple: batches with lanes on both sides of a switch agree") {
   const auto value = [](const auto& b) {
     return exp_of_multiple(b, vector3<double>(vector_of(4)));
   };

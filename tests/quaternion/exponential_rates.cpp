@@ -79,7 +79,7 @@ std::array<vector3<real_50>, order> reference(double size) {
 
 } // namespace
 
-TEST_CASE("rates of the exponential along a curve, from the identity to a full turn and beyond") {
+TEST_CASE("half_body_rates: rates of exp(x(t)) agree with 50 digits up to beyond a full turn") {
   for (const double size :
        {0.0, 1e-300, 1e-9, 1e-3, 0.5, 0.9999, 1.0001, 1.5, 2.0, 3.0, 3.141592653589793, 3.2, 6.0}) {
     CAPTURE(size);
@@ -100,7 +100,7 @@ TEST_CASE("rates of the exponential along a curve, from the identity to a full t
   }
 }
 
-TEST_CASE("a sequence of Stumpff functions is what they are one by one") {
+TEST_CASE("stumpff_sequence: agrees with single Stumpff functions") {
   for (const double s : {0.0, 1e-300, 1e-8, 0.3, 1.0, 3.999, 4.001, 9.8, 39.4, 45.0}) {
     CAPTURE(s);
     const auto c = duet::stumpff_sequence<9>(s);

@@ -14,8 +14,8 @@
 
 namespace duet_test {
 
-/// The identity, half turns and full turns, exactly and at every distance; both sides of where
-/// algorithms change; every norm from 1e-140 to 1e140.
+/// The identity, half turns and full turns, exactly and at every distance; both sides of
+/// the switches of the algorithms; every norm from 1e-140 to 1e140.
 [[nodiscard]] inline std::vector<duet::quaternion<double>> hard_quaternions() {
   using duet::quaternion;
   random_source random(7);
@@ -25,7 +25,8 @@ namespace duet_test {
     result.push_back({norm * w, norm * length * d[0], norm * length * d[1], norm * length * d[2]});
     result.push_back({norm * w, 0, -norm * length, 0});
   };
-  // Below a vector part of 2^-50 |q| (2^-10 in single precision) a full turn counts as near.
+  // Below a vector part of 2^-50 |q| (2^-10 in single precision) the algorithm treats q as near a
+  // full turn.
   const double sizes[] = {0,       1e-300, 1e-160, 1e-30,   0x0.ffffp-50, 0x1.0001p-50,
                           0x1p-50, 1e-8,   1e-4,   0x1p-10, 0.1};
   for (const double length : sizes) {
@@ -55,7 +56,7 @@ namespace duet_test {
   return result;
 }
 
-/// How far from q its logarithm is smooth: the distance to zero, or to the full turns.
+/// Radius about q in which log is smooth: the distance to zero or to the full turns.
 [[nodiscard]] inline reference::real smooth_length(const reference::four& q) {
   const reference::real vector_part = reference::length({0, q[1], q[2], q[3]});
   return q[0] < 0 ? vector_part : reference::length(q);

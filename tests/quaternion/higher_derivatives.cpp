@@ -83,8 +83,8 @@ struct computed {
         by_nesting(f(q + nested_variable(0) * d)) {}
 };
 
-/// `reach` is how far it is smooth, `moved` how much the rounding of q
-/// moves it, in units: |q|, or the distance to a singularity where that is less.
+/// `reach` is the radius of smoothness, `moved` the change by the rounding of q, in units of |q|
+/// or, if it is less, of the distance to a singularity.
 void measure(errors& e, const computed& both,
              const std::function<reference::four(reference::four)>& exact_f,
              const quaternion<double>& q, const quaternion<double>& d, const reference::real& reach,
@@ -109,7 +109,7 @@ void measure(errors& e, const computed& both,
   }
 }
 
-/// Half angles at and near 0, a half turn, a full turn, and where the algorithm changes.
+/// Half angles at and near 0, a half turn, a full turn, and at the switches of the algorithm.
 std::vector<double> half_angles() {
   using std::numbers::pi;
   std::vector<double> result{0, 1e-300, 1e-160, 1e-8, 1e-4, 0.1};
@@ -126,7 +126,7 @@ std::vector<double> half_angles() {
 
 } // namespace
 
-TEST_CASE("derivatives of exp to fourth order") {
+TEST_CASE("exp: derivatives to fourth order agree with 100 digits") {
   random_source random(31);
   errors e("exp");
   auto angles = half_angles();
@@ -145,7 +145,7 @@ TEST_CASE("derivatives of exp to fourth order") {
   e.check({16, 16, 16, 16, 16});
 }
 
-TEST_CASE("derivatives of log to fourth order") {
+TEST_CASE("log: derivatives to fourth order agree with 100 digits") {
   random_source random(32);
   errors e("log");
   for (const double angle : half_angles()) {
@@ -163,7 +163,7 @@ TEST_CASE("derivatives of log to fourth order") {
   e.check({16, 16, 16, 16, 16});
 }
 
-TEST_CASE("derivatives of pow to fourth order") {
+TEST_CASE("pow: derivatives to fourth order agree with 100 digits") {
   random_source random(33);
   errors e("pow");
   for (const double angle : half_angles()) {

@@ -22,7 +22,7 @@ using duet_test::random_source;
 using duet_test::worst_error;
 namespace reference = duet_test::reference;
 
-TEST_CASE("N4: log, value and first derivative") {
+TEST_CASE("N4: log and its first derivative agree with 100 digits") {
   random_source random(3);
   worst_error value("log");
   worst_error slope("log, derivative by AD");
@@ -47,7 +47,7 @@ TEST_CASE("N4: log, value and first derivative") {
     const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) { return log(q + t * q_dot); }, 0.0);
     slope.add(reference::ulps(automatic.derivative, exact_slope, scale), q, q_dot);
-    // The closed form has φ in it and loses digits near a full turn, where AD does not.
+    // The closed form contains φ and loses precision near a full turn; AD does not.
     if (q.w() > 0 || smooth > reference::length(x) / 10) {
       closed.add(
           reference::ulps(duet_test::closed_form::log_derivative(q, q_dot), exact_slope, scale), q,
@@ -59,23 +59,23 @@ TEST_CASE("N4: log, value and first derivative") {
   CHECK_MESSAGE(closed <= 16, closed);
 }
 
-// The numbers of a small rotation are not lost beside the 1 of its scalar part.
-TEST_CASE("the vector part of log keeps its relative accuracy near the identity and a full turn") {
+// The vector part of a small rotation must not be lost next to the scalar part 1.
+TEST_CASE("log: the vector part is accurate near the identity and a full turn") {
   for (const double length : {1e-300, 1e-160, 1e-150, 1e-30, 1e-8, 1e-4}) {
     const auto l = log(quaternion<double>(1, 0, length, 0));
     CHECK(std::abs(l.y() / std::atan(length) - 1) <= 3e-16);
-    const auto round = log(quaternion<double>(-1, 0, length, 0));
-    CHECK(round.y() == doctest::Approx(3.141592653589793 - std::atan(length)).epsilon(3e-16));
+    const auto logarithm = log(quaternion<double>(-1, 0, length, 0));
+    CHECK(logarithm.y() == doctest::Approx(3.141592653589793 - std::atan(length)).epsilon(3e-16));
   }
 }
 
-TEST_CASE("exp and log are inverse") {
-  worst_error there("exp(log q)");
-  worst_error back("log(exp q)");
+TEST_CASE("exp and log are inverse to each other") {
+  worst_error exp_of_log("exp(log q)");
+  worst_error log_of_exp("log(exp q)");
   for (const auto& q : duet_test::hard_quaternions()) {
     const double size = norm(q);
     if (size > 1e-100 && size < 1e100) {
-      there.add(norm(exp(log(q)) - q) / size / 0x1p-53 / (1 + std::abs(std::log(size))), q);
+      exp_of_log.add(norm(exp(log(q)) - q) / size / 0x1p-53 / (1 + std::abs(std::log(size))), q);
     }
   }
   random_source random(4);
@@ -83,13 +83,13 @@ TEST_CASE("exp and log are inverse") {
     const auto d = random.direction<3>();
     const double length = i % 2 == 0 ? random.uniform(0, 3.1) : random.log_uniform(1e-300, 3.1);
     const quaternion<double> l(random.uniform(-3, 3), length * d[0], length * d[1], length * d[2]);
-    back.add(norm(log(exp(l)) - l) / 0x1p-53 / (1 + norm(l)) * (3.15 - length), l);
+    log_of_exp.add(norm(log(exp(l)) - l) / 0x1p-53 / (1 + norm(l)) * (3.15 - length), l);
   }
-  CHECK_MESSAGE(there <= 8, there);
-  CHECK_MESSAGE(back <= 16, back);
+  CHECK_MESSAGE(exp_of_log <= 8, exp_of_log);
+  CHECK_MESSAGE(log_of_exp <= 16, log_of_exp);
 }
 
-TEST_CASE("log never flips the sign: log(-q) is the long way round") {
+TEST_CASE("log: log(-q) belongs to the longer arc, no sign is flipped") {
   random_source random(5);
   for (int i = 0; i < 100; ++i) {
     const auto d = random.direction<4>();
@@ -102,13 +102,13 @@ TEST_CASE("log never flips the sign: log(-q) is the long way round") {
   }
 }
 
-TEST_CASE("a half turn is regular") {
+TEST_CASE("log: a half turn is a regular point") {
   const auto l = log(quaternion<double>(0, 0, 1, 0));
   CHECK(l == quaternion<double>(0, 0, 1.5707963267948966, 0));
   CHECK(norm(exp(l) - quaternion<double>(0, 0, 1, 0)) <= 1e-16);
 }
 
-TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives are NaN") {
+TEST_CASE("log: at -|q| the axis is x and derivatives are NaN") {
   using duet::dual;
   CHECK(log(quaternion<double>(-1, 0, 0, 0)) == quaternion<double>(0, 3.141592653589793, 0, 0));
   const auto l = log(quaternion<double>(-1e200, 0, -0.0, 0));
@@ -116,7 +116,7 @@ TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives ar
   CHECK(l.vec() == duet::vector3<double>(3.141592653589793, 0, 0));
   CHECK(norm(exp(log(quaternion<double>(-1, 0, 0, 0))) + quaternion<double>(1)) <= 2e-16);
 
-  // By the vector part there is no derivative; the scalar part alone changes |q| only.
+  // With respect to the vector part there is no derivative; the scalar part changes only |q|.
   using D = dual<double, 2>;
   const auto by_both = log(quaternion<D>(D::variable(-2, 0), D(0), D::variable(0, 1), D(0)));
   CHECK(by_both.w().partial(0) == -0.5);
@@ -127,7 +127,7 @@ TEST_CASE("log of -|q|: the axis is undetermined, x is chosen and derivatives ar
   }
 }
 
-TEST_CASE("the zero quaternion has no logarithm, no power, no direction and no inverse") {
+TEST_CASE("log, pow, normalized and inverse reject the zero quaternion") {
   const quaternion<double> zero;
   CHECK_THROWS_WITH_AS(static_cast<void>(log(zero)), "duet: log: the quaternion is zero",
                        duet::invalid_input);

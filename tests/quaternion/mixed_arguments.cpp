@@ -18,7 +18,7 @@ namespace test_quaternion_mixed_arguments {
 
 using namespace test_support::mixed;
 
-TEST_CASE("constants mix with derivatives: quaternions") {
+TEST_CASE("quaternions: every function accepts constants mixed with derivatives") {
   check(
       "quaternion", [](const auto&... x) { return quaternion(x...); }, 0.1, 0.2, 0.3, 0.4);
   check(

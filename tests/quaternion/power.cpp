@@ -22,7 +22,7 @@ using duet_test::random_source;
 using duet_test::worst_error;
 namespace reference = duet_test::reference;
 
-TEST_CASE("N5: pow, value and first derivative by base and exponent") {
+TEST_CASE("N5: pow and its derivatives by base and exponent agree with 100 digits") {
   random_source random(11);
   worst_error value("pow");
   worst_error slope("pow, derivative by AD");
@@ -32,7 +32,7 @@ TEST_CASE("N5: pow, value and first derivative by base and exponent") {
   for (const auto& q : duet_test::hard_quaternions()) {
     const double rho = exponents[++i % 9];
     const reference::four x = reference::wide(q);
-    // A whole power is smooth near a full turn, as long as the exponent does not move.
+    // An integer power is smooth near a full turn, as long as the exponent is constant.
     const bool is_smooth = rho == std::round(rho) && duet_test::smooth_length(x) < 1e-9 * norm(q);
     const reference::real smooth = is_smooth ? reference::length(x) : duet_test::smooth_length(x);
     const auto power = [&](const reference::four& y) { return reference::pow(y, rho); };
@@ -57,7 +57,7 @@ TEST_CASE("N5: pow, value and first derivative by base and exponent") {
         },
         1, reach);
     if (reference::length(exact_slope) > 1e300) {
-      continue; // near a full turn, and large
+      continue; // near a full turn the derivative may be too large
     }
     const reference::real scale =
         reference::length(exact_slope) + reference::length(by_rho) +
@@ -78,7 +78,7 @@ TEST_CASE("N5: pow, value and first derivative by base and exponent") {
   CHECK_MESSAGE(closed <= 16, closed);
 }
 
-TEST_CASE("pow(q, 2) is q q, pow(q, -1) the inverse, pow(q, 0) is 1") {
+TEST_CASE("pow: exponents 2, -1, 0 and 1 give q q, the inverse, 1 and q") {
   for (const auto& q : duet_test::hard_quaternions()) {
     const double size = norm(q);
     CHECK(norm(pow(q, -1) * size - inverse(q) * size) <= 1e-15);
@@ -90,8 +90,8 @@ TEST_CASE("pow(q, 2) is q q, pow(q, -1) the inverse, pow(q, 0) is 1") {
   }
 }
 
-// Through acos, a rotation of 1e-6 comes out wrong in its fourth digit.
-TEST_CASE("small rotations keep their relative accuracy") {
+// By acos, a rotation of 1e-6 would be wrong in its fourth digit.
+TEST_CASE("pow and slerp: the angle of small rotations has a small relative error") {
   for (const double half_angle : {5e-7, 5e-9, 1e-12, 1e-100, 1e-300}) {
     const quaternion<double> q(std::cos(half_angle), 0, std::sin(half_angle), 0);
     for (const double rho : {0.25, 0.5, 0.9, 3.0}) {
@@ -102,8 +102,8 @@ TEST_CASE("small rotations keep their relative accuracy") {
   }
 }
 
-// q² is a polynomial: smooth at −1, though log is not.
-TEST_CASE("whole powers are smooth at a full turn") {
+// q² is a polynomial and so smooth at −1, although log is not.
+TEST_CASE("pow: integer powers are smooth at a full turn") {
   for (const double length : {0.0, 1e-300, 1e-31, 1e-8, 1e-4, 0.01, 0.12, 0.13}) {
     const quaternion<double> q(-1, 0, length, 0);
     const quaternion<double> q_dot(0.3, -0.4, 0.5, 0.6);
@@ -131,12 +131,12 @@ TEST_CASE("whole powers are smooth at a full turn") {
   }
 }
 
-TEST_CASE("the power of -|q| turns about the chosen axis x") {
+TEST_CASE("pow: a power of -|q| rotates about the axis x") {
   const auto root = pow(quaternion<double>(-4, 0, 0, 0), 0.5);
   CHECK(norm(root - quaternion<double>(0, 2, 0, 0)) <= 1e-15);
 }
 
-TEST_CASE("N5: higher derivatives of pow near whole exponents, where they vanish") {
+TEST_CASE("N5: higher derivatives of pow are accurate near integer exponents, where they vanish") {
   random_source random(14);
   worst_error worst("pow, third and fourth derivative");
   for (int i = 0; i < 60; ++i) {
@@ -155,9 +155,9 @@ TEST_CASE("N5: higher derivatives of pow near whole exponents, where they vanish
         pow(q + duet::taylor<double, 4>::variable(0) * rate, duet::taylor<double, 4>(rho));
     for (int k = 3; k <= 4; ++k) {
       const auto exact = derivative(k, reference::real(rho));
-      const auto beside = derivative(k, reference::real(rho * (1 + 1e-8)));
+      const auto nearby = derivative(k, reference::real(rho * (1 + 1e-8)));
       const reference::real scale =
-          reference::length(exact) + 1e8 * reference::length(reference::sum(beside, exact, -1));
+          reference::length(exact) + 1e8 * reference::length(reference::sum(nearby, exact, -1));
       worst.add(
           reference::ulps(quaternion<double>(series.w().derivative(k), series.x().derivative(k),
                                              series.y().derivative(k), series.z().derivative(k)),

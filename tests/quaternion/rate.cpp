@@ -35,15 +35,15 @@ vector3<double> random_vector(random_source& random) {
   return {random.normal(), random.normal(), random.normal()};
 }
 
-/// A motion that turns about three axes at once, over any scalar.
+/// Rotation about three axes at once, over any scalar.
 template <class T>
 quaternion<T> motion(const T& t) {
   using std::sin;
-  const auto turn = [](const vector3<double>& axis, const T& angle) {
+  const auto rotation_about = [](const vector3<double>& axis, const T& angle) {
     return duet::exp(vector3<T>(axis[0] * angle, axis[1] * angle, axis[2] * angle));
   };
-  return turn({0.3, -0.2, 0.9}, t) * turn({-0.5, 1, 0.1}, T(t * t)) *
-         turn({1, 0.4, -0.7}, T(sin(2 * t)));
+  return rotation_about({0.3, -0.2, 0.9}, t) * rotation_about({-0.5, 1, 0.1}, T(t * t)) *
+         rotation_about({1, 0.4, -0.7}, T(sin(2 * t)));
 }
 
 /// The coefficient of ε in every entry.
@@ -54,7 +54,7 @@ Eigen::Matrix3d slope(const M& m) {
 
 } // namespace
 
-TEST_CASE("N7: the angular velocity from the rate is that of the rotation matrix") {
+TEST_CASE("N7: angular_velocity agrees with AD of the rotation matrix") {
   // ω̂^s = Ṙ Rᵀ and ω̂^b = Rᵀ Ṙ, by AD of the matrix alone.
   for (double t = -2; t <= 2; t += 0.125) {
     const auto [q, q_dot] =
@@ -69,12 +69,12 @@ TEST_CASE("N7: the angular velocity from the rate is that of the rotation matrix
     CHECK((omega_s - vector3<double>(spatial(2, 1), spatial(0, 2), spatial(1, 0))).norm() <= 1e-14);
     CHECK((omega_b - vector3<double>(body(2, 1), body(0, 2), body(1, 0))).norm() <= 1e-14);
     CHECK((omega_s - rotate(q, omega_b)).norm() <= 1e-14);
-    // A unit quaternion leaves no scalar part.
+    // For a unit quaternion the scalar part vanishes.
     CHECK(std::abs((q_dot * conj(q)).w()) <= 1e-15);
   }
 }
 
-TEST_CASE("angular accelerations are rates of angular velocities, and back") {
+TEST_CASE("angular_acceleration and quaternion_acceleration: agree with AD and are inverse") {
   const auto check = [](double t, auto axes) {
     const auto q = duet::derivatives<2>([](const auto& u) { return motion(u); }, t);
     const auto [omega, rate] = duet::derivative<duet_test::shared_tag>(
@@ -94,7 +94,7 @@ TEST_CASE("angular accelerations are rates of angular velocities, and back") {
   }
 }
 
-TEST_CASE("N7: against 100 digits") {
+TEST_CASE("N7: angular_velocity and quaternion_rate agree with 100 digits") {
   worst_error spatial("spatial");
   worst_error body("body");
   worst_error rate_s("rate from spatial");
@@ -133,7 +133,7 @@ TEST_CASE("N7: against 100 digits") {
   }
 }
 
-TEST_CASE("N7: rate and angular velocity are inverse") {
+TEST_CASE("N7: quaternion_rate and angular_velocity are inverse") {
   random_source random(72);
   for (int i = 0; i < 50; ++i) {
     const auto q = random_rotation(random);
@@ -146,7 +146,7 @@ TEST_CASE("N7: rate and angular velocity are inverse") {
   }
 }
 
-TEST_CASE("N8: E and G, ω = 2 E q̇ = 2 R G q̇, E Gᵀ = R") {
+TEST_CASE("N8: the matrices E and G give ω = 2 E q̇ = 2 R G q̇ and E Gᵀ = R") {
   const quaternion<double> named(10, 1, 2, 3);
   Eigen::Matrix<double, 3, 4> e;
   e << -1, 10, -3, 2, -2, 3, 10, -1, -3, -2, 1, 10;
@@ -175,8 +175,8 @@ TEST_CASE("N8: E and G, ω = 2 E q̇ = 2 R G q̇, E Gᵀ = R") {
   }
 }
 
-// Angular acceleration: the derivative of 2 q̇ q* is 2 q̈ q*, its scalar part left out.
-TEST_CASE("N7: angular velocity of a Taylor number carries the angular acceleration") {
+// Angular acceleration: the derivative of 2 q̇ q* is 2 q̈ q*, without its scalar part.
+TEST_CASE("N7: angular_velocity over Taylor numbers contains the angular acceleration") {
   const double t = 0.4;
   const auto ys = duet::derivatives<2>([](const auto& u) { return motion(u); }, t);
   const auto by_ad = duet::derivative<duet_test::shared_tag>(

@@ -40,7 +40,7 @@ quaternion<double> pure(const vector3<double>& v) { return {0, v}; }
 
 } // namespace
 
-TEST_CASE("rotate is v -> q v q*, active") {
+TEST_CASE("rotate: the active rotation v -> q v q*") {
   const double root = std::sqrt(0.5);
   const quaternion<double> quarter_about_z(root, 0, 0, root);
   CHECK((rotate(quarter_about_z, vector3<double>(1, 0, 0)) - vector3<double>(0, 1, 0)).norm() <=
@@ -52,7 +52,7 @@ TEST_CASE("rotate is v -> q v q*, active") {
     const auto q = random_rotation(random);
     const vector3<double> v = random.log_uniform(1e-100, 1e100) * direction(random);
     const auto wide_q = reference::wide(q);
-    // Made a unit in wide arithmetic: a norm that is off by a rounding scales q v q*.
+    // Normalised in wide arithmetic: a rounded norm would scale q v q*.
     const auto unit = reference::times(wide_q, 1 / reference::length(wide_q));
     const auto exact = reference::product(reference::product(unit, reference::wide(pure(v))),
                                           reference::conj(unit));
@@ -69,7 +69,7 @@ TEST_CASE("rotate is v -> q v q*, active") {
   CHECK_MESSAGE(by_matrix <= 4, by_matrix);
 }
 
-TEST_CASE("axis and angle") {
+TEST_CASE("from_axis_angle: rotates about an axis of any length and rejects the zero axis") {
   random_source random(102);
   for (int i = 0; i < 100; ++i) {
     const vector3<double> n = direction(random);
@@ -83,14 +83,14 @@ TEST_CASE("axis and angle") {
   CHECK_THROWS_WITH_AS(static_cast<void>(duet::from_axis_angle(vector3<double>(0, 0, 0), 1.0)),
                        "duet: from_axis_angle: the axis is the zero vector", duet::invalid_input);
 
-  // ω of a turn about a fixed axis is that axis.
+  // ω of a rotation about a fixed axis is that axis.
   const vector3<double> n(1, 2, 2);
   const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(
       [&](const auto& t) { return duet::from_axis_angle(n, t); }, 0.7);
   CHECK(norm(q_dot - q * quaternion<double>(0, vector3<double>(n / 6))) <= 1e-16);
 }
 
-TEST_CASE("rotation vectors: there and back, the same for q and -q, at most pi long") {
+TEST_CASE("rotation_vector: inverse of from_rotation_vector, equal for q and -q, at most pi") {
   random_source random(103);
   for (int i = 0; i < 200; ++i) {
     const double angle = i % 2 == 0 ? random.uniform(0, pi) : random.log_uniform(1e-300, pi);
@@ -105,7 +105,7 @@ TEST_CASE("rotation vectors: there and back, the same for q and -q, at most pi l
            rotation_matrix(normalized(any)))
               .norm() <= 3e-15);
   }
-  // Half a turn: the direction of q's own sign.
+  // At a half turn the direction is that of the sign of q.
   CHECK(rotation_vector(quaternion<double>(0, 0, 1, 0)) == vector3<double>(0, pi, 0));
   CHECK(rotation_vector(quaternion<double>(0, 0, -1, 0)) == vector3<double>(0, -pi, 0));
   CHECK(rotation_vector(quaternion<double>(-1, 0, 0, 0)).norm() == 0);
@@ -113,7 +113,7 @@ TEST_CASE("rotation vectors: there and back, the same for q and -q, at most pi l
                        "duet: rotation_vector: the quaternion is zero", duet::invalid_input);
 }
 
-TEST_CASE("the rotation vector has derivatives everywhere but across a half turn") {
+TEST_CASE("rotation_vector: has derivatives everywhere except across a half turn") {
   random_source random(104);
   for (const double angle : {0.0, 1e-300, 1e-8, 1e-4, 1.0, 3.0, pi - 1e-8}) {
     const vector3<double> r = angle * direction(random);
@@ -122,7 +122,7 @@ TEST_CASE("the rotation vector has derivatives everywhere but across a half turn
         [&](const auto& t) {
           using T = std::decay_t<decltype(t)>;
           const duet::vector3<T> moved(r[0] + t * d[0], r[1] + t * d[1], r[2] + t * d[2]);
-          // With the sign of −q it is the same.
+          // The sign of −q gives the same derivative.
           return rotation_vector(-duet::from_rotation_vector(moved));
         },
         0.0);
@@ -131,7 +131,7 @@ TEST_CASE("the rotation vector has derivatives everywhere but across a half turn
   }
 }
 
-TEST_CASE("from_two_vectors takes a to b by the shortest way") {
+TEST_CASE("from_two_vectors: the shortest rotation from a to b") {
   random_source random(105);
   const double angles[] = {0, 1e-300, 1e-160, 1e-12,     1e-8,      1e-4,
                            1, pi / 2, 3,      pi - 1e-4, pi - 1e-8, pi - 1e-12};
@@ -153,7 +153,7 @@ TEST_CASE("from_two_vectors takes a to b by the shortest way") {
   }
 }
 
-TEST_CASE("from_two_vectors of opposite vectors turns by half, about some perpendicular axis") {
+TEST_CASE("from_two_vectors: opposite vectors give a half turn about a perpendicular axis") {
   random_source random(106);
   for (int i = 0; i < 50; ++i) {
     const vector3<double> a = i < 3 ? vector3<double>(vector3<double>::Unit(i)) : direction(random);
@@ -162,13 +162,13 @@ TEST_CASE("from_two_vectors of opposite vectors turns by half, about some perpen
     CHECK(std::abs(q.w()) <= 1e-15);
     CHECK(norm(q) == doctest::Approx(1).epsilon(1e-15));
   }
-  // As near as doubles can be, and not yet opposite.
+  // Vectors as nearly opposite as doubles can be.
   const auto q = duet::from_two_vectors(vector3<double>(1, 0, 0), vector3<double>(-1, 1e-200, 0));
   CHECK(norm(q - quaternion<double>(0, 0, 0, 1)) <= 1e-16);
   CHECK_THROWS_AS(
       static_cast<void>(duet::from_two_vectors(vector3<double>(0, 0, 0), vector3<double>(1, 0, 0))),
       duet::invalid_input);
-  // There is no derivative to be had.
+  // No derivative exists.
   const auto [value, rate] = duet::derivative<duet_test::shared_tag>(
       [](const auto& t) {
         using T = std::decay_t<decltype(t)>;
@@ -179,18 +179,18 @@ TEST_CASE("from_two_vectors of opposite vectors turns by half, about some perpen
   CHECK(std::isnan(rate.w()));
 }
 
-TEST_CASE("derivatives through from_two_vectors") {
+TEST_CASE("from_two_vectors: first and second derivatives agree with the moving axis") {
   random_source random(107);
   for (const double angle : {1e-8, 0.5, 2.0, pi - 1e-4}) {
     const vector3<double> a = direction(random);
     const vector3<double> n = a.cross(direction(random)).normalized();
-    // b turns about n, so q does, half as fast in half angles; lengths change and do not matter.
+    // b rotates about n and so does q, in half angles at half the rate; lengths have no effect.
     const auto [q, q_dot] = duet::derivative<duet_test::shared_tag>(
         [&](const auto& t) {
           using T = std::decay_t<decltype(t)>;
           const duet::vector3<T> from(a[0] * (1 + t), a[1] * (1 + t), a[2] * (1 + t));
-          const auto turned = rotate(duet::from_axis_angle(n, angle + t), a);
-          return duet::from_two_vectors(from, duet::vector3<T>(turned * (2 - t)));
+          const auto rotated = rotate(duet::from_axis_angle(n, angle + t), a);
+          return duet::from_two_vectors(from, duet::vector3<T>(rotated * (2 - t)));
         },
         0.0);
     const quaternion<double> expected = quaternion<double>(0, vector3<double>(n / 2)) * q;

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <string>
 
-// Rotation matrices: there and back through every branch of Shepperd's method.
+// Rotation matrices and quaternions by every branch of Shepperd's method.
 
 namespace test_quaternion_rotation_matrix {
 
@@ -23,13 +23,13 @@ using duet_test::random_source;
 
 namespace {
 
-/// Of q and −q the one whose component `largest` is positive.
+/// q or −q, whichever has a positive component `largest`.
 quaternion<double> with_positive(const quaternion<double>& q, int largest) {
   const double components[] = {q.w(), q.x(), q.y(), q.z()};
   return components[largest] < 0 ? -q : q;
 }
 
-/// Unit quaternions in which this component is the largest, up to rounding in some.
+/// Unit quaternions whose largest component, in some up to rounding, has this index.
 template <class Visit>
 void for_each_branch(const Visit& visit) {
   random_source random(111);
@@ -50,7 +50,7 @@ void for_each_branch(const Visit& visit) {
 
 } // namespace
 
-TEST_CASE("a rotation survives the way to the matrix and back") {
+TEST_CASE("from_rotation_matrix: recovers the rotation in every branch") {
   for_each_branch([](const quaternion<double>& q, int largest) {
     const auto expected = with_positive(q, largest);
     CHECK(norm(from_rotation_matrix(rotation_matrix(q)) - expected) <= 1e-15);
@@ -58,7 +58,7 @@ TEST_CASE("a rotation survives the way to the matrix and back") {
   });
 }
 
-TEST_CASE("where two branches meet") {
+TEST_CASE("from_rotation_matrix: correct where two branches meet") {
   for (int sign = 0; sign < 8; ++sign) {
     const auto s = [&](int bit) { return (sign >> bit & 1) != 0 ? -0.5 : 0.5; };
     const quaternion<double> q(0.5, s(0), s(1), s(2));
@@ -73,7 +73,7 @@ TEST_CASE("where two branches meet") {
   }
 }
 
-TEST_CASE("derivatives through the matrix and back, first and second, in every branch") {
+TEST_CASE("from_rotation_matrix: first and second derivatives are correct in every branch") {
   random_source random(112);
   for_each_branch([&](const quaternion<double>& q, int largest) {
     const duet::vector3<double> v(random.normal(), random.normal(), random.normal());
@@ -91,7 +91,7 @@ TEST_CASE("derivatives through the matrix and back, first and second, in every b
   });
 }
 
-TEST_CASE("what is not a rotation is refused, and the message says why") {
+TEST_CASE("from_rotation_matrix: rejects other matrices with their defect and determinant") {
   const auto message = [](const matrix3<double>& m) {
     return duet_test::message_of([&] { static_cast<void>(from_rotation_matrix(m)); });
   };

@@ -34,7 +34,7 @@ quaternion<real_100> widened(const quaternion<T>& q) {
   return {real_100(value.w()), real_100(value.x()), real_100(value.y()), real_100(value.z())};
 }
 
-/// Distance of the values from the truth, in units of the type's own epsilon.
+/// Distance of the values from the reference, in units of the epsilon of the type.
 template <class T>
 double distance(const quaternion<T>& q, const reference::four& exact) {
   const real_100 epsilon(std::numeric_limits<duet::real_type_t<T>>::epsilon());
@@ -44,8 +44,9 @@ double distance(const quaternion<T>& q, const reference::four& exact) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("values do not depend on the scalar", T, float, double, long double,
-                   dual<double>, dual<float, 3>, nested, duet::taylor<double, 2>, real_50) {
+TEST_CASE_TEMPLATE("N3, N4, N5, N9: values agree over every scalar to its precision", T, float,
+                   double, long double, dual<double>, dual<float, 3>, nested,
+                   duet::taylor<double, 2>, real_50) {
   using real = duet::real_type_t<T>;
   random_source random(61);
   const double sizes[] = {1e-30, 1e-8, 1e-4, 0.1, 0.7, 0.99, 1.01, 1.4, 2.1, 2.9, 3.1415};
@@ -76,7 +77,7 @@ TEST_CASE_TEMPLATE("values do not depend on the scalar", T, float, double, long 
   }
 }
 
-TEST_CASE("a full turn in single precision") {
+TEST_CASE("log: values and derivatives near a full turn are correct in single precision") {
   for (const float length : {1e-30F, 1e-20F, 1e-10F, 1e-5F, 1e-3F}) {
     using D = dual<float>;
     const quaternion<D> q(D(-1), D(0), D(length, 1.0F), D(0));
@@ -89,7 +90,7 @@ TEST_CASE("a full turn in single precision") {
 }
 
 // Constants with and without derivatives meet in one expression.
-TEST_CASE("mixed scalars") {
+TEST_CASE("quaternions over different scalars have a common result type") {
   using D = dual<double>;
   const quaternion<double> a(0.6, 0, 0.8, 0);
   const quaternion<double> b(0.6, 0.8, 0, 0);

@@ -53,7 +53,7 @@ std::vector<std::pair<quaternion<double>, quaternion<double>>> pairs() {
 
 } // namespace
 
-TEST_CASE("N9: slerp, value and derivative by the parameter") {
+TEST_CASE("N9: slerp and its derivative with respect to the parameter agree with 100 digits") {
   random_source random(22);
   worst_error value("slerp");
   worst_error slope("slerp, derivative by AD");
@@ -72,11 +72,11 @@ TEST_CASE("N9: slerp, value and derivative by the parameter") {
         1);
     const auto automatic = duet::derivative<duet_test::shared_tag>(
         [&, p = a, q = b](const auto& t) { return slerp(p, q, t); }, tau);
-    // A small rotation has a small rate, with all its digits.
+    // The rate of a small rotation is small, with a small relative error.
     const reference::real scale = reference::length(exact_slope);
     slope.add(reference::ulps(automatic.derivative, exact_slope, scale), a, b, tau);
 
-    // A′ = A v, v = log(a* b): ω in body axes is 2 v, whatever τ.
+    // A′ = A v, v = log(a* b): ω in body axes is 2 v for all τ.
     const auto relative = conj(a) * (dot(a, b) < 0 ? -b : b);
     const quaternion<double> rate(0, log(relative).vec());
     closed.add(reference::ulps(slerp(a, b, tau) * rate, exact_slope, 1), a, b, tau);
@@ -86,7 +86,7 @@ TEST_CASE("N9: slerp, value and derivative by the parameter") {
   CHECK_MESSAGE(closed <= 16, closed);
 }
 
-TEST_CASE("N9: slerp, derivative by its ends") {
+TEST_CASE("N9: derivatives of slerp with respect to its ends agree with 100 digits") {
   random_source random(23);
   worst_error slope("slerp, derivative by the ends");
   for (const auto& ends : pairs()) {
@@ -114,7 +114,7 @@ TEST_CASE("N9: slerp, derivative by its ends") {
 }
 
 // Shoemake's formula (sin((1−τ)Ω) a + sin(τΩ) b)/sin Ω.
-TEST_CASE("slerp is Shoemake's") {
+TEST_CASE("slerp: agrees with Shoemake's formula") {
   random_source random(24);
   for (int i = 0; i < 100; ++i) {
     const auto a = random_rotation(random);
@@ -128,7 +128,7 @@ TEST_CASE("slerp is Shoemake's") {
   }
 }
 
-TEST_CASE("slerp meets its ends and takes the shorter arc") {
+TEST_CASE("slerp: meets its ends and takes the shorter arc") {
   for (const auto& [a, b] : pairs()) {
     const auto near_b = dot(a, b) < 0 ? -b : b;
     CHECK(norm(slerp(a, b, 0) - a) <= 2e-16);
@@ -136,7 +136,7 @@ TEST_CASE("slerp meets its ends and takes the shorter arc") {
     CHECK(norm(slerp(a, b, 0.3) - slerp(a, -b, 0.3)) <= 1e-15);
     CHECK(norm(slerp(a, b, 0.5)) == doctest::Approx(1).epsilon(1e-15));
   }
-  // Half a turn apart both arcs are equal; b is taken as it is.
+  // Half a turn apart both arcs are equally long; the sign of b is kept.
   const quaternion<double> i(0, 1, 0, 0);
   const double root = std::sqrt(0.5);
   CHECK(norm(slerp(quaternion<double>(1), i, 0.5) - quaternion<double>(root, root, 0, 0)) <= 2e-16);
@@ -146,7 +146,7 @@ TEST_CASE("slerp meets its ends and takes the shorter arc") {
                   duet::invalid_input);
 }
 
-TEST_CASE("the angular velocity of slerp is constant") {
+TEST_CASE("slerp: the angular velocity is constant") {
   random_source random(25);
   const auto a = random_rotation(random);
   const auto b = random_rotation(random);

@@ -13,7 +13,8 @@
 #include <vector>
 
 // Stumpff functions and their derivatives against 100 digits: errors at most 6e-16 on the scale
-// 1/(m+1), the bound of the m-th derivative of sin(x)/x; absolutely for derivatives by √s.
+// 1/(m+1), the bound of the m-th derivative of sin(x)/x; absolute for derivatives with respect to
+// √s.
 
 namespace test_quaternion_stumpff {
 
@@ -23,7 +24,7 @@ using duet_test::worst_error;
 
 namespace {
 
-/// 0 to 40, and either side of where the algorithm changes.
+/// 0 to 40, and both sides of the switches of the algorithm.
 std::vector<double> inputs() {
   std::vector<double> result{0, 1e-300, 1e-30, 1e-16, 1e-8, 1e-4};
   for (double s = 0.0625; s <= 40; s += 0.1875) {
@@ -87,7 +88,7 @@ void check_derivatives() {
       e[m] = polynomial(series[m], wide_s);
       f[m] = polynomial(series[m], real_100(wide_x * wide_x));
     }
-    // By x = √s: Faà di Bruno for x².
+    // With respect to x = √s: Faà di Bruno for x².
     const real_100 g[5] = {f[0], 2 * wide_x * f[1], 4 * wide_x * wide_x * f[2] + 2 * f[1],
                            8 * pow(wide_x, 3) * f[3] + 12 * wide_x * f[2],
                            16 * pow(wide_x, 4) * f[4] + 48 * wide_x * wide_x * f[3] + 12 * f[2]};
@@ -106,9 +107,17 @@ void check_derivatives() {
 
 } // namespace
 
-TEST_CASE("derivatives of c0 to fourth order") { check_derivatives<0>(); }
-TEST_CASE("derivatives of c1 to fourth order") { check_derivatives<1>(); }
-TEST_CASE("derivatives of c2 to fourth order") { check_derivatives<2>(); }
-TEST_CASE("derivatives of c3 to fourth order") { check_derivatives<3>(); }
+TEST_CASE("stumpff<0>: derivatives to fourth order agree with 100 digits") {
+  check_derivatives<0>();
+}
+TEST_CASE("stumpff<1>: derivatives to fourth order agree with 100 digits") {
+  check_derivatives<1>();
+}
+TEST_CASE("stumpff<2>: derivatives to fourth order agree with 100 digits") {
+  check_derivatives<2>();
+}
+TEST_CASE("stumpff<3>: derivatives to fourth order agree with 100 digits") {
+  check_derivatives<3>();
+}
 
 } // namespace test_quaternion_stumpff

@@ -39,7 +39,7 @@ template <class T>
 }
 [[nodiscard]] inline four conj(const four& a) { return {a[0], -a[1], -a[2], -a[3]}; }
 
-/// By the table of i, j, k.
+/// Product by the table of i, j, k.
 [[nodiscard]] inline four product(const four& p, const four& q) {
   constexpr int unit[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
   constexpr int sign[4][4] = {{1, 1, 1, 1}, {1, -1, 1, -1}, {1, -1, -1, 1}, {1, 1, -1, -1}};
@@ -52,7 +52,7 @@ template <class T>
   return r;
 }
 
-/// The direction of the vector part: any where that vanishes.
+/// The direction of the vector part; arbitrary if that vanishes.
 [[nodiscard]] inline four axis(const four& q) {
   const four v{0, q[1], q[2], q[3]};
   const real s = length(v);
@@ -87,7 +87,7 @@ template <class T>
 }
 
 /// The k-th derivative of f(t) at t = 0 by a central difference, relative error about 1e-60 for
-/// k = 1, 1e-30 for k = 4. `smooth` is how far f is smooth.
+/// k = 1, 1e-30 for k = 4. `smooth` is the radius in which f is smooth.
 template <class F>
 [[nodiscard]] four difference(F&& f, int k, const real& smooth = 1) {
   const real h = smooth * boost::multiprecision::pow(real(10), -90 / (k + 2));
@@ -100,34 +100,34 @@ template <class F>
   return times(total, 1 / boost::multiprecision::pow(h, k));
 }
 
-/// How much the derivative along d changes where each component of x is changed by its own size:
-/// ‖f″‖‖x‖, and less, where components of x are small.
+/// Change of the derivative along d if each component of x changes by its own size: ‖f″‖‖x‖, or
+/// less if components of x are small.
 template <class F>
 [[nodiscard]] real change_of_derivative(F&& f, const four& x, const four& d, const real& smooth) {
   const real h = smooth * real("1e-30");
-  const four here = f(x);
-  const four there = f(sum(x, d, h));
+  const four at_x = f(x);
+  const four at_shifted = f(sum(x, d, h));
   real squares = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     four e{0, 0, 0, 0};
     e[i] = h;
     const four second =
-        sum(sum(f(sum(sum(x, d, h), e)), f(sum(x, e)), -1), sum(there, here, -1), -1);
+        sum(sum(f(sum(sum(x, d, h), e)), f(sum(x, e)), -1), sum(at_shifted, at_x, -1), -1);
     squares += boost::multiprecision::pow(length(second) * x[i], 2);
   }
   return sqrt(squares) / (h * h);
 }
 
-/// The same for the value.
+/// Change of the value, as `change_of_derivative`.
 template <class F>
 [[nodiscard]] real change_of_value(F&& f, const four& x, const real& smooth) {
   const real h = smooth * real("1e-40");
-  const four here = f(x);
+  const four at_x = f(x);
   real squares = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     four e{0, 0, 0, 0};
     e[i] = h;
-    squares += boost::multiprecision::pow(length(sum(f(sum(x, e)), here, -1)) * x[i], 2);
+    squares += boost::multiprecision::pow(length(sum(f(sum(x, e)), at_x, -1)) * x[i], 2);
   }
   return sqrt(squares) / h;
 }
