@@ -13,7 +13,7 @@
 #include <vector>
 
 /// \file
-/// What curves return, as lists of numbers: four of a rotation, eight of a pose with the real part
+/// Motions of curves as lists of numbers: four for a rotation, eight for a pose with the real part
 /// first; angular rates before linear ones.
 
 namespace duet_test::accuracy {
@@ -33,7 +33,7 @@ inline constexpr bool is_pose = std::is_same_v<T, pose_scalar>;
 [[nodiscard]] inline double dual_part_of(double) { return 0; }
 [[nodiscard]] inline double dual_part_of(const pose_scalar& x) { return x.epsilon(); }
 
-/// The components from `first` on, real parts and then dual ones; how many there are of each.
+/// Appends the components, real parts before dual parts; returns the number of components.
 template <class T>
 std::size_t append_components(numbers& list, const duet::quaternion<T>& q) {
   for (const T& c : {q.w(), q.x(), q.y(), q.z()}) {
@@ -63,8 +63,8 @@ void append(input& at, const Element& x) {
   at.parts.insert(at.parts.end(), (at.x.size() - before) / each, each);
 }
 
-/// Q, Q′, Q″, Q‴ and the rates in the spatial and the body frame, of poses also those of the
-/// translation, at each parameter: Taylor coefficients.
+/// Taylor coefficients, at each parameter, of Q, Q′, Q″, Q‴ and of the rates in the spatial and the
+/// body frame; for poses also of the rates of the translation.
 template <class Curve>
 [[nodiscard]] computed_results measured_motion(const Curve& s, const numbers& parameters) {
   using T = typename Curve::scalar_type;
@@ -89,7 +89,7 @@ template <class Curve>
       append_components(values.emplace_back(), q);
     }
     append_series(values, std::vector<std::size_t>(is_pose<T> ? 2 : 1, 4), 0);
-    // Angular rates first, where twists have them last.
+    // Angular rates come first here, but last in twists.
     const auto append_rates = [&](const duet::motion<T>& m, bool has_angular) {
       std::vector<numbers> rates;
       for (const auto& rate : {m.velocity, m.acceleration, m.jerk}) {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-// Curves that are given, by control element and increments or by a piece's polynomial: values,
+// Curves with known coefficients, a control element and increments or a polynomial segment: values,
 // derivatives, and velocity, acceleration and jerk in all frames.
 
 namespace duet_test::accuracy {
@@ -22,7 +22,7 @@ namespace {
 constexpr double increment_sizes[] = {0.5, 1e-8, 3, 0.003, 1e-200, 1.5, 0};
 constexpr double translations[] = {1, 1e8, 0, 1e-8, 30};
 
-/// Knots about one span.
+/// Knots around one span.
 struct hard_knots {
   const char* name;
   std::vector<double> values;
@@ -58,7 +58,7 @@ double somewhere(int n, double first, double last, random_source& random) {
   }
 }
 
-/// A half-angle vector, of poses with half a translation.
+/// A half-angle vector; for poses also half a translation.
 template <class T>
 duet::vector3<T> some_increment(double size, double length, random_source& random) {
   const auto v = random.direction<3>();
@@ -87,7 +87,7 @@ duet::quaternion<T> some_element(int n, random_source& random) {
   return normalized(q);
 }
 
-/// One input: the parameter, the element that the curve starts from, and vectors.
+/// One input: the parameter, the initial element of the curve, and vectors.
 template <class T>
 input input_of(std::string where, double u, const duet::quaternion<T>& first,
                const std::vector<duet::vector3<T>>& vectors) {

@@ -12,15 +12,14 @@
 #include <string>
 #include <vector>
 
-// Curves near given rows: how far their motion is from that of the curve for which the sum of
-// squares is least.
+// Fitted curves: distance of their motion from that of the curve with the smallest sum of squares.
 
 namespace duet_test::accuracy {
 namespace {
 
-/// A turn of this size, of poses with a shift of this length.
+/// A rotation by the angle `size`; for poses also a translation by `length`.
 template <class T>
-duet::quaternion<T> some_turn(double size, double length, random_source& random) {
+duet::quaternion<T> random_displacement(double size, double length, random_source& random) {
   const auto about = random.direction<3>();
   const auto along = random.direction<3>();
   duet::vector3<T> half;
@@ -45,9 +44,9 @@ row fit_row(const std::string& name, int count) {
     const named noise = noises[n % 3];
     const double length = lengths[n % 2];
     const std::vector<double> knots = duet::clamped_knots(std::vector<double>{0, 1, 2, 3}, 4);
-    std::vector<duet::quaternion<T>> controls{some_turn<T>(1, length, random)};
+    std::vector<duet::quaternion<T>> controls{random_displacement<T>(1, length, random)};
     while (controls.size() < 6) {
-      controls.push_back(controls.back() * some_turn<T>(0.5, 0.5 * length, random));
+      controls.push_back(controls.back() * random_displacement<T>(0.5, 0.5 * length, random));
     }
     const spline reference(typename spline::basis_type(knots), controls);
     std::vector<double> u;
@@ -56,7 +55,7 @@ row fit_row(const std::string& name, int count) {
     for (int i = 0; i < 12; ++i) {
       u.push_back(i == 0 ? 0 : i == 11 ? 3 : (i + random.uniform(-0.3, 0.3)) * 3 / 11);
       rows.push_back(normalized(reference(u.back()) *
-                                some_turn<T>(noise.value, noise.value * length, random)));
+                                random_displacement<T>(noise.value, noise.value * length, random)));
       append(at, rows.back());
     }
     const spline s = duet::fit<spline>(u, rows, knots, {.length = length}).curve;

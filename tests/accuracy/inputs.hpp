@@ -10,7 +10,7 @@
 #include <vector>
 
 /// \file
-/// Rotations and poses on which formulas fail, rounded once from 100 digits.
+/// Rotations and poses at which formulas may fail, rounded once from 100 digits.
 
 namespace duet_test::accuracy {
 
@@ -21,7 +21,7 @@ struct named {
 
 inline constexpr double pi = 3.141592653589793;
 
-/// Angles, with the hard ones first.
+/// Angles, difficult ones first.
 inline constexpr named hard_angles[] = {
     {"identity", 0},
     {"angle 1e-8", 1e-8},
@@ -46,24 +46,24 @@ inline constexpr named hard_lengths[] = {
     {"translation 1e100", 1e100},
 };
 
-/// The directions in which axes, translations and rates point.
+/// Directions of axes, translations and rates.
 [[nodiscard]] std::array<double, 3> some_direction(random_source& random, int kind);
 
-/// Rates: 0 of order one, 1 in proportion, 2 few of them.
+/// Kinds of rates: 0 of order one, 1 proportional to the values, 2 only a few nonzero ones.
 [[nodiscard]] numbers some_rates(random_source& random, const numbers& x, int kind);
 
-/// The n-th hard rotation, four numbers.
+/// The n-th difficult rotation, four numbers.
 [[nodiscard]] input hard_rotation(int n, random_source& random);
 
-/// The n-th hard pose, the eight numbers of a unit dual quaternion.
+/// The n-th difficult pose, the eight numbers of a unit dual quaternion.
 [[nodiscard]] input hard_pose(int n, random_source& random);
 
-/// The same with rates of the quaternion at x[first] that keep its norm.
+/// The input with rates of the quaternion at x[first] that preserve its norm.
 [[nodiscard]] input of_constant_norm(input at, std::size_t first);
-/// Of a dual quaternion.
+/// The input with rates of the dual quaternion at x[first] that preserve its norm.
 [[nodiscard]] input of_constant_dual_norm(input at, std::size_t first);
 
-/// Both inputs as one.
+/// Both inputs concatenated.
 [[nodiscard]] inline input joined(input a, const input& b) {
   a.where += "; " + b.where;
   a.x.insert(a.x.end(), b.x.begin(), b.x.end());

@@ -14,8 +14,8 @@
 #include <type_traits>
 #include <vector>
 
-// Curves through given rows, with all ends: how far their motion is from that of the curve that
-// the definition asks for. Poses: rotations are their real parts, found by the same equations.
+// Interpolating curves with all end conditions: distance of their motion from that of the curve of
+// the definition. Only poses are tested: rotations are their real parts, by the same equations.
 
 namespace duet_test::accuracy {
 namespace {
@@ -29,7 +29,7 @@ struct table {
   std::vector<pose_type> elements;
 };
 
-/// Poses with these steps in between, where asked for the first again at the end.
+/// Poses with these steps between them; for periodic curves the last equals the first.
 table some_table(int n, std::size_t rows, bool closes, random_source& random) {
   const named steps[] = {{"0.5 rad", 0.5}, {"0.003 rad", 0.003}, {"1 rad", 1}};
   const named ratios[] = {{"even", 1}, {"uneven by 1 : 10", 10}};
@@ -59,25 +59,25 @@ table some_table(int n, std::size_t rows, bool closes, random_source& random) {
   return t;
 }
 
-/// Rates at both ends, of about the size of the table's own: twists [v; ω].
+/// Velocities at both ends, about as large as those of the table: twists [v; ω].
 std::vector<duet::vector6<double>> some_rates(const table& t, int count, random_source& random) {
   std::vector<duet::vector6<double>> result;
-  const double turn = norm(log(conj(rotation(t.elements[0])) * rotation(t.elements[1])));
+  const double step_angle = norm(log(conj(rotation(t.elements[0])) * rotation(t.elements[1])));
   const double length = translation(t.elements[0]).norm();
   for (int i = 0; i < count; ++i) {
     const auto v = random.direction<3>();
     const auto w = random.direction<3>();
     duet::vector6<double> rate;
     for (int k = 0; k < 3; ++k) {
-      rate[k] = v[std::size_t(k)] * length * turn;
-      rate[k + 3] = w[std::size_t(k)] * turn;
+      rate[k] = v[std::size_t(k)] * length * step_angle;
+      rate[k + 3] = w[std::size_t(k)] * step_angle;
     }
     result.push_back(rate);
   }
   return result;
 }
 
-/// What the oracle starts from.
+/// Initial guess of the oracle.
 template <class Curve>
 std::vector<double> start_of(const Curve& s) {
   std::vector<double> result;
@@ -100,15 +100,15 @@ constexpr int order_of = Curve::order;
 template <>
 constexpr int order_of<duet::cumulative_bspline<pose_scalar>> = 0;
 
-/// \param make  makes the ends from the rates given
+/// \param make  makes the end conditions from velocities
 template <class Curve, class Make>
-row interpolation_row(const std::string& name, ends e, std::size_t rows, int given, int count,
+row interpolation_row(const std::string& name, ends e, std::size_t rows, int rate_count, int count,
                       const Make& make) {
   row result{name};
   random_source random(101);
   for (int n = 0; n < count; ++n) {
     const table t = some_table(n, rows, e == ends::periodic, random);
-    const auto rates = some_rates(t, given, random);
+    const auto rates = some_rates(t, rate_count, random);
     const Curve s = duet::interpolate<Curve>(t.u, t.elements, make(rates));
     input at{t.where, {}, {}, {}};
     for (const pose_type& q : t.elements) {
@@ -123,7 +123,7 @@ row interpolation_row(const std::string& name, ends e, std::size_t rows, int giv
     at.direction.assign(at.x.size(), 0);
     const double first = t.u[0], last = t.u.back();
     numbers parameters{first, t.u[1], first + (last - first) * random.uniform(0, 1), last};
-    if (e == ends::natural) { // at the ends nothing is left of the acceleration to compare with
+    if (e == ends::natural) { // the acceleration vanishes at the ends
       parameters = {t.u[1], parameters[2], t.u[1] / 2};
     }
     for (const double u : parameters) {

@@ -89,8 +89,8 @@ std::vector<real> coefficients() {
   return std::vector<real>(std::size_t(jet_shape::current->degree) + 1);
 }
 
-/// The Taylor coefficients at x of Σ a_m x^m, where a_m/a_{m−1} = ratio(m), summed until nothing
-/// changes.
+/// The Taylor coefficients at x of Σ a_m x^m, where a_m/a_{m−1} = ratio(m), summed until the sum
+/// no longer changes.
 template <class Ratio>
 std::vector<real> of_power_series(const real& x, real a, const Ratio& ratio) {
   auto f = coefficients();
@@ -216,7 +216,7 @@ jet angle_over_root(const jet& s, const jet& w) {
 
 namespace {
 
-/// The coefficients whose monomials, times t^i s^j ε^k, are those of the result.
+/// Coefficients of the monomials that, times t^i s^j ε^k, are monomials of the result.
 jet shifted(const jet& a, const jet_shape::monomial& by) {
   jet r;
   for (std::size_t n = 0; n < r.c.size(); ++n) {
@@ -254,7 +254,7 @@ jet derivative(const jet& a) {
 }
 
 jet_quaternion operator*(const jet_quaternion& p, const jet_quaternion& q) {
-  // By the table of i, j, k.
+  // Product by the table of i, j, k.
   constexpr std::size_t unit[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1}, {3, 2, 1, 0}};
   constexpr int sign[4][4] = {{1, 1, 1, 1}, {1, -1, 1, -1}, {1, -1, -1, 1}, {1, 1, -1, -1}};
   jet_quaternion r;
@@ -287,9 +287,9 @@ jet_quaternion log(const jet_quaternion& q) {
   return r;
 }
 jet_quaternion slerp(const jet_quaternion& a, const jet_quaternion& b, const jet& tau) {
-  jet_quaternion turn = log(conj(a) * b);
-  turn[0] = jet(0);
-  return a * exp(turn * tau);
+  jet_quaternion half_arc = log(conj(a) * b);
+  half_arc[0] = jet(0);
+  return a * exp(half_arc * tau);
 }
 
 } // namespace duet_test::accuracy

@@ -8,22 +8,22 @@
 #include <vector>
 
 /// \file
-/// The numbers of the oracles: polynomials in t, s and ε in 100 digits, cut off. They share nothing
-/// with the library, neither code nor formulas: functions are composed with Taylor coefficients
-/// that come from the functions' own power series.
+/// Numbers of the oracles: truncated polynomials in t, s and ε in 100 digits. They share neither
+/// code nor formulas with the library: functions are composed with Taylor coefficients from their
+/// power series.
 
 namespace duet_test::accuracy {
 
 using real = real_100;
 
-/// The monomials t^i s^j u^k ε^l that jets keep, k and l up to 1; products of them that are not
-/// among them vanish. t and s are what is differentiated by, u is for derivatives inside of a
-/// definition, and ε is that of rigid motion.
+/// Monomials t^i s^j u^k ε^l of jets, k and l up to 1; products outside of the list vanish. t and s
+/// are the variables of differentiation, u serves derivatives inside of a definition, and ε is
+/// that of rigid motion.
 class jet_shape {
 public:
   using monomial = std::array<int, 4>;
 
-  /// Monomials in t and s, each with those of u (if it is wanted) and ε.
+  /// Monomials in t and s, each multiplied by those in u (if `has_u`) and ε.
   explicit jet_shape(const std::vector<std::array<int, 2>>& powers, bool has_u = true);
 
   /// t up to the fourth power.
@@ -34,13 +34,13 @@ public:
   static jet_shape curve();
 
   std::vector<monomial> monomials;
-  std::vector<std::array<std::size_t, 3>> products; ///< of which two which is made
-  int degree = 0;                                   ///< no product of more infinitesimals is left
+  std::vector<std::array<std::size_t, 3>> products; ///< indices of two factors and of their product
+  int degree = 0; ///< maximum number of infinitesimals in a nonzero product
 
-  /// Where a monomial stands.
+  /// Index of a monomial.
   [[nodiscard]] std::size_t find(const monomial& m) const;
 
-  /// That of all jets in existence: only one at a time.
+  /// Shape of all existing jets; only one shape at a time is possible.
   static const jet_shape* current;
 };
 
@@ -50,7 +50,7 @@ public:
   jet(int constant) : jet(real(constant)) {}
   jet(const real& constant);
 
-  std::vector<real> c; ///< one for each monomial, the first for 1
+  std::vector<real> c; ///< one coefficient per monomial, the first for 1
 };
 
 jet operator+(const jet& a, const jet& b);
@@ -90,7 +90,7 @@ jet_quaternion conj(const jet_quaternion& q);
 jet squared_norm(const jet_quaternion& q);
 jet_quaternion exp(const jet_quaternion& q);
 jet_quaternion log(const jet_quaternion& q);
-/// a (a* b)^τ with a* b made a unit.
+/// a (a* b)^τ with a* b normalised.
 jet_quaternion slerp(const jet_quaternion& a, const jet_quaternion& b, const jet& tau);
 
 } // namespace duet_test::accuracy

@@ -7,11 +7,11 @@
 #include <cstddef>
 
 /// \file
-/// The definitions of the functions probed, as functions of lists of numbers.
+/// Definitions of the tested functions, as functions of lists of numbers.
 
 namespace duet_test::accuracy::oracle {
 
-// Of dual quaternions, eight numbers each, real part first.
+// Functions of dual quaternions, eight numbers each, real part first.
 jets dual_exp(const jets& x);
 jets dual_log(const jets& x);
 jets dual_pow(const jets& x);
@@ -26,7 +26,7 @@ jets body_twist(const jets& x);
 jets pose_jacobian(const jets& x);
 jets pose_jacobian_inverse(const jets& x);
 
-// Of quaternions and vectors.
+// Functions of quaternions and vectors.
 jets vector_exp(const jets& x);
 jets log(const jets& x);
 jets pow(const jets& x);
@@ -40,11 +40,11 @@ jets jacobian(const jets& x);
 jets jacobian_inverse(const jets& x);
 jets spatial_velocity(const jets& x);
 jets body_velocity(const jets& x);
-/// In the sequence of these axes, 0 = x, 1 = y, 2 = z.
+/// Euler angles in the sequence of these axes, 0 = x, 1 = y, 2 = z.
 jets euler(const jets& x, const std::array<std::size_t, 3>& axes);
 jets euler_rate_zyx(const jets& x);
 
-/// Of a 3 × 3 matrix in columns.
+/// Quaternion of a 3 × 3 matrix, stored by columns.
 jets inverse_of_three(const jets& m);
 
 } // namespace duet_test::accuracy::oracle

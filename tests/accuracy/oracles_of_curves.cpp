@@ -25,7 +25,7 @@ jet_quaternion operator-(const jet_quaternion& a, const jet_quaternion& b) {
   return a + b * jet(-1);
 }
 jet_quaternion unit(const jet_quaternion& q) { return q * (jet(1) / sqrt(squared_norm(q))); }
-/// t^n taken for n!: what stays of the n-th derivative at t = 0.
+/// The n-th derivative at t = 0, without higher powers of t.
 jet_quaternion at_zero(jet_quaternion q, int n) {
   for (; n > 0; --n) {
     q = derivative(q);
@@ -50,7 +50,7 @@ void append_real_and_dual(jets& result, const jet_quaternion& q, std::size_t fir
   }
 }
 
-/// The inverse of a matrix, by Gauss and Jordan.
+/// The inverse of a matrix by Gauss–Jordan elimination.
 std::vector<std::vector<real>> inverse(std::vector<std::vector<real>> a) {
   const std::size_t n = a.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -101,7 +101,7 @@ jet_quaternion increment_at(const jets& x, std::size_t first, over what) {
 /// P2
 jet_quaternion cumulative(const std::vector<double>& knots, const jet_quaternion& first,
                           const std::vector<jet_quaternion>& increments, const jet& u) {
-  // P1 from order 1, of which only the span's own function is not zero.
+  // P1 from order 1, where only the function of the span itself is not zero.
   const std::size_t k = knots.size() / 2;
   std::vector<jet> b(k, jet(0));
   b[k - 1] = jet(1);
@@ -186,7 +186,7 @@ interpolation::interpolation(int order, ends e, over what, std::vector<double> u
   for (const double each : start) {
     x.emplace_back(real(each));
   }
-  if (order_ > 0) { // in powers of t over the length of the piece
+  if (order_ > 0) { // in powers of t divided by the length of the piece
     for (std::size_t i = 0; i < x.size(); i += numbers()) {
       const std::size_t n = i / numbers(), pieces = std::size_t(order_) - 1;
       const real h = real(u_[n / pieces + 1]) - u_[n / pieces];
@@ -206,10 +206,10 @@ interpolation::interpolation(int order, ends e, over what, std::vector<double> u
   }
   const double first = u_.front(), last = u_.back();
   const std::size_t n = u_.size() - 1;
-  for (std::size_t i = 1; i < 4; ++i) { // the same steps again beyond the ends, or none
-    const bool goes_round = ends_ == ends::periodic;
-    knots_.insert(knots_.begin(), goes_round ? first - (last - u_[n - i]) : first);
-    knots_.push_back(goes_round ? last + (u_[i] - first) : last);
+  for (std::size_t i = 1; i < 4; ++i) { // beyond the ends: periodic or repeated knots
+    const bool is_periodic = ends_ == ends::periodic;
+    knots_.insert(knots_.begin(), is_periodic ? first - (last - u_[n - i]) : first);
+    knots_.push_back(is_periodic ? last + (u_[i] - first) : last);
   }
 }
 
@@ -234,7 +234,7 @@ jet_quaternion interpolation::at(const jets& x, const std::vector<jet_quaternion
   return cumulative({first, first + 8}, controls[0], increments, u);
 }
 
-/// By how much the i-th row is missed; its sign does not count.
+/// Error at the i-th row, for either sign of its quaternion.
 jet_quaternion interpolation::miss(const jets& x, std::size_t i, const jet_quaternion& q) const {
   const std::size_t size = what_ == over::poses ? 8 : 4;
   const bool is_closing = ends_ == ends::periodic && i + 1 == u_.size();
@@ -252,7 +252,7 @@ jets interpolation::residuals_of_cubic(const jets& x,
   const std::size_t size = what_ == over::poses ? 8 : 4, rows = u_.size();
   const std::size_t spans = knots_.size() - 7;
   jets result;
-  const auto ask = [&](const jet_quaternion& q) {
+  const auto require_zero = [&](const jet_quaternion& q) {
     result.insert(result.end(), q.begin() + 1, q.end());
   };
   std::vector<jet_quaternion> at_ends;
@@ -262,29 +262,30 @@ jets interpolation::residuals_of_cubic(const jets& x,
       ++span;
     }
     const jet_quaternion q = at(x, unknowns, span, jet(real(u_[i])) + t_variable());
-    ask(miss(x, i, q));
+    require_zero(miss(x, i, q));
     if (i == 0 || i + 1 == rows) {
       at_ends.push_back(q);
     }
   }
-  const std::size_t given = rows * size;
+  const std::size_t first_rate = rows * size;
   const std::size_t each = numbers();
   for (std::size_t end = 0; end < 2; ++end) {
     const jet_quaternion& q = at_ends[end];
     switch (ends_) {
     case ends::natural:
-      ask(at_zero(body_rate(q), 1));
+      require_zero(at_zero(body_rate(q), 1));
       break;
     case ends::clamped:
-      ask(at_zero(spatial_rate(q), 0) - increment_at(x, given + end * each, what_));
+      require_zero(at_zero(spatial_rate(q), 0) - increment_at(x, first_rate + end * each, what_));
       break;
     case ends::accelerated:
-      ask(at_zero(spatial_rate(q), 1) - increment_at(x, given + end * each, what_));
+      require_zero(at_zero(spatial_rate(q), 1) - increment_at(x, first_rate + end * each, what_));
       break;
     case ends::periodic:
-      ask(at_zero(body_rate(at_ends[0]), int(end)) - at_zero(body_rate(at_ends[1]), int(end)));
+      require_zero(at_zero(body_rate(at_ends[0]), int(end)) -
+                   at_zero(body_rate(at_ends[1]), int(end)));
       break;
-    default: // fewer knots, nothing to ask for
+    default: // fewer knots, no end conditions
       break;
     }
   }
@@ -296,54 +297,54 @@ jets interpolation::residuals_of_pieces(const jets& x,
   const std::size_t size = what_ == over::poses ? 8 : 4, pieces = u_.size() - 1;
   const int highest = order_ - 2;
   jets result;
-  const auto ask = [&](const jet_quaternion& q) {
+  const auto require_zero = [&](const jet_quaternion& q) {
     result.insert(result.end(), q.begin() + 1, q.end());
   };
   std::vector<jet_quaternion> starts, ends_of;
   for (std::size_t i = 0; i < pieces; ++i) {
     starts.push_back(at(x, unknowns, i, jet(real(u_[i])) + t_variable()));
     ends_of.push_back(at(x, unknowns, i, jet(real(u_[i + 1])) + t_variable()));
-    ask(miss(x, i + 1, ends_of[i]));
+    require_zero(miss(x, i + 1, ends_of[i]));
   }
-  // The same derivative of the body rate on both sides of a knot.
-  const auto ask_to_join = [&](std::size_t before, std::size_t after, int derivative) {
-    ask(at_zero(body_rate(ends_of[before]), derivative) -
-        at_zero(body_rate(starts[after]), derivative));
+  // Requires equal derivatives of the body rate on both sides of a knot.
+  const auto require_join = [&](std::size_t before, std::size_t after, int derivative) {
+    require_zero(at_zero(body_rate(ends_of[before]), derivative) -
+                 at_zero(body_rate(starts[after]), derivative));
   };
   for (std::size_t i = 0; i < pieces; ++i) {
     for (int d = 0; d < highest && (i + 1 < pieces || ends_ == ends::periodic); ++d) {
-      ask_to_join(i, (i + 1) % pieces, d);
+      require_join(i, (i + 1) % pieces, d);
     }
   }
-  const std::size_t given = u_.size() * size, each = numbers();
+  const std::size_t first_rate = u_.size() * size, each = numbers();
   for (std::size_t end = 0; end < 2 && ends_ != ends::periodic; ++end) {
     const jet_quaternion& q = end == 0 ? starts.front() : ends_of.back();
-    const auto ask_for = [&](int derivative, std::size_t which) {
-      ask(at_zero(spatial_rate(q), derivative) -
-          increment_at(x, given + (2 * which + end) * each, what_));
+    const auto require_rate = [&](int derivative, std::size_t which) {
+      require_zero(at_zero(spatial_rate(q), derivative) -
+                   increment_at(x, first_rate + (2 * which + end) * each, what_));
     };
-    const auto ask_to_join_at = [&](std::size_t joint) {
+    const auto require_join_at = [&](std::size_t joint) {
       const std::size_t after = end == 0 ? joint : pieces - joint;
-      ask_to_join(after - 1, after, highest);
+      require_join(after - 1, after, highest);
     };
     if (ends_ == ends::natural) {
-      ask(at_zero(body_rate(q), 1));
+      require_zero(at_zero(body_rate(q), 1));
       if (order_ == 6) {
-        ask(at_zero(body_rate(q), 3));
+        require_zero(at_zero(body_rate(q), 3));
       }
       continue;
     }
     if (ends_ == ends::clamped || ends_ == ends::fully_clamped) {
-      ask_for(0, 0);
+      require_rate(0, 0);
     } else if (ends_ == ends::accelerated) {
-      ask_for(1, 0);
+      require_rate(1, 0);
     } else {
-      ask_to_join_at(1);
+      require_join_at(1);
     }
     if (ends_ == ends::fully_clamped) {
-      ask_for(1, 1);
+      require_rate(1, 1);
     } else if (order_ == 6) {
-      ask_to_join_at(ends_ == ends::not_a_knot ? 2 : 1);
+      require_join_at(ends_ == ends::not_a_knot ? 2 : 1);
     }
   }
   return result;
@@ -351,7 +352,7 @@ jets interpolation::residuals_of_pieces(const jets& x,
 
 void interpolation::solve(const jets& x) {
   if (inverse_.empty()) {
-    // Differences of real parts, exact to 40 digits; ε takes no part in them.
+    // Jacobian by differences of real parts, exact to 40 digits and without ε.
     jets real_x;
     for (const jet& each : x) {
       real_x.push_back(accuracy::without_epsilon(each));
@@ -429,8 +430,8 @@ jets interpolation::operator()(const jets& x) {
         ++span;
       }
     }
-    const jets here = motion(at(x, solution_, span, x[i]), what_);
-    result.insert(result.end(), here.begin(), here.end());
+    const jets motion_at_u = motion(at(x, solution_, span, x[i]), what_);
+    result.insert(result.end(), motion_at_u.begin(), motion_at_u.end());
   }
   return result;
 }
@@ -486,9 +487,9 @@ void least_squares_fit::solve(const reals& rows) {
   static const jet_shape numbers_alone({{0, 0}}, false);
   jet_shape::current = &numbers_alone;
   const std::size_t n = unknowns_.size(), local = 4 * numbers();
-  // The unknowns that row i depends on begin here.
+  // Index of the first unknown that row i depends on.
   const auto first = [&](std::size_t i) { return find_span(u_[i]) * numbers(); };
-  // Shifts are measured by the length.
+  // Translations are scaled by the characteristic length.
   const auto scale = [&](std::size_t k) { return real(k % numbers() < 3 ? real(1) : length_); };
   if (inverse_.empty()) {
     const real step("1e-22");
@@ -538,22 +539,22 @@ void least_squares_fit::solve(const reals& rows) {
   }
   jet_shape::current = shape;
   if (largest > real("1e-50")) {
-    throw std::runtime_error("the oracle's least squares are not found: the last step was " +
-                             largest.str(3));
+    throw std::runtime_error(
+        "duet_test: least_squares_fit: the oracle did not converge, last step " + largest.str(3));
   }
 }
 
 jets least_squares_fit::operator()(const jets& x) {
   reals rows;
-  const std::size_t given = u_.size() * size();
-  for (std::size_t i = 0; i < given; ++i) {
+  const std::size_t first_parameter = u_.size() * size();
+  for (std::size_t i = 0; i < first_parameter; ++i) {
     rows.push_back(x[i].c[0]);
   }
   solve(rows);
   jets result;
-  for (std::size_t i = given; i < x.size(); ++i) {
-    const jets here = motion(at(unknowns_, find_span(double(x[i].c[0])), x[i]), what_);
-    result.insert(result.end(), here.begin(), here.end());
+  for (std::size_t i = first_parameter; i < x.size(); ++i) {
+    const jets motion_at_u = motion(at(unknowns_, find_span(double(x[i].c[0])), x[i]), what_);
+    result.insert(result.end(), motion_at_u.begin(), motion_at_u.end());
   }
   return result;
 }

@@ -8,8 +8,8 @@
 #include <vector>
 
 /// \file
-/// Curves by their definitions, over rotations or, with ε, over poses; and those through given rows
-/// by equations that say no more than what is asked of them, solved to 60 digits and more.
+/// Curves by their definitions, over rotations or, with ε, over poses; and interpolating
+/// curves by the equations of their definition alone, solved to at least 60 digits.
 ///
 /// Rotations are four numbers in a list, poses eight, real part first; vectors, three or six,
 /// angular first.
@@ -21,24 +21,24 @@ enum class over { rotations, poses };
 /// P2 on the span [u_{k−1}, u_k) of these 2k knots: c ∏ exp(ω_i B̃_i(u)), k − 1 factors, and its
 /// rates. A function of u, c and the ω_i.
 ///
-/// Of Q(u): Q, real part first; 2 Q′Q*, 2 Q*Q′; of poses, whose rates are angular first, also the
-/// derivative of the translation.
+/// The motion of Q(u) is Q, real part first, 2 Q′Q* and 2 Q*Q′, for poses with angular rates first
+/// and followed by the derivative of the translation.
 [[nodiscard]] oracle_function cumulative_motion(std::vector<double> knots, over what);
 /// Q exp(x_1 t + x_2 t² + …), t = u − from, and its rates. A function of u, Q and the x_i.
 [[nodiscard]] oracle_function piece_motion(double from, over what);
 
 enum class ends { natural, clamped, accelerated, fully_clamped, not_a_knot, periodic };
 
-/// A curve through rows, by equations that are solved anew whenever the rows change.
+/// Interpolating curve; its equations are solved again whenever the rows change.
 class interpolation {
 public:
-  /// \param order  4 or 6 of rotation vectors, 0 for the cumulative cubic
-  /// \param start  near the solution: the cubic's control elements, or of rotation vectors the
-  ///               coefficients x_1 … of all pieces, three or six numbers each
+  /// \param order  4 or 6 for rotation vector splines, 0 for the cumulative cubic
+  /// \param start  near the solution: control elements of the cubic, or coefficients x_1 … of
+  ///               all segments of a rotation vector spline, three or six numbers each
   interpolation(int order, ends e, over what, std::vector<double> u, std::vector<double> start);
 
-  /// x: the rows; of given ends the rates at the start and those at the end; and parameters, at
-  /// each of which the motion is a part of the result.
+  /// Motions at all parameters. x: the rows; for prescribed ends the rates at the start and at the
+  /// end; the parameters.
   [[nodiscard]] jets operator()(const jets& x);
 
 private:
@@ -57,21 +57,22 @@ private:
   ends ends_;
   over what_;
   std::vector<double> u_, knots_;
-  std::vector<jet_quaternion> guess_; ///< control elements that the unknowns start from
+  std::vector<jet_quaternion> guess_; ///< initial control elements
   std::vector<jet_quaternion> solution_;
-  std::vector<std::vector<real>> inverse_; ///< of the Jacobian of the real parts
+  std::vector<std::vector<real>> inverse_; ///< inverse Jacobian of the real parts
 };
 
-/// The cumulative cubic for which ½ Σ |2 log(S(u_i)* Q_i)|² is least, of poses with the linear part
-/// over a length: the gradient, by differences, is solved for zero anew whenever the rows change.
+/// Cumulative cubic that minimises ½ Σ |2 log(S(u_i)* Q_i)|², for poses with the linear part
+/// divided by the characteristic length. A zero of the gradient, by differences, is solved for
+/// again whenever the rows change.
 class least_squares_fit {
 public:
-  /// \param knots  of the curve
-  /// \param start  its control elements, near the minimum
+  /// \param knots  knots of the curve
+  /// \param start  control elements near the minimum
   least_squares_fit(over what, std::vector<double> knots, std::vector<double> u, double length,
                     std::vector<double> start);
 
-  /// x: the rows, and parameters, at each of which the motion is a part of the result.
+  /// Motions at all parameters. x: the rows, then the parameters.
   [[nodiscard]] jets operator()(const jets& x);
 
 private:
@@ -89,8 +90,8 @@ private:
   std::vector<double> knots_, u_;
   real length_;
   std::vector<double> start_;
-  reals unknowns_; ///< by which the control elements are turned and shifted from those at the start
-  std::vector<reals> inverse_; ///< of the Hessian
+  reals unknowns_; ///< rotations and translations of the control elements from their initial values
+  std::vector<reals> inverse_; ///< inverse Hessian
 };
 
 } // namespace duet_test::accuracy::oracle

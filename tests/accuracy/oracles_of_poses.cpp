@@ -23,7 +23,7 @@ jets list_of(const jet_quaternion& a) {
   }
   return result;
 }
-/// The pure dual quaternion a⃗ + εb⃗ with a⃗ and b⃗ at those places, times a factor.
+/// The pure dual quaternion a⃗ + εb⃗ with a⃗ and b⃗ at these indices, times a factor.
 jet_quaternion vector_at(const jets& x, std::size_t a, std::size_t b, const jet& factor = 1) {
   return {jet(0), with_epsilon(x[a], x[b]) * factor, with_epsilon(x[a + 1], x[b + 1]) * factor,
           with_epsilon(x[a + 2], x[b + 2]) * factor};
@@ -148,7 +148,7 @@ jets transform_point(const jets& x) {
   return {epsilon_part(image[1]), epsilon_part(image[2]), epsilon_part(image[3])};
 }
 
-/// Column j: A e_j A*.
+/// Matrix with the columns A e_j A*.
 jets adjoint(const jets& x) {
   const jet_quaternion a = exp(vector_at(x, 0, 3));
   jets columns;

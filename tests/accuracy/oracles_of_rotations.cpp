@@ -49,7 +49,7 @@ jets from_axis_angle(const jets& x) {
   q[0] = cos(half);
   return list_of(q);
 }
-/// |a||b| + a·b + a × b, made a unit: b a* has the scalar part a·b and the vector part a × b.
+/// |a||b| + a·b + a × b, normalised: b a* has the scalar part a·b and the vector part a × b.
 jets from_two_vectors(const jets& x) {
   const jet_quaternion a = vector_at(x), b = vector_at(x, 3);
   jet_quaternion q = b * conj(a);
@@ -85,7 +85,7 @@ jets spatial_velocity(const jets& x) {
 }
 jets body_velocity(const jets& x) { return vector_of(conj(rotation_at(x)) * rotation_at(x, 4), 2); }
 
-/// By the entries of R = R_i(a) R_j(b) R_k(c) that have two factors at most.
+/// Euler angles by the entries of R = R_i(a) R_j(b) R_k(c) with at most two factors.
 jets euler(const jets& x, const std::array<std::size_t, 3>& axes) {
   const jets m = matrix_of(rotation_at(x)); // in columns, times |q|²
   const auto [i, j, k] = axes;

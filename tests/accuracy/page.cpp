@@ -18,8 +18,8 @@
 #include <string>
 #include <vector>
 
-// docs/accuracy.md: a few inputs of every row are held against its table, which is written anew
-// from many of them by the target duet_accuracy_page.
+// docs/accuracy.md: compares a few inputs of every row with its table. The target
+// duet_accuracy_page writes the table from many inputs.
 
 namespace test_accuracy_page {
 
@@ -90,7 +90,7 @@ std::string text_of(const row& r) {
 } // namespace
 
 #ifndef DUET_ACCURACY_IS_WRITTEN
-TEST_CASE("every function is as accurate as docs/accuracy.md says") {
+TEST_CASE("accuracy: every function is as accurate as docs/accuracy.md states") {
   std::map<std::string, row> bounds;
   for (const row& r : rows_of(page())) {
     bounds[r.name] = r;
@@ -98,7 +98,7 @@ TEST_CASE("every function is as accurate as docs/accuracy.md says") {
   const rows measured = all_rows(extent::test);
   for (const row& r : measured) {
     INFO(text_of(r));
-    REQUIRE_MESSAGE(bounds.count(r.name) == 1, "docs/accuracy.md has no row of that name");
+    REQUIRE_MESSAGE(bounds.count(r.name) == 1, "docs/accuracy.md has no row of this name");
     const row bound = bounds[r.name];
     CHECK(r.inputs > 0);
     CHECK(r.orders == bound.orders);
@@ -107,7 +107,7 @@ TEST_CASE("every function is as accurate as docs/accuracy.md says") {
     }
     bounds.erase(r.name);
   }
-  for (const auto& each : bounds) { // what only the program that writes the page has
+  for (const auto& each : bounds) { // rows that only the program that writes the page computes
     CHECK_MESSAGE((each.first.starts_with("through poses, ") || each.first.starts_with("fit to ")),
                   each.first);
   }
@@ -118,7 +118,7 @@ namespace {
 
 double worst_of(const row& r) { return *std::max_element(r.worst.begin(), r.worst.end()); }
 
-/// | build | worst | where | rows that are twice as far off as the page says, beyond 4 |
+/// | build | worst | where | rows with errors above 4 and above twice those of the page |
 std::string comparison_of(const rows& measured, const std::map<std::string, row>& page) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(1);
@@ -142,10 +142,10 @@ std::string comparison_of(const rows& measured, const std::map<std::string, row>
 
 } // namespace
 
-// With DUET_ACCURACY=merge the worse of what the page says, as measured with another compiler, and
-// what is measured now; with DUET_ACCURACY=compare nothing is written, but a line printed of what
-// this build measures against the page.
-TEST_CASE("docs/accuracy.md is written") {
+// DUET_ACCURACY=merge writes the larger of the error on the page, as measured with another
+// compiler, and the error measured now. DUET_ACCURACY=compare writes nothing and prints one line
+// that compares this build with the page.
+TEST_CASE("accuracy: writes docs/accuracy.md") {
   const std::string before = page();
   std::map<std::string, row> old;
   for (const row& r : rows_of(before)) {

@@ -18,8 +18,8 @@
 #include <vector>
 
 /// \file
-/// The functions of dual quaternions as functions of lists of numbers. A pose is eight of them,
-/// real part first, a twist [v; ω] six.
+/// Functions of dual quaternions as functions of lists of numbers. A pose has eight numbers, real
+/// part first, a twist [v; ω] six.
 
 namespace duet_test::accuracy {
 
@@ -34,7 +34,7 @@ template <class T>
 [[nodiscard]] duet::vector3<T> vector_at(const std::vector<T>& x, std::size_t first) {
   return {x[first], x[first + 1], x[first + 2]};
 }
-/// The exponential of a dual vector: a unit, in whatever direction that moves.
+/// The exponential of a dual vector: of unit norm for every direction of differentiation.
 template <class T>
 [[nodiscard]] duet::dual_quaternion<T> moved(const std::vector<T>& x) {
   return duet::exp(duet::make_dual_vector(vector_at(x, 0), vector_at(x, 3)));
@@ -72,20 +72,20 @@ template <class T>
 
 [[nodiscard]] inline input pose_input(int n, random_source& random) { return hard_pose(n, random); }
 
-/// A pose and a number between 0 and 1, or beyond, that moves or not.
+/// A pose and a number, inside or outside of [0, 1], constant or not.
 [[nodiscard]] inline input pose_and_number(int n, random_source& random) {
   return joined(hard_pose(n, random), random.uniform(-0.5, 1.5), n % 2 == 0 ? random.normal() : 0);
 }
 
-/// Two poses, equal or near each other every so often, and a number.
+/// Two poses, sometimes equal or near each other, and a number.
 [[nodiscard]] inline input two_poses(int n, random_source& random) {
   input a = hard_pose(n, random);
   input b = hard_pose(n * 5 + 3, random);
   if (n % 4 == 1) {
-    const double apart = n % 8 == 1 ? 0 : 1e-9;
-    b.where = apart == 0 ? "equal poses" : "poses 1e-9 apart";
+    const double separation = n % 8 == 1 ? 0 : 1e-9;
+    b.where = separation == 0 ? "equal poses" : "poses 1e-9 apart";
     for (std::size_t i = 0; i < 8; ++i) {
-      b.x[i] = a.x[i] * (1 + apart * random.normal());
+      b.x[i] = a.x[i] * (1 + separation * random.normal());
     }
   }
   return joined(joined(a, b), random.uniform(0, 1), n % 2 == 0 ? 1 : 0);
@@ -121,7 +121,7 @@ template <class T>
   result.direction = some_rates(random, result.x, n / 2);
   return result;
 }
-/// A pose and how it moves.
+/// A pose and its rate.
 [[nodiscard]] inline input moving_pose(int n, random_source& random) {
   input a = hard_pose(n, random);
   input rate{"", some_rates(random, a.x, n / 3), {}, a.parts};
@@ -130,7 +130,7 @@ template <class T>
   a.where.resize(a.where.size() - 2);
   return a;
 }
-/// A motion, and a place of any distance.
+/// A screw motion and a pose at any distance.
 [[nodiscard]] inline input motion_and_point(int n, random_source& random) {
   const double far = random.log_uniform(1e-8, 1e8);
   input point{"a point", {}, {}, {3}};
@@ -140,7 +140,7 @@ template <class T>
   point.direction = some_rates(random, point.x, n);
   return joined(half_screw(n, random), point);
 }
-/// Where the screw is determined: away from angles too small to place an axis, and from half turns.
+/// Poses with a determined screw axis: angles not too small to locate it, and not half turns.
 [[nodiscard]] inline input pose_of_a_screw(int n, random_source& random) {
   for (;; ++n) {
     input result = hard_pose(n, random);
@@ -150,7 +150,7 @@ template <class T>
     }
   }
 }
-/// Axis, moment, angle, translation.
+/// Screw parameters: axis, moment, angle, translation.
 [[nodiscard]] inline input screw_coordinates(int n, random_source& random) {
   const named angle = hard_angles[std::size_t(n) % std::size(hard_angles)];
   const named length = hard_lengths[std::size_t(n) % std::size(hard_lengths)];

@@ -49,8 +49,8 @@ jets changed(jets x, const std::vector<std::size_t>& parts, random_source& rando
   return x;
 }
 
-/// The variables with other rates, each part of them as long as before.
-jets turned(jets x, const std::vector<std::size_t>& parts, random_source& random) {
+/// The variables with other rates; the rates of each part have the same norm as before.
+jets with_other_rates(jets x, const std::vector<std::size_t>& parts, random_source& random) {
   std::size_t first = 0;
   for (const std::size_t count : parts) {
     for (std::size_t m = 1; m < x[first].c.size(); ++m) {
@@ -120,13 +120,13 @@ row probe(const probed<T>& f, int count, const jet_shape& shape) {
 
 row worst_of(const std::string& name, const rows& each) {
   row result{name};
-  double most = -1;
+  double max_error = -1;
   for (const row& r : each) {
     result.inputs += r.inputs;
     result.orders = std::max(result.orders, r.orders);
     const double worst = *std::max_element(r.worst.begin(), r.worst.end());
-    if (worst > most) {
-      most = worst;
+    if (worst > max_error) {
+      max_error = worst;
       result.worst_where = r.name + "; " + r.worst_where;
     }
     for (std::size_t k = 0; k < r.worst.size(); ++k) {
@@ -147,7 +147,7 @@ void judge(row& r, const input& at, const numbers& d2, const oracle_function& ex
   std::vector<jets> neighbours, elsewhere;
   for (int n = 0; n < samples; ++n) {
     neighbours.push_back(exact(changed(x, at.parts, random)));
-    elsewhere.push_back(exact(turned(x, at.parts, random)));
+    elsewhere.push_back(exact(with_other_rates(x, at.parts, random)));
   }
   ++r.inputs;
   std::size_t first = 0;
@@ -171,7 +171,7 @@ void judge(row& r, const input& at, const numbers& d2, const oracle_function& ex
         }
       }
       if (sqrt(size) > std::numeric_limits<double>::max() / 4) {
-        continue; // and what overflows is infinite or not a number
+        continue; // after an overflow the error is infinite or NaN
       }
       const double ulps =
           is_finite ? ulps_of_error<double>(real(sqrt(error)),

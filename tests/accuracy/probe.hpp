@@ -14,27 +14,27 @@
 #include <vector>
 
 /// \file
-/// What the functions of the library return, against oracles in 100 digits: the rows of
+/// Errors of functions of the library relative to oracles in 100 digits: the rows of
 /// docs/accuracy.md.
 ///
-/// An error is counted in units of 2⁻⁵³ (‖f‖ + a + c). Where f is a derivative, a is the root mean
-/// square of what it is along a few random directions just as long: a derivative is a sum over
-/// pairs, triples … of directions, and no algorithm knows that some of these sums vanish. c is the
-/// conditioning, the root mean square of how f changes, to first order, when everything that was
-/// put in, directions included, changes by its own norm in a few random ways. Parts that differ in
-/// kind, as the scalar and the vector part of a quaternion, or rotation and translation, have norms
-/// of their own, and so have derivatives of different order.
+/// The unit of errors is 2⁻⁵³ (‖f‖ + a + c). If f is a derivative, a is the root mean square of the
+/// derivative along a few random directions of the same norm: a derivative is a sum over pairs,
+/// triples … of directions, and no algorithm can use that some of these sums vanish. c is the
+/// conditioning: the root mean square of the first-order change of f if all inputs, directions
+/// included, change by their own norm in a few random directions. Parts of different kind, as the
+/// scalar and the vector part of a quaternion, or rotation and translation, have separate norms,
+/// and so do derivatives of different order.
 
 namespace duet_test::accuracy {
 
 using numbers = std::vector<double>;
 
-/// Where to differentiate, and along what.
+/// Point and directions of differentiation.
 struct input {
   std::string where;
   numbers x;
   numbers direction;
-  std::vector<std::size_t> parts; ///< how many numbers belong together
+  std::vector<std::size_t> parts; ///< numbers of variables in each part
 };
 
 /// One row of the table: the worst errors of the value and of derivatives by order.
@@ -43,17 +43,17 @@ struct row {
   long inputs = 0;
   std::array<double, 5> worst = {};
   int orders = 0;               ///< the highest derivative probed
-  std::string worst_where = {}; ///< and its order
+  std::string worst_where = {}; ///< input with the largest error, and the order
 };
 using rows = std::vector<row>;
 
-/// How many inputs each row takes: a few for the test, many for the page.
+/// Number of inputs of each row: a few for the test, many for the page.
 enum class extent { test, page };
 
-/// The row of several functions: the worst of all, and of which.
+/// The row of several functions: largest errors of all, and the function that has them.
 [[nodiscard]] row worst_of(const std::string& name, const rows& each);
 
-/// One family of functions each.
+/// Rows of one family of functions each.
 rows rotation_rows(extent e);
 rows pose_rows(extent e);
 rows mixed_rows(extent e);
@@ -63,25 +63,25 @@ rows fit_rows(extent e);
 
 using oracle_function = std::function<jets(const jets&)>;
 
-/// What was computed at an input: coefficients[i][n] is the coefficient of the n-th monomial in the
+/// Result at an input: coefficients[i][n] is the coefficient of the n-th monomial in the
 /// i-th result.
 struct computed_results {
   std::vector<numbers> coefficients;
-  std::vector<std::size_t> parts; ///< how many results belong together
-  std::vector<int> orders;        ///< which derivative each part itself is, if not the value
+  std::vector<std::size_t> parts; ///< numbers of results in each part
+  std::vector<int> orders;        ///< order of derivative of each part itself, 0 for a value
 };
-/// Judges them by an oracle, d₂ as below, and takes the worst into the row.
+/// Compares a result with an oracle, d₂ as below, and adds the largest errors to the row.
 void judge(row& r, const input& at, const numbers& d2, const oracle_function& exact,
            const computed_results& computed);
 
 using line = duet::taylor<double, 4>;
 using plane = duet::second_order_dual<double, 2>;
 
-/// A function of lists of numbers, and where to probe it.
+/// A function of lists of numbers and the inputs to test it at.
 template <class T>
 struct probed {
   const char* name;
-  std::vector<std::size_t> parts; ///< how many results belong together
+  std::vector<std::size_t> parts; ///< numbers of results in each part
   std::vector<T> (*function)(const std::vector<T>&);
   oracle_function exact;
   input (*inputs)(int n, random_source& random);

@@ -16,7 +16,7 @@
 #include <vector>
 
 /// \file
-/// The functions of quaternions as functions of lists of numbers, four for a quaternion.
+/// Functions of quaternions as functions of lists of numbers, four for a quaternion.
 
 namespace duet_test::accuracy {
 
@@ -41,15 +41,15 @@ template <class T, int C>
   return joined(hard_rotation(n, random), random.uniform(-1.5, 1.5),
                 n % 2 == 0 ? random.normal() : 0);
 }
-/// Equal or near each other every so often, and a number.
+/// Two rotations, sometimes equal or near each other, and a number.
 [[nodiscard]] inline input two_rotations(int n, random_source& random) {
   const input a = hard_rotation(n, random);
   input b = hard_rotation(n * 5 + 3, random);
   if (n % 4 == 1) {
-    const double apart = n % 8 == 1 ? 0 : 1e-9;
-    b.where = apart == 0 ? "equal" : "1e-9 apart";
+    const double separation = n % 8 == 1 ? 0 : 1e-9;
+    b.where = separation == 0 ? "equal" : "1e-9 apart";
     for (std::size_t i = 0; i < 4; ++i) {
-      b.x[i] = a.x[i] * (1 + apart * random.normal());
+      b.x[i] = a.x[i] * (1 + separation * random.normal());
     }
   }
   return joined(joined(a, b), random.uniform(0, 1), n % 2 == 0 ? 1 : 0);
@@ -66,7 +66,7 @@ template <class T, int C>
   return result;
 }
 /// An angle times a direction.
-[[nodiscard]] inline input turn(int n, random_source& random) {
+[[nodiscard]] inline input rotation_vector_input(int n, random_source& random) {
   const named angle = hard_angles[std::size_t(n) % std::size(hard_angles)];
   input result{angle.name, {}, {}, {3}};
   for (const double c : some_direction(random, n)) {
@@ -83,8 +83,9 @@ template <class T, int C>
   result.direction = some_rates(random, result.x, n);
   return result;
 }
-[[nodiscard]] inline input turn_and_vector(int n, random_source& random) {
-  return joined(turn(n, random), vector_of_length(random.log_uniform(1e-8, 1e8), n / 2, random));
+[[nodiscard]] inline input rotation_and_vector(int n, random_source& random) {
+  return joined(rotation_vector_input(n, random),
+                vector_of_length(random.log_uniform(1e-8, 1e8), n / 2, random));
 }
 [[nodiscard]] inline input axis_and_angle(int n, random_source& random) {
   const named angle = hard_angles[std::size_t(n) % std::size(hard_angles)];
@@ -93,18 +94,18 @@ template <class T, int C>
   result.where = angle.name;
   return result;
 }
-/// Nearly parallel every so often, never opposite.
+/// Two vectors, sometimes nearly parallel, never opposite.
 [[nodiscard]] inline input two_vectors(int n, random_source& random) {
   const input a = vector_of_length(random.log_uniform(1e-4, 1e4), n, random);
   input b = vector_of_length(random.log_uniform(1e-4, 1e4), n / 2, random);
-  const double apart = n % 3 == 0 ? 1e-9 : n % 3 == 1 ? 1e-3 : 1;
-  b.where = apart < 1 ? "nearly parallel" : "another";
+  const double separation = n % 3 == 0 ? 1e-9 : n % 3 == 1 ? 1e-3 : 1;
+  b.where = separation < 1 ? "nearly parallel" : "another";
   for (std::size_t i = 0; i < 3; ++i) {
-    b.x[i] = a.x[i] + apart * b.x[i];
+    b.x[i] = a.x[i] + separation * b.x[i];
   }
   return joined(a, b);
 }
-/// Away from gimbal lock, and from where an angle jumps by a turn.
+/// Rotations away from gimbal lock and from jumps of an angle by 2π.
 template <duet::euler_sequence Sequence>
 [[nodiscard]] input attitude(int n, random_source& random) {
   for (;; ++n) {
@@ -138,7 +139,7 @@ template <class T, duet::euler_sequence Sequence>
           },
           attitude<Sequence>};
 }
-/// All of them: first those with three axes, then those with two.
+/// All sequences: first those with three axes, then those with two.
 template <class T>
 [[nodiscard]] std::array<std::vector<probed<T>>, 2> euler_functions() {
   return {{{euler_in<T, duet::xyz>("xyz"), euler_in<T, duet::yzx>("yzx"),
@@ -159,7 +160,7 @@ template <class T>
        {4},
        [](const list& x) { return numbers_of(duet::exp(axis_at(x))); },
        oracle::vector_exp,
-       turn},
+       rotation_vector_input},
       {"log of a quaternion",
        {1, 3},
        [](const list& x) { return numbers_of(log(rotation_at(x))); },
@@ -205,22 +206,22 @@ template <class T>
        {3},
        [](const list& x) { return numbers_of(rotate(duet::exp(axis_at(x)), axis_at(x, 3))); },
        oracle::rotate,
-       turn_and_vector},
+       rotation_and_vector},
       {"rotation_matrix of exp",
        {9},
        [](const list& x) { return numbers_of(rotation_matrix(duet::exp(axis_at(x)))); },
        oracle::rotation_matrix,
-       turn},
+       rotation_vector_input},
       {"left_jacobian",
        {9},
        [](const list& x) { return numbers_of(duet::left_jacobian(axis_at(x))); },
        oracle::jacobian,
-       turn},
+       rotation_vector_input},
       {"left_jacobian_inverse",
        {9},
        [](const list& x) { return numbers_of(duet::left_jacobian_inverse(axis_at(x))); },
        oracle::jacobian_inverse,
-       turn},
+       rotation_vector_input},
       {"angular_velocity, spatial",
        {3},
        [](const list& x) {

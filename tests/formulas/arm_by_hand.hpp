@@ -8,26 +8,25 @@
 #include <cstddef>
 
 /// \file
-/// The kinematics of arms from the tables of their makers, for closed forms that share no code with
-/// duet.
+/// Kinematics of arms from the tables of their manufacturers, for closed forms that share no code
+/// with duet.
 
 namespace by_hand {
 
 template <class T>
 using six = std::array<T, 6>;
 
-/// Denavit and Hartenberg's parameters: a and d in metres, α and what is added to θ in quarter
-/// turns.
+/// Denavit–Hartenberg parameters: a and d in metres, α and the offset of θ in quarter turns.
 struct arm_row {
   double length, offset;
-  int twist, turn;
+  int twist, angle_offset;
 };
 
 template <std::size_t N>
 struct arm_table {
-  bool is_modified; ///< a and α stand before the joint
+  bool is_modified; ///< true if a and α precede the joint
   std::array<arm_row, N> rows;
-  double flange; ///< from the last frame, along its z axis
+  double flange; ///< distance from the last frame along its z axis
 };
 
 inline constexpr arm_table<7> panda_table{true,
@@ -78,7 +77,7 @@ struct arm {
     using std::sin;
     t = dt = {T(0), T(0), T(0)};
     alpha = {T(1), T(0), T(0), T(0)};
-    v3<T> v = t, w = t; // of the link before, the velocity at the origin and the angular velocity
+    v3<T> v = t, w = t; // velocity at the origin and angular velocity of the preceding link
     for (std::size_t i = 0; i < N; ++i) {
       const arm_row& row = table.rows[i];
       if (table.is_modified) {
@@ -95,7 +94,7 @@ struct arm {
       w = plus(w, times(dtheta[i], z));
       const T half = theta[i] / 2;
       alpha = product(alpha, q4<T>{T(cos(half)), T(0), T(0), T(sin(half))});
-      quarters<3>(row.turn);
+      quarters<3>(row.angle_offset);
       if (!table.is_modified) {
         shift(row.length, row.offset);
         quarters<1>(row.twist);
@@ -125,15 +124,15 @@ private:
   void shift(double x, double z) {
     t = plus(t, vec(product(product(alpha, pure(v3<T>{T(x), T(0), T(z)})), conj(alpha))));
   }
-  /// Quarter turns about the x axis, 1, or the z axis, 3: none or one, either way.
+  /// Rotation by 0 or ±1 quarter turns about the x axis (1) or the z axis (3).
   template <std::size_t Axis>
   void quarters(int count) {
     using std::sqrt;
     if (count != 0) {
       const T root = sqrt(T(0.5));
-      q4<T> turn{root, T(0), T(0), T(0)};
-      turn[Axis] = count * root;
-      alpha = product(alpha, turn);
+      q4<T> rotation{root, T(0), T(0), T(0)};
+      rotation[Axis] = count * root;
+      alpha = product(alpha, rotation);
     }
   }
 };

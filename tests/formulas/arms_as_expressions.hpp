@@ -8,7 +8,7 @@
 #include <tuple>
 
 /// \file
-/// Arms as products of their joints, with the numbers of their makers' tables.
+/// Arms as products of their joints, with the numbers of the manufacturers' tables.
 
 namespace duet_formulas {
 
@@ -21,7 +21,7 @@ inline constexpr duet::expression::symbol<"theta4"> theta4{};
 inline constexpr duet::expression::symbol<"theta5"> theta5{};
 inline constexpr duet::expression::symbol<"theta6"> theta6{};
 inline constexpr duet::expression::symbol<"theta7"> theta7{};
-/// Their rates.
+/// Symbols of the joint rates.
 inline constexpr duet::expression::symbol<"dtheta1"> dtheta1{};
 inline constexpr duet::expression::symbol<"dtheta2"> dtheta2{};
 inline constexpr duet::expression::symbol<"dtheta3"> dtheta3{};
@@ -34,7 +34,7 @@ inline constexpr auto quarter_turn = duet::expression::pi / duet::expression::c<
 inline constexpr auto up = screw(duet::expression::axis::x, quarter_turn);
 inline constexpr auto down = screw(duet::expression::axis::x, -quarter_turn);
 
-/// Where the Panda's joints stand, each before it turns, and the flange.
+/// Poses of the Panda's joint frames, each relative to the preceding one, and of the flange.
 inline auto panda_frames() {
   using namespace duet::expression;
   const auto a1 = translation_along(axis::z, .333_c);

@@ -7,8 +7,8 @@
 #include <vector>
 
 /// \file
-/// The algebra once more, written out component by component from the definitions, for closed forms
-/// that share no code with duet.
+/// Independent implementation of the algebra, written out component by component from the
+/// definitions, for closed forms that share no code with duet.
 
 namespace by_hand {
 
@@ -83,7 +83,7 @@ v3<T> vec(const q4<T>& q) {
   return {q[1], q[2], q[3]};
 }
 
-/// sin θ/θ and cos θ of s = θ², and their derivatives by s.
+/// sin θ/θ and cos θ of s = θ², and their derivatives with respect to s.
 template <class T>
 struct arc {
   T c, s, dc, ds;
@@ -92,7 +92,7 @@ struct arc {
     using std::sin;
     using std::sqrt;
     if (square < T(1e-12)) {
-      // Below, the closed forms lose the leading digits; these sums have 60 of them.
+      // For smaller s the closed forms cancel; these sums are exact to 60 digits.
       c = s = dc = ds = T(0);
       T term(1); // (−s)^k / (2k)!
       T before(0);
@@ -135,8 +135,8 @@ struct unit {
 template <class T>
 struct polar {
   T size, angle, dsize, dangle;
-  v3<T> axis, daxis; ///< zero where there is none
-  T length;          ///< of the vector part
+  v3<T> axis, daxis; ///< zero if there is no axis
+  T length;          ///< norm of the vector part
   polar(const q4<T>& q, const q4<T>& dq) {
     using std::atan2;
     using std::sqrt;
@@ -158,13 +158,13 @@ struct polar {
 };
 
 /// N19, A (A* B)^τ of the displacements (a, ta) and (b, tb), through the axis of the screw, and its
-/// derivative by τ.
+/// derivative with respect to τ.
 template <class T>
-struct screw_way {
+struct screw_displacement {
   q4<T> alpha, dalpha;
-  v3<T> place, dplace;
-  screw_way(const q4<T>& a, const v3<T>& ta, q4<T> b, const v3<T>& tb, const T& tau,
-            const T& dtau) {
+  v3<T> position, dposition;
+  screw_displacement(const q4<T>& a, const v3<T>& ta, q4<T> b, const v3<T>& tb, const T& tau,
+                     const T& dtau) {
     using std::atan2;
     using std::cos;
     using std::sin;
@@ -172,17 +172,17 @@ struct screw_way {
     if (dot(a, b) < 0) {
       b = times(T(-1), b);
     }
-    // The way from A to B in axes of A: a turn `rel`, a shift t.
+    // The displacement from A to B in axes of A: a rotation `rel`, a translation t.
     const q4<T> rel = product(conj(a), b);
     const v3<T> t = vec(product(product(conj(a), pure(plus(tb, times(T(-1), ta)))), a));
     const T length = sqrt(dot(vec(rel), vec(rel)));
     const T half = atan2(length, rel[0]);
     q4<T> q{T(1), T(0), T(0), T(0)}, dq{};
     v3<T> s = times(tau, t), ds = times(dtau, t);
-    if (length > T(1e-20)) { // below, the axis is so far away that 50 digits do not do
+    if (length > T(1e-20)) { // for smaller rotations the axis is too far away for 50 digits
       const v3<T> n = times(T(1 / length), vec(rel));
       const T along = dot(n, t);
-      // The point of the axis next to the origin: ½(t⊥ + cot(φ/2) n × t).
+      // The point of the axis nearest to the origin: ½(t⊥ + cot(φ/2) n × t).
       const v3<T> near =
           times(T(0.5), plus(plus(t, times(T(-along), n)), times(T(rel[0] / length), cross(n, t))));
       const T c = cos(T(half * tau)), h = sin(T(half * tau)), speed = half * dtau;
@@ -192,11 +192,11 @@ struct screw_way {
       s = plus(plus(near, times(T(-1), moved)), times(T(along * tau), n));
       ds = plus(times(T(-2 * speed), cross(n, moved)), times(T(along * dtau), n));
     }
-    // A times that.
+    // A times the screw motion.
     alpha = product(a, q);
     dalpha = product(a, dq);
-    place = plus(ta, vec(product(product(a, pure(s)), conj(a))));
-    dplace = vec(product(product(a, pure(ds)), conj(a)));
+    position = plus(ta, vec(product(product(a, pure(s)), conj(a))));
+    dposition = vec(product(product(a, pure(ds)), conj(a)));
   }
 };
 

@@ -89,7 +89,7 @@ formula two_readings() {
       "N13", R"((D_0, \vec D) = p + \varepsilon q)", "dual_quaternion, real_part, dual_part",
       "dual_quaternion/dual_quaternion.hpp", {quaternion, quaternion},
       []<class T>(const numbers<T>& x) {
-        // Built of four dual numbers, read as two quaternions.
+        // Composed of four dual numbers, read as two quaternions.
         using D = duet::screw_dual<T>;
         return all<T>(
             duet::dual_quaternion<T>(D(x[0], x[4]), D(x[1], x[5]), D(x[2], x[6]), D(x[3], x[7])));
@@ -126,7 +126,8 @@ formula conjugates() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        // Every product is linear in each of its three factors: A, what it carries, A again.
+        // Every product is linear in each of its three factors: A, the transformed element, A
+        // again.
         const auto f = [](const q4<T>& p, const q4<T>& q, const T& one, const q4<T>& v,
                           const q4<T>& r, const q4<T>& s) {
           const q4<T> rc = conj(r), sc = conj(s);

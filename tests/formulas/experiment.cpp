@@ -16,7 +16,7 @@
 #include <cstddef>
 #include <utility>
 
-// P5–P7: how the experiment with the wheel carrier is measured.
+// P5–P7: measures of the experiment with the wheel carrier.
 
 namespace by_hand {
 namespace {
@@ -102,7 +102,7 @@ formula its_derivative() {
       });
 }
 
-/// Is the length of the vector one whose square is a normal number?
+/// True if the square of the length of the vector is a normal number.
 bool has_length(const numbers<double>& x, std::size_t i) {
   const double length = v_of(x, i).norm();
   return length > 1e-9 && length < 1e9;
@@ -130,7 +130,8 @@ formula error_measure() {
       },
       {},
       [](const numbers<double>& x) {
-        // Where δ_int is small beside δ, the two lengths move alike and their derivatives cancel.
+        // If δ_int is small compared with δ, both lengths change equally and their derivatives
+        // cancel.
         return has_length(x, 0) && has_length({x[0] - x[3], x[1] - x[4], x[2] - x[5]}, 0) &&
                v_of(x, 3).norm() > .1 * v_of(x, 0).norm();
       });
@@ -150,19 +151,19 @@ formula angle_between_rows() {
         using std::atan2;
         using std::sqrt;
         const unit<T> p(part<3>(x, 0), part<3>(d, 0)), q(part<3>(x, 3), part<3>(d, 3));
-        const q4<T> way = product(conj(p.q), q.q);
-        const q4<T> dway = plus(product(conj(p.dq), q.q), product(conj(p.q), q.dq));
-        const T sign(way[0] < 0 ? -1 : 1);
-        const T length = sqrt(dot(vec(way), vec(way)));
-        const T dlength = dot(vec(way), vec(dway)) / length;
-        return numbers<T>{T(2 * atan2(length, T(sign * way[0]))),
-                          T(2 * sign * (way[0] * dlength - length * dway[0]))};
+        const q4<T> relative = product(conj(p.q), q.q);
+        const q4<T> drelative = plus(product(conj(p.dq), q.q), product(conj(p.q), q.dq));
+        const T sign(relative[0] < 0 ? -1 : 1);
+        const T length = sqrt(dot(vec(relative), vec(relative)));
+        const T dlength = dot(vec(relative), vec(drelative)) / length;
+        return numbers<T>{T(2 * atan2(length, T(sign * relative[0]))),
+                          T(2 * sign * (relative[0] * dlength - length * drelative[0]))};
       },
       {16, 16},
       [](const numbers<double>& x) {
-        const auto way =
+        const auto relative =
             conj(duet::from_rotation_vector(v_of(x, 0))) * duet::from_rotation_vector(v_of(x, 3));
-        return way.vec().norm() > 1e-3 && std::abs(way.w()) > 1e-3;
+        return relative.vec().norm() > 1e-3 && std::abs(relative.w()) > 1e-3;
       });
 }
 

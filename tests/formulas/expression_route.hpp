@@ -15,34 +15,34 @@
 #include <utility>
 
 /// \file
-/// How rows of the table are written as expressions.
+/// Rows of the table as expressions.
 
 namespace duet_formulas {
 
-/// Where a dual number stands in the arguments.
+/// Index of a dual number in the arguments.
 struct dual_at {
   std::size_t first;
 };
 
-/// In place of what is 0.
+/// Stands for a parameter that is 0.
 struct zero {};
 
-/// What moves: a symbol, the symbol of its rate, and where its components stand in the arguments.
-template <class Symbol, class Rate, class Place>
+/// Variable input: a symbol, the symbol of its rate, and the index of its components.
+template <class Symbol, class Rate, class Position>
 struct moving {
   Symbol symbol;
   Rate rate;
-  Place place;
+  Position position;
 };
 template <class Symbol, class Rate>
 moving(Symbol, Rate, int) -> moving<Symbol, Rate, std::size_t>;
 template <class Symbol, class Rate>
 moving(Symbol, Rate, dual_at) -> moving<Symbol, Rate, dual_at>;
-/// What stands still, and a parameter that is 0.
-template <class Symbol, class Place>
+/// Constant input: a symbol, and the index of its components or `zero`.
+template <class Symbol, class Position>
 struct still {
   Symbol symbol;
-  Place place;
+  Position position;
 };
 template <class Symbol>
 still(Symbol, int) -> still<Symbol, std::size_t>;
@@ -66,8 +66,8 @@ auto read(const numbers<double>& x, std::size_t i) {
   }
 }
 template <class Symbol>
-auto read(const numbers<double>& x, dual_at place) {
-  return duet::screw_dual<double>(x[place.first], x[place.first + 1]);
+auto read(const numbers<double>& x, dual_at position) {
+  return duet::screw_dual<double>(x[position.first], x[position.first + 1]);
 }
 
 template <class Symbol>
@@ -75,14 +75,14 @@ double read(const numbers<double>&, zero) {
   return 0;
 }
 
-/// The values of the symbols, for a call by name.
+/// Values of the symbols, for a call by name.
 template <class... Inputs>
 auto read_all(const numbers<double>& x, const Inputs&... in) {
-  return std::tuple((in.symbol = read<decltype(in.symbol)>(x, in.place))...);
+  return std::tuple((in.symbol = read<decltype(in.symbol)>(x, in.position))...);
 }
 template <class... Inputs>
 auto read_rates(const numbers<double>& d, const Inputs&... in) {
-  return std::tuple((in.rate = read<decltype(in.rate)>(d, in.place))...);
+  return std::tuple((in.rate = read<decltype(in.rate)>(d, in.position))...);
 }
 
 template <class F, class Moves, class Stands>

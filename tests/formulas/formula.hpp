@@ -15,9 +15,8 @@
 #include <vector>
 
 /// \file
-/// A formula of the documents by four routes: duet over duals, Taylor numbers and nested duals, an
-/// expression, the textbook's closed form, and that closed form in 50 digits, which is taken as the
-/// truth.
+/// A formula of the documents by four methods: duet over duals, Taylor numbers and nested duals, an
+/// expression, the closed form of textbooks, and this closed form in 50 digits as the reference.
 
 namespace duet_formulas {
 
@@ -25,67 +24,67 @@ using wide = duet::real_50;
 template <class T>
 using numbers = std::vector<T>;
 
-/// What an argument is made of; its special values are those that formulas stumble over.
+/// Kind of an argument; its special values are those at which formulas may fail.
 enum class argument {
   number,     ///< any
   fraction,   ///< from 0 to 1
   vector,     ///< three components
-  rotation,   ///< a rotation vector: none, tiny, half turn, nearly full turn
+  rotation,   ///< a rotation vector: zero, tiny, half turn, nearly full turn
   quaternion, ///< four components, not zero
 };
 
-/// How far a route may be from the truth.
+/// Bounds of the errors relative to the reference.
 struct bounds {
-  double value = 4;          ///< of the formula, in ulp
-  double slope = 16;         ///< of its first derivative, in ulp
-  double expression = slope; ///< of both, where it is written as an expression
+  double value = 4;          ///< bound of the formula, in ulp
+  double slope = 16;         ///< bound of its first derivative, in ulp
+  double expression = slope; ///< bound of both for the formula as an expression
 };
 
 /// One row of the table.
 struct formula {
   std::string label;
   std::string text;     ///< the formula, in TeX
-  std::string function; ///< what computes it
-  std::string header;   ///< below include/duet/, or from examples/ on
+  std::string function; ///< function that computes it
+  std::string header;   ///< path below include/duet/, or beginning with examples/
   std::vector<argument> arguments;
   bounds limits;
-  /// Do all arguments but the last stand still?
+  /// True if all arguments except the last are constant.
   bool only_last_moves = false;
-  /// Is this input one that the formula is defined at?
+  /// True if the formula is defined at this input.
   std::function<bool(const numbers<double>&)> is_valid;
 
-  /// Value and first derivative along a direction, in a row.
+  /// Value and first derivative along a direction, concatenated.
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> closed;
   std::function<numbers<wide>(const numbers<wide>&, const numbers<wide>&)> reference;
-  /// The same by duet over duals; over Taylor numbers and nested duals the second derivative too.
+  /// Value and first derivative by duet over duals; over Taylor numbers and nested duals also the
+  /// second derivative.
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> dual;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> taylor;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> nested;
 };
 
-/// A row by a further route: written as an expression over symbols, which the compiler
-/// differentiates.
+/// A row by a further method: an expression over symbols, which the compiler differentiates.
 class expression_route {
 public:
   std::string label;
-  std::string function;   ///< the two name the row
+  std::string function;   ///< label and function identify the row
   std::string text;       ///< the expression
-  std::string derivative; ///< what differentiates it
+  std::string derivative; ///< function that differentiates it
 
   expression_route(std::string row_label, std::string row_function)
       : label(std::move(row_label)), function(std::move(row_function)) {}
-  /// A route of its own way to a row's result.
+  /// A row computed by a separate function.
   template <class Values>
   expression_route(std::string row_label, std::string row_function, std::string expression,
                    std::string differentiated_by, const Values& values)
       : label(std::move(row_label)), function(std::move(row_function)), text(std::move(expression)),
         derivative(std::move(differentiated_by)), all_(values) {}
 
-  /// Adds a formula to the result: its value, and its derivative along all that moves.
+  /// Adds a formula to the result: its value, and its derivative along all variable inputs.
   template <class F, class Moves, class Stands = std::tuple<>>
   expression_route part(const F& f, const Moves& moves, const Stands& stands = {}) &&;
 
-  /// Value and first derivative along a direction, in a row.
+  /// Value and first derivative along a direction, concatenated.
   numbers<double> operator()(const numbers<double>& x, const numbers<double>& d) const {
     if (all_) {
       return all_(x, d);

@@ -113,7 +113,7 @@ std::vector<duet::quaternion<duet::real_type_t<T>>> still_rotations(const number
   return result;
 }
 
-/// Uneven ones, with one span in the domain: from 0 to 1.
+/// Uneven knots with one span, from 0 to 1, in the domain.
 constexpr double knots[] = {-3, -1.5, -1, 0, 1, 1.25, 3, 4};
 
 /// The four basis functions of the span.
@@ -140,7 +140,7 @@ formula basis_functions() {
       {8, 16}); // differences of cumulative functions
 }
 
-/// Is the shorter way from each rotation to the next unambiguous?
+/// True if the shorter arc from each rotation to the next is unambiguous.
 bool turns_are_short(const numbers<double>& x) {
   const auto q = still_rotations(x);
   bool is_valid = true;
@@ -160,7 +160,7 @@ duet::cumulative_bspline<double> curve_through(const std::vector<duet::quaternio
   return {{-3, -2, -1, 0, 1, 2, 3, 4}, q};
 }
 
-/// Control rotations stand still, only u moves.
+/// Control rotations are constant, only u varies.
 formula cumulative_curve() {
   auto f = make_formula(
       "P2", R"(Q(u) = q_0\prod_i \exp(\omega_i\tilde B_i(u)),\; \omega^b(u))", "cumulative_bspline",

@@ -9,7 +9,7 @@
 #include <cstddef>
 
 /// \file
-/// Arguments of duet's functions out of rows of numbers, and back.
+/// Conversion between rows of numbers and arguments of duet's functions.
 
 namespace duet_formulas {
 

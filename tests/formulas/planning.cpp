@@ -29,7 +29,7 @@ using joint_vector = std::array<T, joints>;
 template <class T>
 using panda = arm<T, joints>;
 
-/// x with M x = b, by Gauss.
+/// Solution x of M x = b by Gaussian elimination.
 template <class T>
 six<T> solved(std::array<six<T>, 6> m, six<T> b) {
   using std::abs;
@@ -105,7 +105,7 @@ namespace {
 constexpr auto vector = argument::vector;
 constexpr auto number = argument::number;
 constexpr auto rotation_vector = argument::rotation;
-/// The condition of J is up to about 20 here.
+/// Bounds for condition numbers of J up to about 20.
 constexpr bounds of_least_rates{8, 16, 32};
 
 constexpr auto robot = duet::robots::panda().table();
@@ -123,8 +123,8 @@ auto as_numbers(const V& v) {
   return numbers<typename V::Scalar>(v.data(), v.data() + v.size());
 }
 
-/// Σ 1/σ² of the Jacobian's singular values below 100, so all of them above a tenth: (J Jᵀ)⁻¹
-/// amplifies errors by their squares.
+/// True if Σ 1/σ² < 100 for the singular values of the Jacobian, so that all exceed 0.1: (J Jᵀ)⁻¹
+/// amplifies errors by 1/σ².
 bool is_regular(const numbers<double>& x) {
   by_hand::joint_vector<double> none{};
   const by_hand::panda<double> a(by_hand::panda_table, by_hand::part<7>(x, 0), none);
@@ -186,7 +186,7 @@ formula planning_step() {
       "sclerp, resolved_step", "planning/printed_plan.hpp",
       {vector, vector, number, rotation_vector, vector, argument::fraction},
       []<class T>(const numbers<T>& x) {
-        numbers<duet::real_type_t<T>> still; // all but τ
+        numbers<duet::real_type_t<T>> still; // all arguments except τ
         for (const T& each : x) {
           still.push_back(duet::innermost(each));
         }
@@ -200,9 +200,9 @@ formula planning_step() {
         const v3<T> none{};
         const T minus(-1);
         const panda<T> a(panda_table, part<7>(x, 0), part<7>(d, 0));
-        const screw_way<T> c(a.alpha, a.t, unit<T>(part<3>(x, 7), none).q, part<3>(x, 10), x[13],
-                             d[13]);
-        const auto [y, dy] = resolved(a, plus(c.place, times(minus, a.t)),
+        const screw_displacement<T> c(a.alpha, a.t, unit<T>(part<3>(x, 7), none).q, part<3>(x, 10),
+                                      x[13], d[13]);
+        const auto [y, dy] = resolved(a, plus(c.position, times(minus, a.t)),
                                       plus(c.alpha, times(minus, a.alpha)), c.dplace, c.dalpha);
         return row<T>(plus(part<7>(x, 0), y), dy);
       },
@@ -223,10 +223,10 @@ formula steps_along_path() {
       "resolved_step", "planning/resolved_motion.hpp",
       {vector, vector, number, rotation_vector, vector, rotation_vector, vector},
       []<class T>(const numbers<T>& x) {
-        const auto half_way =
+        const auto midway =
             duet::resolved_step(robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .25);
         return as_numbers(
-            duet::resolved_step(robot, half_way, duet::pose(unit_of(x, 13), v_of(x, 16)), .25));
+            duet::resolved_step(robot, midway, duet::pose(unit_of(x, 13), v_of(x, 16)), .25));
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;

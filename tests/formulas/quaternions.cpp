@@ -20,7 +20,7 @@ namespace {
 constexpr auto quaternion = argument::quaternion;
 constexpr auto vector = argument::vector;
 
-/// Away from the negative real numbers, where the axis is undetermined.
+/// True if q is away from the negative real numbers, where the axis is undetermined.
 bool has_axis(const numbers<double>& x) {
   return x[0] > 0 || std::hypot(x[1], x[2], x[3]) > 1e-3 * std::abs(x[0]);
 }
@@ -205,7 +205,7 @@ formula interpolation() {
       "N9", R"(A(\tau) = A_1(A_1^*A_2)^\tau)", "slerp", "quaternion/exponential.hpp",
       {argument::rotation, argument::rotation, argument::fraction},
       []<class T>(const numbers<T>& x) {
-        // The poses stand still: only τ moves.
+        // The poses are constant, only τ varies.
         const auto still = [](const duet::vector3<T>& v) {
           using R = duet::real_type_t<T>;
           return duet::quaternion<T>(duet::from_rotation_vector(duet::vector3<R>(

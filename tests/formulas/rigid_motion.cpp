@@ -72,20 +72,20 @@ formula twists() {
         const v3<T> t = part<3>(x, 3), w = part<3>(x, 6), v = part<3>(x, 9);
         const v3<T> dt = part<3>(d, 3), dw = part<3>(d, 6), dv = part<3>(d, 9);
         const q4<T> back = conj(u.q), dback = conj(u.dq);
-        const auto turned = [&](const v3<T>& y) {
+        const auto back_rotated = [&](const v3<T>& y) {
           return vec(product(product(back, pure(y)), u.q));
         };
         const auto rate = [&](const v3<T>& y, const v3<T>& dy) {
-          return plus(turned(dy), vec(plus(product(product(dback, pure(y)), u.q),
-                                           product(product(back, pure(y)), u.dq))));
+          return plus(back_rotated(dy), vec(plus(product(product(dback, pure(y)), u.q),
+                                                 product(product(back, pure(y)), u.dq))));
         };
-        return row<T>(plus(v, cross(t, w)), w, turned(v), turned(w),
+        return row<T>(plus(v, cross(t, w)), w, back_rotated(v), back_rotated(w),
                       plus(dv, plus(cross(dt, w), cross(t, dw))), dw, rate(v, dv), rate(w, dw));
       },
       {16, 16});
 }
 
-/// Poses stand still, only τ moves: the screw motion from the textbook's axis, angle and pitch.
+/// Poses are constant, only τ varies: the screw motion from the textbook's axis, angle and pitch.
 formula screw_interpolation() {
   formula f = make_formula(
       "N19", R"(C(\tau) = A\,(A^*B)^\tau)", "sclerp", "dual_quaternion/screw.hpp",
@@ -104,11 +104,11 @@ formula screw_interpolation() {
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
         const v3<T> none{};
-        const screw_way<T> c(unit<T>(part<3>(x, 0), none).q, part<3>(x, 3),
-                             unit<T>(part<3>(x, 6), none).q, part<3>(x, 9), x[12], d[12]);
-        const q4<T> beta = times(T(0.5), product(pure(c.place), c.alpha));
-        const q4<T> dbeta =
-            times(T(0.5), plus(product(pure(c.dplace), c.alpha), product(pure(c.place), c.dalpha)));
+        const screw_displacement<T> c(unit<T>(part<3>(x, 0), none).q, part<3>(x, 3),
+                                      unit<T>(part<3>(x, 6), none).q, part<3>(x, 9), x[12], d[12]);
+        const q4<T> beta = times(T(0.5), product(pure(c.position), c.alpha));
+        const q4<T> dbeta = times(
+            T(0.5), plus(product(pure(c.dposition), c.alpha), product(pure(c.position), c.dalpha)));
         return row<T>(c.alpha, beta, c.dalpha, dbeta);
       },
       {16, 16},

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Every formula of the documents by every route, and how far each is from 50 digits. The table is
-// printed, and written where docs/formulas.md is generated from; a test fails where duet is further
-// off than its bounds, where a label has no row, and where docs/formulas.md has another row.
+// Every formula of the documents by every method, and its error relative to 50 digits. The table is
+// printed and written to the file that docs/formulas.md is generated from. The test fails if an
+// error of duet exceeds its bound, if a label has no row, or if docs/formulas.md has another row.
 
 #include "formulas/table.hpp"
 #include "support/identical.hpp"
@@ -66,7 +66,7 @@ numbers<double> values_of(argument a, std::size_t i, duet_test::random_source& r
   return {n[0] * size, n[1] * size, n[2] * size};
 }
 
-/// Special values of all arguments in changing company, then random ones.
+/// Special values of all arguments in varying combinations, then random ones.
 std::vector<numbers<double>> inputs_of(const formula& f) {
   duet_test::random_source random(5);
   constexpr std::size_t special = 48;
@@ -96,8 +96,8 @@ wide largest(const numbers<wide>& y, std::size_t first, std::size_t count) {
 
 numbers<wide> widened(const numbers<double>& x) { return numbers<wide>(x.begin(), x.end()); }
 
-/// Value, first and second derivative at one input in 50 digits, and what each may lose to the
-/// rounding of the arguments.
+/// Value, first and second derivative at one input in 50 digits, and the change of each by
+/// the rounding of the arguments.
 struct exact_values {
   numbers<wide> values;
   std::size_t size;
@@ -113,7 +113,7 @@ struct exact_values {
     for (std::size_t k = 0; k < 3; ++k) {
       scales[k] = largest(values, k * size, size);
     }
-    scales[2] += scales[1] * wide("1e-16"); // differences cannot see a smaller one
+    scales[2] += scales[1] * wide("1e-16"); // differences cannot resolve a smaller derivative
     // ‖∂/∂x‖‖x‖ of all three, by relative differences.
     const wide step("1e-12");
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -134,29 +134,29 @@ struct exact_values {
     }
   }
 
-  /// Errors of a route in ulp; negative where it does not have the block.
-  [[nodiscard]] double ulps(const numbers<double>& route, std::size_t block) const {
-    return ulps(route, values, block);
+  /// Error of a method in ulp; negative if it does not compute the block.
+  [[nodiscard]] double ulps(const numbers<double>& computed, std::size_t block) const {
+    return ulps(computed, values, block);
   }
-  /// How far a route is from another, in the same ulp.
+  /// Difference between two methods, in the same ulp.
   template <class T>
-  [[nodiscard]] double ulps(const numbers<double>& route, const numbers<T>& other,
+  [[nodiscard]] double ulps(const numbers<double>& computed, const numbers<T>& other,
                             std::size_t block) const {
     wide error = 0;
     for (std::size_t i = block * size; i < (block + 1) * size; ++i) {
-      if (!std::isfinite(route[i])) {
+      if (!std::isfinite(computed[i])) {
         return std::numeric_limits<double>::infinity();
       }
-      error = std::max<wide>(error, abs(wide(route[i] - wide(other[i]))));
+      error = std::max<wide>(error, abs(wide(computed[i] - wide(other[i]))));
     }
     return error == 0 ? 0 : double(wide(error / (scales[block] * wide(0x1p-53))));
   }
 
 private:
-  /// By differences of the closed first derivative, exact to about 28 digits.
+  /// Second derivative by differences of the closed first derivative, exact to about 28 digits.
   static numbers<wide> second_derivative(const formula& f, const numbers<wide>& x,
                                          const numbers<wide>& d) {
-    const wide h("1e-16"); // of a direction that has the size of the arguments
+    const wide h("1e-16"); // relative to a direction as large as the arguments
     numbers<wide> forth = x;
     numbers<wide> back = x;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -173,17 +173,17 @@ private:
   }
 };
 
-/// The worst errors of a formula's routes.
+/// Largest errors of a formula by each method.
 struct worst_errors {
-  double value = 0;  ///< of duet
-  double closed = 0; ///< of the textbook's derivative
-  double dual = 0;   ///< of derivatives over duals
-  double taylor = 0; ///< of first and second ones over Taylor numbers
-  double nested = 0; ///< and over nested duals
+  double value = 0;  ///< error of duet
+  double closed = 0; ///< error of the textbook's derivative
+  double dual = 0;   ///< error of derivatives over duals
+  double taylor = 0; ///< error of first and second derivatives over Taylor numbers
+  double nested = 0; ///< error of first and second derivatives over nested duals
   double highest = -1;
   std::string input;
-  double expression = 0; ///< of the row as an expression, value and first derivative
-  double from_dual = 0;  ///< of its first derivative from that over a dual
+  double expression = 0; ///< error of value and first derivative of the expression
+  double from_dual = 0;  ///< difference of its first derivative from that over a dual
   std::string input_of_expression;
 };
 
@@ -196,7 +196,7 @@ std::string text_of(const numbers<double>& x) {
   return text.str();
 }
 
-/// A random direction, every argument's as long as it is where only its own size gives a scale.
+/// A random direction; the part of an argument without another scale is as long as the argument.
 numbers<double> direction(const formula& f, const numbers<double>& x,
                           duet_test::random_source& random) {
   numbers<double> d;
@@ -259,10 +259,10 @@ worst_errors measured(const formula& f, const expression_route& expression) {
   return worst;
 }
 
-/// 1e-13 relative, in ulp.
+/// Relative error 1e-13 in ulp.
 constexpr double second_derivative_limit = 1e-13 / 0x1p-53;
 
-/// Two digits, and no more than it says about anything large.
+/// Two digits, or one digit for large numbers.
 std::string ulp_text(double x) {
   std::ostringstream text;
   if (x >= 1e4) {
@@ -273,15 +273,15 @@ std::string ulp_text(double x) {
   return text.str();
 }
 
-/// The one way in which a row is written as an expression.
+/// The expression of a row.
 expression_route expression_of(const formula& f, const std::vector<expression_route>& all) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const expression_route& e) {
+  const auto entry = std::find_if(all.begin(), all.end(), [&](const expression_route& e) {
     return e.label == f.label && e.function == f.function;
   });
   CAPTURE(f.label);
   CAPTURE(f.function);
-  REQUIRE(found != all.end());
-  return *found;
+  REQUIRE(entry != all.end());
+  return *entry;
 }
 
 /// The part of a row that does not depend on a measurement.
@@ -296,7 +296,7 @@ std::string row_of(const expression_route& e) {
 
 } // namespace
 
-TEST_CASE("every formula is as close to 50 digits as promised, and is in the table") {
+TEST_CASE("formulas: every formula is within its bounds of 50 digits and is in the table") {
   std::ifstream file(DUET_FORMULAS_PAGE);
   std::ostringstream page;
   page << file.rdbuf();
