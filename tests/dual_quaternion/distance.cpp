@@ -102,25 +102,25 @@ TEST_CASE("nearest_on_screw: finds poses on and near the screw motion") {
 TEST_CASE("nearest_on_screw: over several full turns no sampled pose is nearer") {
   const auto start = duet::pose(duet::from_rotation_vector(vector(0.2, -1, 0.4)), vector(1, 0, 2));
   const double full_turn = 6.283185307179586;
-  for (const double turn_count : {-2.5, 0.5, 1.0, 1.5, 2.0, 3.25, 5.0, 1e6}) {
+  for (const double revolutions : {-2.5, 0.5, 1.0, 1.5, 2.0, 3.25, 5.0, 1e6}) {
     for (const double pitch : {0.3, -0.01, 1e-6}) {
       const duet::screw_motion<double> motion = {vector(0, 0.6, 0.8), vector(0.5, 0, 0),
-                                                 turn_count * full_turn, turn_count * pitch,
+                                                 revolutions * full_turn, revolutions * pitch,
                                                  duet::screw_kind::screw};
       const auto at = [&](double tau) {
         return start * duet::from_screw(motion.axis, motion.moment, motion.angle * tau,
                                         motion.translation * tau);
       };
       for (const double tau : {0.0, 0.01, 0.25, 0.37, 0.5, 0.732, 0.99, 1.0}) {
-        CAPTURE(turn_count);
+        CAPTURE(revolutions);
         CAPTURE(pitch);
         CAPTURE(tau);
         for (const double characteristic_length : {0.0, 0.3, 3.0}) {
           const auto result = nearest_on_screw(start, motion, at(tau), characteristic_length);
-          CHECK_LT(std::abs(result.tau - tau), turn_count == 1e6 ? 1e-7 : 1e-9);
-          CHECK_LT(result.squared_distance, turn_count == 1e6 ? 1e-15 : 1e-24);
+          CHECK_LT(std::abs(result.tau - tau), revolutions == 1e6 ? 1e-7 : 1e-9);
+          CHECK_LT(result.squared_distance, revolutions == 1e6 ? 1e-15 : 1e-24);
         }
-        if (turn_count == 1e6) {
+        if (revolutions == 1e6) {
           continue;
         }
         // For poses far from the motion, rotated by nearly a half turn, two minima lie next to a
@@ -146,9 +146,9 @@ TEST_CASE("nearest_on_screw: finds a minimum next to the kink at a rotation angl
     const auto n = random.direction<3>();
     const vector axis(n[0], n[1], n[2]);
     const vector point(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
-    const double turn_count = random.uniform(.2, 3), pitch = random.uniform(-.3, .3);
+    const double revolutions = random.uniform(.2, 3), pitch = random.uniform(-.3, .3);
     const duet::screw_motion<double> motion = {axis, point.cross(axis),
-                                               turn_count * 6.283185307179586, turn_count * pitch,
+                                               revolutions * 6.283185307179586, revolutions * pitch,
                                                duet::screw_kind::screw};
     const auto d = random.direction<3>();
     const double angle =

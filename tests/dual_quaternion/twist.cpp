@@ -115,8 +115,8 @@ TEST_CASE("Jacobians of poses: the hybrid frame moves origin and rotation indepe
   for (const auto& a : poses()) {
     const duet::matrix3<double> R = duet::rotation_matrix(duet::rotation(a));
     const vector t = duet::translation(a);
-    const auto with_turn = [](const duet::matrix3<double>& by_v,
-                              const duet::matrix3<double>& by_w) {
+    const auto with_rotation = [](const duet::matrix3<double>& by_v,
+                                  const duet::matrix3<double>& by_w) {
       Eigen::Matrix<double, 3, 6> m;
       m << by_v, by_w;
       return m;
@@ -127,7 +127,7 @@ TEST_CASE("Jacobians of poses: the hybrid frame moves origin and rotation indepe
     const auto position = [](const auto& x) { return duet::transform_point(x, point); };
     CHECK(max_abs_difference(
               duet::jacobian<duet_test::shared_tag>(position, a, frame::hybrid).jacobian,
-              with_turn(one, -hat(R * point))) < 1e-14);
+              with_rotation(one, -hat(R * point))) < 1e-14);
 
     const auto same = [](const auto& x) { return x; };
     const auto [value, J] = duet::jacobian<duet_test::shared_tag>(same, a, frame::hybrid);
@@ -139,8 +139,9 @@ TEST_CASE("Jacobians of poses: the hybrid frame moves origin and rotation indepe
     const auto of_inverse =
         duet::jacobian<duet_test::shared_tag>(inverse, a, frame::hybrid).jacobian;
     CHECK(max_abs_difference(of_inverse.topRows<3>(),
-                             with_turn(-R.transpose(), -R.transpose() * hat(t))) < 4e-14);
-    CHECK(max_abs_difference(of_inverse.bottomRows<3>(), with_turn(zero, -R.transpose())) < 1e-14);
+                             with_rotation(-R.transpose(), -R.transpose() * hat(t))) < 4e-14);
+    CHECK(max_abs_difference(of_inverse.bottomRows<3>(), with_rotation(zero, -R.transpose())) <
+          1e-14);
   }
 }
 

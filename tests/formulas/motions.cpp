@@ -141,7 +141,7 @@ formula basis_functions() {
 }
 
 /// True if the shorter arc from each rotation to the next is unambiguous.
-bool turns_are_short(const numbers<double>& x) {
+bool arcs_are_short(const numbers<double>& x) {
   const auto q = still_rotations(x);
   bool is_valid = true;
   for (std::size_t i = 1; i < q.size(); ++i) {
@@ -175,7 +175,7 @@ formula cumulative_curve() {
         const cubic<T> c = cubic_of(x);
         return row<T>(c.q, c.omega, times(d[12], c.dq), times(d[12], c.domega));
       },
-      {16, 16}, turns_are_short);
+      {16, 16}, arcs_are_short);
   f.only_last_moves = true;
   return f;
 }
@@ -197,7 +197,7 @@ formula rate_of_curve(std::size_t order) {
         return order == 1 ? by_hand::row<T>(c.dq, by_hand::times(d[12], c.ddq))
                           : by_hand::row<T>(c.ddq, by_hand::times(d[12], c.dddq));
       },
-      {16, 16}, turns_are_short);
+      {16, 16}, arcs_are_short);
   f.only_last_moves = true;
   return f;
 }

@@ -285,8 +285,8 @@ struct manifold<quaternion<T>> {
   template <class Delta, class Frame = spatial_frame>
   [[nodiscard]] static auto plus(const quaternion<T>& q, const Delta& delta, Frame frame = {}) {
     using S = std::decay_t<decltype(delta[0])>;
-    const auto turn = duet::exp(vector3<S>(delta[0] / 2, delta[1] / 2, delta[2] / 2));
-    return detail::composed_in(detail::frame_of_turning(frame), turn, q);
+    const auto small_rotation = duet::exp(vector3<S>(delta[0] / 2, delta[1] / 2, delta[2] / 2));
+    return detail::composed_in(detail::frame_of_turning(frame), small_rotation, q);
   }
   static constexpr bool takes_rates_of_any_scalar = true;
   template <class R, class Frame>
