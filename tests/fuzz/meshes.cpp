@@ -34,8 +34,8 @@ std::vector<std::string> seeds() {
   };
   const std::string facet = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1e-1 0 0\n"
                             "  vertex 0 +2 -3.5\n endloop\nendfacet\n";
-  const std::string corners = "# a square\nmtllib a.mtl\no it\nv 0 0 0\nv 1 0 0 1\n"
-                              "v 1 1e-3 0 .1 .2 .3\nv 0 -1 0\nvt .5 .5\nvn 0 0 1\n";
+  const std::string vertices = "# a square\nmtllib a.mtl\no it\nv 0 0 0\nv 1 0 0 1\n"
+                               "v 1 1e-3 0 .1 .2 .3\nv 0 -1 0\nvt .5 .5\nvn 0 0 1\n";
   const std::string positions =
       "<source id=\"s\"><float_array id=\"a\" count=\"12\">0 0 0 1 0 0 1 1e-3 0 0 -1 "
       ".5</float_array>"
@@ -63,9 +63,9 @@ std::vector<std::string> seeds() {
       binary(0x3f800000),
       binary(no_number),
       "solid one\n" + facet + facet + "endsolid one\r\n\nsolid\n" + facet + "endsolid",
-      corners + "s off\nf 1//1 2//1 3/1/1 4\nf -1 -2 -3\n",
-      corners + "g a\nusemtl red\nf 1 2 3\nv 1 2 3\nf 3 4 5 1 2\nl 1 2\n",
-      "# C:\\\n" + corners + "f 1 2\\\n3 \\\r\n  4 \\\n",
+      vertices + "s off\nf 1//1 2//1 3/1/1 4\nf -1 -2 -3\n",
+      vertices + "g a\nusemtl red\nf 1 2 3\nv 1 2 3\nf 3 4 5 1 2\nl 1 2\n",
+      "# C:\\\n" + vertices + "f 1 2\\\n3 \\\r\n  4 \\\n",
       collada(faces("triangles", "<p>0 1 2 3 2 1</p>") + faces("lines", "<p>0 1</p>"),
               "<node id=\"m\"><translate>1 2 3</translate><rotate>0 0 1 90</rotate>"
               "<scale>-1 2 1</scale>" +
@@ -83,13 +83,13 @@ void target(const std::string& input) {
     const std::string path = "fuzz_meshes" + ending;
     std::ofstream(path, std::ios::binary) << input;
     try {
-      const auto corners = duet::read_mesh(path).corners;
-      duet_fuzz::require(!corners.empty() && corners.size() % 3 == 0, "triangles");
+      const auto vertices = duet::read_mesh(path).vertices;
+      duet_fuzz::require(!vertices.empty() && vertices.size() % 3 == 0, "triangles");
       // A triangle takes at least two bytes, for each further vertex of a face; COLLADA files may
       // instantiate meshes repeatedly.
-      duet_fuzz::require(corners.size() / 3 <= (ending == ".dae" ? 5'000'000 : input.size() / 2),
+      duet_fuzz::require(vertices.size() / 3 <= (ending == ".dae" ? 5'000'000 : input.size() / 2),
                          "in proportion to the file");
-      for (const auto& x : corners) {
+      for (const auto& x : vertices) {
         for (const double each : x) {
           duet_fuzz::require(std::isfinite(each), "finite corners");
         }

@@ -148,19 +148,19 @@ TEST_CASE("chains that the compiler knows: what is made of them it knows, too") 
                 Eigen::Vector3d(0, 0, 2) +
                 translation(arm.pose(theta)).cwiseProduct(Eigen::Vector3d(1, -1, -1)))) < 4e-15);
   // To the end: the goal of the tool is the tool's.
-  const auto found = inverse_kinematics(six, expected, Eigen::Matrix<double, 6, 1>::Zero().eval());
-  CHECK(found.reason == stop_reason::reached);
-  CHECK(max_abs_difference(translation(six.pose(found.joints)), translation(expected)) < 1e-6);
+  const auto result = inverse_kinematics(six, expected, Eigen::Matrix<double, 6, 1>::Zero().eval());
+  CHECK(result.reason == stop_reason::reached);
+  CHECK(max_abs_difference(translation(six.pose(result.joints)), translation(expected)) < 1e-6);
 }
 
 TEST_CASE("to fifty digits") {
   using real = duet_test::real_50;
-  duet_test::for_each_arm([](const auto& given) {
-    constexpr int n = std::decay_t<decltype(given)>::joints;
+  duet_test::for_each_arm([](const auto& arm_in_double) {
+    constexpr int n = std::decay_t<decltype(arm_in_double)>::joints;
     std::array<joint<real>, n> joints;
     for (int i = 0; i < n; ++i) {
       auto& each = joints[std::size_t(i)];
-      each.kind = given.kind(i);
+      each.kind = arm_in_double.kind(i);
       const auto axis = normalized(quaternion<real>(0, i + 1, 2 - i, real(1) / 3));
       each.axis = {axis.x(), axis.y(), axis.z()};
       each.origin = {normalized(quaternion<real>(1, i, 2, -i)), {real(i) / 7, 1, real(2) / 3}};
@@ -175,9 +175,9 @@ TEST_CASE("to fifty digits") {
       Eigen::Matrix<real, n - 1, 1> rest;
       rest << theta.head(i), theta.tail(n - 1 - i);
       const auto locked = with_locked_joint(arm, i, theta[i]);
-      const auto apart =
+      const auto difference =
           (transform_matrix(locked.pose(rest)) - transform_matrix(arm.pose(theta))).eval();
-      CHECK(apart.norm() < real("1e-47"));
+      CHECK(difference.norm() < real("1e-47"));
     }
   });
 }

@@ -32,7 +32,7 @@ using duet_test::at_point;
 using duet_test::coordinates_of;
 using duet_test::four_bar;
 using duet_test::max_abs_difference;
-using duet_test::place;
+using duet_test::placement_at;
 using duet_test::revolute_joint;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
@@ -45,15 +45,16 @@ VectorXd vector(std::initializer_list<double> x) {
 constexpr int kinds = int(constraint_kind::distance) + 1;
 
 /// A body that floats, held by one loop of a kind; both frames turned and displaced.
-closed_chain_mechanism held_body(constraint_kind kind, double scale = 1) {
+closed_chain_mechanism constrained_body(constraint_kind kind, double scale = 1) {
   robot_description robot;
   robot.links = {{"base"}, {"body"}};
   robot.joints = {{"free", "base", "body", {joint_kind::floating}}};
   return closed_chain_mechanism(
-      kinematic_tree(robot), {{{kind,
-                                {"base", place(.3, -.2, .5, .4 * scale, .1 * scale, -.2 * scale)},
-                                {"body", place(-.1, .7, .2, -.3 * scale, .2 * scale, .5 * scale)},
-                                .8 * scale}}});
+      kinematic_tree(robot),
+      {{{kind,
+         {"base", placement_at(.3, -.2, .5, .4 * scale, .1 * scale, -.2 * scale)},
+         {"body", placement_at(-.1, .7, .2, -.3 * scale, .2 * scale, .5 * scale)},
+         .8 * scale}}});
 }
 
 /// The pose of the second frame in the first.
@@ -73,7 +74,7 @@ TEST_CASE("what loops of every kind leave: equations, and frames that they hold"
   for (int k = 0; k < kinds; ++k) {
     const auto kind = constraint_kind(k);
     CAPTURE(std::string(to_text(kind)));
-    const closed_chain_mechanism mechanism = held_body(kind);
+    const closed_chain_mechanism mechanism = constrained_body(kind);
     CHECK(mechanism.equations() == equations[std::size_t(k)]);
     for (int i = 0; i < 5; ++i) {
       VectorXd guess(6);
@@ -134,10 +135,11 @@ TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, again
   loop_constraints loops;
   const std::array links{"finger", "cart", "flange", "screw", "tool", "thumb", "body", "hand"};
   for (int k = 0; k < kinds; ++k) {
-    loops.loops.push_back({constraint_kind(k),
-                           {links[std::size_t(k)], place(.3, .1 * k, -.2, .2, -.1, .3)},
-                           {links[std::size_t(k + 3) % 8], place(-.4, .2, .1 * k, 0, .4, .1)},
-                           .5 + k});
+    loops.loops.push_back(
+        {constraint_kind(k),
+         {links[std::size_t(k)], placement_at(.3, .1 * k, -.2, .2, -.1, .3)},
+         {links[std::size_t(k + 3) % 8], placement_at(-.4, .2, .1 * k, 0, .4, .1)},
+         .5 + k});
   }
   const closed_chain_mechanism mechanism(tree, loops);
   for (const VectorXd& q : coordinates_of(tree, 10)) {
@@ -152,8 +154,8 @@ TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, again
 TEST_CASE("nothing depends on the unit of length") {
   const double mm = 1000;
   for (int k = 0; k < kinds; ++k) {
-    const closed_chain_mechanism in_m = held_body(constraint_kind(k)),
-                                 in_mm = held_body(constraint_kind(k), mm);
+    const closed_chain_mechanism in_m = constrained_body(constraint_kind(k)),
+                                 in_mm = constrained_body(constraint_kind(k), mm);
     const VectorXd guess = vector({.3, -.4, .2, .5, 1.1, -.7});
     VectorXd scaled = guess;
     scaled.head<3>() *= mm;
@@ -171,16 +173,16 @@ TEST_CASE("all positions of a four-bar are those of Freudenstein's equation") {
   const double a = .2, b = .5, c = .4, d = .55;
   const closed_chain_mechanism mechanism = four_bar(a, b, c, d);
   for (const double theta : {-2.5, 0., .4, 2., 3.1}) {
-    const auto found =
+    const auto search =
         find_assembly_configurations(mechanism, {0}, vector({theta}), {.random_starts = 30});
-    CHECK(found.missing_probability() == 0);
-    REQUIRE(found.positions.size() == 2);
+    CHECK(search.missing_probability() == 0);
+    REQUIRE(search.positions.size() == 2);
     const double k = a * std::cos(theta) - d, s = a * std::sin(theta);
     const double q = (c * c + k * k + s * s - b * b) / (2 * c);
     for (const double side : {-1., 1.}) {
       const double psi = std::atan2(s, k) + side * std::atan2(std::sqrt(k * k + s * s - q * q), q);
       double nearest = 1;
-      for (const assembly_configuration& each : found.positions) {
+      for (const assembly_configuration& each : search.positions) {
         CHECK(each.smallest_singular_value > .01);
         nearest = std::min(
             nearest, std::abs(std::remainder(each.coordinates[2] - psi, 2 * std::numbers::pi)));
@@ -203,10 +205,10 @@ TEST_CASE("limits of joints bound where positions are looked for, and are report
   const closed_chain_mechanism mechanism(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"coupler", at_point(.5, 0)}, {"rocker", at_point(.4, 0)}}}});
-  const auto found =
+  const auto search =
       find_assembly_configurations(mechanism, {0}, vector({2}), {.random_starts = 40});
   int within = 0;
-  for (const assembly_configuration& each : found.positions) {
+  for (const assembly_configuration& each : search.positions) {
     CHECK(each.within_limits == (each.coordinates[2] >= 0 && each.coordinates[2] <= 3));
     within += each.within_limits ? 1 : 0;
   }
@@ -222,8 +224,8 @@ TEST_CASE("held coordinates stay, and the way to the position is short") {
   CHECK(max_abs_difference(q, again) < 1e-14);
   // From a little beside the curve of positions straight back to it: across its tangent.
   const VectorXd tangent = detail::linearised(mechanism, q).kernel();
-  const VectorXd beside = q + 1e-4 * vector({.3, .5, -.2});
-  CHECK(std::abs((mechanism.closed(beside) - beside).dot(tangent)) < 1e-8);
+  const VectorXd nearby = q + 1e-4 * vector({.3, .5, -.2});
+  CHECK(std::abs((mechanism.closed(nearby) - nearby).dot(tangent)) < 1e-8);
 }
 
 TEST_CASE("what is wrong with loops") {
@@ -279,21 +281,23 @@ TEST_CASE("an axis in any direction") {
 
 TEST_CASE("positions are looked for until another one is improbable, or guesses run out") {
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  const auto found = [&](const std::vector<int>& held, const assembly_search_options& options) {
-    return find_assembly_configurations(mechanism, held,
-                                        VectorXd::Constant(Eigen::Index(held.size()), 2), options);
+  const auto search = [&](const std::vector<int>& fixed, const assembly_search_options& options) {
+    return find_assembly_configurations(mechanism, fixed,
+                                        VectorXd::Constant(Eigen::Index(fixed.size()), 2), options);
   };
-  CHECK(found({0}, {}).starts == 200);
-  const assembly_search_result until = found({0}, {.random_starts = 1, .missing_probability = .02});
+  CHECK(search({0}, {}).starts == 200);
+  const assembly_search_result until =
+      search({0}, {.random_starts = 1, .missing_probability = .02});
   CHECK(until.positions.size() == 2);
   CHECK(until.closed == 50); // 1 / 50 is no more than the chance
   CHECK(until.missing_probability() == 0);
-  CHECK(found({0}, {.random_starts = 70, .missing_probability = .02}).starts == 70);
-  CHECK(found({0}, {.random_starts = 1, .missing_probability = 0, .max_starts = 60}).starts == 60);
-  CHECK(found({0}, {.random_starts = 80, .missing_probability = 0, .max_starts = 60}).starts == 80);
+  CHECK(search({0}, {.random_starts = 70, .missing_probability = .02}).starts == 70);
+  CHECK(search({0}, {.random_starts = 1, .missing_probability = 0, .max_starts = 60}).starts == 60);
+  CHECK(search({0}, {.random_starts = 80, .missing_probability = 0, .max_starts = 60}).starts ==
+        80);
   // Nothing is held: each guess finds another one.
   const assembly_search_result curve =
-      found({}, {.random_starts = 1, .missing_probability = .5, .max_starts = 90});
+      search({}, {.random_starts = 1, .missing_probability = .5, .max_starts = 90});
   CHECK(curve.starts == 90);
   CHECK(int(curve.positions.size()) == curve.closed);
 }

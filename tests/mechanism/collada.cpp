@@ -26,18 +26,18 @@ triangle_mesh read(const std::string& text) {
   return read_mesh(path);
 }
 /// What is wrong, behind the file's name.
-std::string fault(const std::string& text) {
+std::string error_of(const std::string& text) {
   const std::string message = duet_test::message_of<file_error>([&] { (void)read(text); });
   const std::string begin = "duet: " + path + ":";
   return message.starts_with(begin) ? message.substr(begin.size()) : message;
 }
-void check_corners(const triangle_mesh& m, const std::vector<point>& wanted) {
-  REQUIRE(m.corners.size() == wanted.size());
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
+void check_vertices(const triangle_mesh& m, const std::vector<point>& expected) {
+  REQUIRE(m.vertices.size() == expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       CAPTURE(i);
       CAPTURE(k);
-      CHECK(std::abs(m.corners[i][k] - wanted[i][k]) < 1e-12);
+      CHECK(std::abs(m.vertices[i][k] - expected[i][k]) < 1e-12);
     }
   }
 }
@@ -46,8 +46,8 @@ void check_corners(const triangle_mesh& m, const std::vector<point>& wanted) {
 /// are turned.
 double six_volumes(const triangle_mesh& m) {
   double sum = 0;
-  for (std::size_t i = 0; i < m.corners.size(); i += 3) {
-    const auto &a = m.corners[i], &b = m.corners[i + 1], &c = m.corners[i + 2];
+  for (std::size_t i = 0; i < m.vertices.size(); i += 3) {
+    const auto &a = m.vertices[i], &b = m.vertices[i + 1], &c = m.vertices[i + 2];
     sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
            a[2] * (b[0] * c[1] - b[1] * c[0]);
   }
@@ -96,51 +96,53 @@ std::string changed(std::string text, const std::string& from, const std::string
 } // namespace
 
 TEST_CASE("faces of every kind") {
-  check_corners(read(of_mesh(sources + triangle)), {p[0], p[1], p[2]});
-  check_corners(read(of_mesh(sources + "<lines count=\"1\">" + input + "<p>0 1</p></lines>" +
-                             "<polylist count=\"2\">" + input +
-                             "<input semantic=\"NORMAL\" source=\"#n\" offset=\"2\"/>"
-                             "<vcount>4 3</vcount><p>0 9 9 1 9 9 2 9 9 3 9 9 4 9 9 1 9 9 2 9 9</p>"
-                             "</polylist><extra/>")),
-                {p[0], p[1], p[2], p[0], p[2], p[3], p[4], p[1], p[2]});
-  check_corners(read(of_mesh(sources + "<polygons count=\"2\">" + input +
-                             "<p>3 2 1</p><p>0 1 2 3</p></polygons>")),
-                {p[3], p[2], p[1], p[0], p[1], p[2], p[0], p[2], p[3]});
-  check_corners(
+  check_vertices(read(of_mesh(sources + triangle)), {p[0], p[1], p[2]});
+  check_vertices(read(of_mesh(sources + "<lines count=\"1\">" + input + "<p>0 1</p></lines>" +
+                              "<polylist count=\"2\">" + input +
+                              "<input semantic=\"NORMAL\" source=\"#n\" offset=\"2\"/>"
+                              "<vcount>4 3</vcount><p>0 9 9 1 9 9 2 9 9 3 9 9 4 9 9 1 9 9 2 9 9</p>"
+                              "</polylist><extra/>")),
+                 {p[0], p[1], p[2], p[0], p[2], p[3], p[4], p[1], p[2]});
+  check_vertices(read(of_mesh(sources + "<polygons count=\"2\">" + input +
+                              "<p>3 2 1</p><p>0 1 2 3</p></polygons>")),
+                 {p[3], p[2], p[1], p[0], p[1], p[2], p[0], p[2], p[3]});
+  check_vertices(
       read(of_mesh(sources + "<trifans>" + input + "<p>4 0 1 2</p><p>0 1 2</p></trifans>")),
       {p[4], p[0], p[1], p[4], p[1], p[2], p[0], p[1], p[2]});
-  check_corners(
+  check_vertices(
       read(of_mesh(sources + "<tristrips count=\"1\">" + input + "<p>0 1 2 3 4</p></tristrips>")),
       {p[0], p[1], p[2], p[1], p[3], p[2], p[2], p[3], p[4]});
   // Corners whose first number is that of a normal.
-  check_corners(read(of_mesh(sources + "<triangles count=\"1\">" +
-                             changed(input, "offset=\"0\"", "offset=\"1\"") +
-                             "<p>7 3 7 2 7 1</p></triangles>")),
-                {p[3], p[2], p[1]});
-  check_corners(read(of_mesh(sources + "<triangles count=\"0\"/>" + triangle)), {p[0], p[1], p[2]});
+  check_vertices(read(of_mesh(sources + "<triangles count=\"1\">" +
+                              changed(input, "offset=\"0\"", "offset=\"1\"") +
+                              "<p>7 3 7 2 7 1</p></triangles>")),
+                 {p[3], p[2], p[1]});
+  check_vertices(read(of_mesh(sources + "<triangles count=\"0\"/>" + triangle)),
+                 {p[0], p[1], p[2]});
 }
 
 TEST_CASE("positions by offset, stride and names of parameters") {
-  const std::string apart =
+  const std::string interleaved =
       "<source id=\"s\"><float_array id=\"a\" count=\"12\">7 8 1 2 3 9 9 4 5 6 9 9"
       "</float_array><technique_common><accessor source=\"#a\" count=\"2\" "
       "offset=\"1\" stride=\"5\"><param/><param name=\"Z\"/><param name=\"X\"/>"
       "<param name=\"Y\"/></accessor></technique_common></source>"
       "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#s\"/></vertices>";
-  check_corners(read(of_mesh(apart + "<triangles>" + input + "<p>0 1 0</p></triangles>")),
-                {{2, 3, 1}, {5, 6, 4}, {2, 3, 1}});
+  check_vertices(read(of_mesh(interleaved + "<triangles>" + input + "<p>0 1 0</p></triangles>")),
+                 {{2, 3, 1}, {5, 6, 4}, {2, 3, 1}});
   // The last position may end with the last number.
-  const std::string whole = changed(changed(apart, " 6 9 9", " 6"), "\"12\"", "\"10\"");
-  CHECK(read(of_mesh(whole + "<triangles>" + input + "<p>0 1 0</p></triangles>")).corners[1] ==
+  const std::string whole = changed(changed(interleaved, " 6 9 9", " 6"), "\"12\"", "\"10\"");
+  CHECK(read(of_mesh(whole + "<triangles>" + input + "<p>0 1 0</p></triangles>")).vertices[1] ==
         point{5, 6, 4});
-  CHECK(fault(of_mesh(changed(changed(whole, " 6", ""), "\"10\"", "\"9\"") + triangle)) ==
+  CHECK(error_of(of_mesh(changed(changed(whole, " 6", ""), "\"10\"", "\"9\"") + triangle)) ==
         "3: <accessor>: 2 positions reach beyond the 9 numbers of line 3");
-  const std::string far = changed(apart, "count=\"2\" offset=\"1\"", "count=\"3\" offset=\"1\"");
-  CHECK(fault(of_mesh(far + triangle)) ==
+  const std::string far =
+      changed(interleaved, "count=\"2\" offset=\"1\"", "count=\"3\" offset=\"1\"");
+  CHECK(error_of(of_mesh(far + triangle)) ==
         "3: <accessor>: 3 positions reach beyond the 12 numbers of line 3");
-  CHECK(fault(of_mesh(changed(apart, "stride=\"5\"", "stride=\"3\"") + triangle)) ==
+  CHECK(error_of(of_mesh(changed(interleaved, "stride=\"5\"", "stride=\"3\"") + triangle)) ==
         "3: <accessor>: stride=\"3\" for 4 parameters");
-  CHECK(fault(of_mesh(changed(apart, "\"Y\"", "\"T\"") + triangle)) ==
+  CHECK(error_of(of_mesh(changed(interleaved, "\"Y\"", "\"T\"") + triangle)) ==
         "3: <accessor>: no <param name=\"Y\"> for positions");
 }
 
@@ -151,33 +153,33 @@ TEST_CASE("nodes place what is in them, and units are metres") {
   };
   const std::string before = "<translate>1 2 3</translate><rotate sid=\"r\">0 0 2 90</rotate>"
                              "<scale>3 5 7</scale>";
-  const std::vector<point> wanted = {moved(p[0]), moved(p[1]), moved(p[2])};
-  check_corners(
+  const std::vector<point> expected = {moved(p[0]), moved(p[1]), moved(p[2])};
+  check_vertices(
       read(document(sources + triangle, "<node><scale>2 2 2</scale>" + before + shown + "</node>")),
-      wanted);
-  check_corners(
+      expected);
+  check_vertices(
       read(document(sources + triangle,
                     "<node name=\"a\">\n<translate>1 2 3</translate>\n"
                     "<node><rotate>0 0 1 90</rotate><scale>3 5 7</scale>" +
                         shown + "</node></node>\n",
                     "<asset><unit name=\"two\" meter=\"2\"/><up_axis>Y_UP</up_axis></asset>")),
-      wanted);
+      expected);
   // The same as one matrix, row by row, through an instance of a node of a library.
-  check_corners(
+  check_vertices(
       read(changed(document(sources + triangle,
                             "<node><scale>2 2 2</scale><instance_node url=\"#n\"/></node>"),
                    "<library_visual",
                    "<library_nodes><node id=\"n\"><matrix>0 -5 0 1 3 0 0 2 0 0 7 3 0 0 0 1"
                    "</matrix>" +
                        shown + "</node></library_nodes><library_visual")),
-      wanted);
-  check_corners(read(of_node("<rotate>0 0 0 0</rotate><rotate>1 0 0 90</rotate>")),
-                {p[0], p[1], {1, 0, 1}});
+      expected);
+  check_vertices(read(of_node("<rotate>0 0 0 0</rotate><rotate>1 0 0 90</rotate>")),
+                 {p[0], p[1], {1, 0, 1}});
   for (const char* axis : {"X_UP", "Y_UP", " Z_UP\n"}) { // turns nothing
-    check_corners(read(with_asset(std::string("<unit/><up_axis>") + axis + "</up_axis>")),
-                  {p[0], p[1], p[2]});
+    check_vertices(read(with_asset(std::string("<unit/><up_axis>") + axis + "</up_axis>")),
+                   {p[0], p[1], p[2]});
   }
-  check_corners(read(with_asset("<unit meter=\"1e-2\"/>")), {p[0], {.01, 0, 0}, {.01, .01, 0}});
+  check_vertices(read(with_asset("<unit meter=\"1e-2\"/>")), {p[0], {.01, 0, 0}, {.01, .01, 0}});
 }
 
 TEST_CASE("what is mirrored has its outside outside") {
@@ -191,19 +193,19 @@ TEST_CASE("what is mirrored has its outside outside") {
 }
 
 TEST_CASE("a scene that is not shown, cameras, lights and lines") {
-  CHECK(fault(changed(of_mesh(sources + triangle), shown,
-                      "<instance_light url=\"#l\"/><instance_camera url=\"#c\"/>")) ==
+  CHECK(error_of(changed(of_mesh(sources + triangle), shown,
+                         "<instance_light url=\"#l\"/><instance_camera url=\"#c\"/>")) ==
         " has no triangles");
   const std::string two = changed(of_mesh(sources + triangle), "<visual_scene id=\"w\">",
                                   "<visual_scene id=\"other\"><node>" + shown + shown +
                                       "</node></visual_scene><visual_scene id=\"w\">");
-  CHECK(read(two).corners.size() == 3);
-  CHECK(fault(changed(two, "<scene><instance_visual_scene url=\"#w\"/></scene>", "")) ==
+  CHECK(read(two).vertices.size() == 3);
+  CHECK(error_of(changed(two, "<scene><instance_visual_scene url=\"#w\"/></scene>", "")) ==
         "2: <COLLADA>: no element <scene>");
 }
 
 TEST_CASE("what is wrong with faces: where, and what") {
-  const auto of_faces = [](const std::string& faces) { return fault(of_mesh(sources + faces)); };
+  const auto of_faces = [](const std::string& faces) { return error_of(of_mesh(sources + faces)); };
   const auto of_triangle = [&](const std::string& from, const std::string& to) {
     return of_faces(changed(triangle, from, to));
   };
@@ -248,7 +250,7 @@ TEST_CASE("what is wrong with faces: where, and what") {
 TEST_CASE("what is wrong with numbers and what names them") {
   const std::string good = of_mesh(sources + triangle);
   const auto with = [&](const std::string& from, const std::string& to) {
-    return fault(changed(good, from, to));
+    return error_of(changed(good, from, to));
   };
   CHECK(with("1 1 0", "1 nan 0") == "3: <float_array id=\"a\">: number 7, \"nan\", is not finite");
   CHECK(with("1 1 0", "1 1,5 0") == "3: <float_array id=\"a\">: number 7, \"1,5\", is no number");
@@ -267,56 +269,58 @@ TEST_CASE("what is wrong with numbers and what names them") {
         "6: <technique_common>: is there twice, first in line 6");
   CHECK(with("<vertices id", "<source id=\"s\"/>\n<vertices id") ==
         "7: <source id=\"s\">: the id is there twice, first in line 3");
-  CHECK(fault(changed(changed(good, "<mesh>", "<spline>"), "</mesh>", "</spline>")) ==
+  CHECK(error_of(changed(changed(good, "<mesh>", "<spline>"), "</mesh>", "</spline>")) ==
         "2: <geometry id=\"g\">: no element <mesh>");
-  CHECK(fault(of_mesh(sources + triangle + "</mesh><mesh>")) ==
+  CHECK(error_of(of_mesh(sources + triangle + "</mesh><mesh>")) ==
         "9: <mesh>: is there twice, first in line 2");
-  CHECK(fault("<robot name=\"r\"/>") == "1: the root is <robot>, not <COLLADA>");
-  CHECK(fault("<COLLADA>") == "1: no element found, in <COLLADA> of line 1");
-  CHECK(fault("") == "1: no element found");
+  CHECK(error_of("<robot name=\"r\"/>") == "1: the root is <robot>, not <COLLADA>");
+  CHECK(error_of("<COLLADA>") == "1: no element found, in <COLLADA> of line 1");
+  CHECK(error_of("") == "1: no element found");
 }
 
 TEST_CASE("what is wrong with nodes, units and directions") {
-  CHECK(fault(of_node("<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0</matrix>")) ==
+  CHECK(error_of(of_node("<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0</matrix>")) ==
         "11: <matrix>: has 15 numbers in place of 16");
-  CHECK(fault(of_node("<matrix>1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1</matrix>")) ==
+  CHECK(error_of(of_node("<matrix>1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1</matrix>")) ==
         "11: <matrix>: its last row is not 0 0 0 1");
-  CHECK(fault(of_node("<translate>1 2</translate>")) ==
+  CHECK(error_of(of_node("<translate>1 2</translate>")) ==
         "11: <translate>: has 2 numbers in place of 3");
-  CHECK(fault(of_node("<rotate>0 0 0 1</rotate>")) ==
+  CHECK(error_of(of_node("<rotate>0 0 0 1</rotate>")) ==
         "11: <rotate>: turns about an axis of no length");
-  CHECK(fault(of_node("<lookat>0 0 0 1 0 0 0 0 1</lookat>")) == "11: <lookat>: is not supported");
-  CHECK(fault(of_node("<skew>45 1 0 0 0 1 0</skew>")) == "11: <skew>: is not supported");
-  CHECK(fault(of_node("<translation>1 2 3</translation>")) ==
+  CHECK(error_of(of_node("<lookat>0 0 0 1 0 0 0 0 1</lookat>")) ==
+        "11: <lookat>: is not supported");
+  CHECK(error_of(of_node("<skew>45 1 0 0 0 1 0</skew>")) == "11: <skew>: is not supported");
+  CHECK(error_of(of_node("<translation>1 2 3</translation>")) ==
         "11: <translation>: is not known in <node>");
-  CHECK(fault(of_node("<instance_controller url=\"#skin\"/>")) ==
+  CHECK(error_of(of_node("<instance_controller url=\"#skin\"/>")) ==
         "11: <instance_controller>: skins and morphs are not supported");
-  CHECK(fault(of_node("<scale>1e200 1 1</scale><scale>1e200 1 1</scale>")) ==
+  CHECK(error_of(of_node("<scale>1e200 1 1</scale><scale>1e200 1 1</scale>")) ==
         "11: <instance_geometry>: a corner is not finite where it is placed");
-  CHECK(fault(of_node("<asset><unit meter=\".1\"/></asset>")) ==
+  CHECK(error_of(of_node("<asset><unit meter=\".1\"/></asset>")) ==
         "11: <unit>: a unit of <node> alone is not supported");
-  CHECK(fault(with_asset("<unit meter=\"0,01\"/>")) ==
+  CHECK(error_of(with_asset("<unit meter=\"0,01\"/>")) ==
         "2: <unit>: meter=\"0,01\" is no number above 0");
-  CHECK(fault(with_asset("<unit meter=\"0\"/>")) == "2: <unit>: meter=\"0\" is no number above 0");
-  CHECK(fault(with_asset("<unit meter=\"inf\"/>")) ==
+  CHECK(error_of(with_asset("<unit meter=\"0\"/>")) ==
+        "2: <unit>: meter=\"0\" is no number above 0");
+  CHECK(error_of(with_asset("<unit meter=\"inf\"/>")) ==
         "2: <unit>: meter=\"inf\" is no number above 0");
-  CHECK(fault(with_asset("<up_axis>Z</up_axis>")) ==
+  CHECK(error_of(with_asset("<up_axis>Z</up_axis>")) ==
         "2: <up_axis>: \"Z\" is none of X_UP, Y_UP and Z_UP");
 }
 
 TEST_CASE("instances in a circle, and too many of them") {
   const std::string own = "<node id=\"n\"><instance_node url=\"#n\"/></node>";
-  CHECK(fault(document(sources + triangle, own)) ==
+  CHECK(error_of(document(sources + triangle, own)) ==
         "11: <node id=\"n\">: nodes are nested more than 100 deep, or in a circle");
   std::string nodes = "<node id=\"n0\">" + shown + "</node>\n";
   for (int i = 1; i <= 60; ++i) { // 2^60 triangles
     const std::string one = "<instance_node url=\"#n" + std::to_string(i - 1) + "\"/>";
     nodes += "<node id=\"n" + std::to_string(i) + "\">" + one + one + "</node>\n";
   }
-  CHECK(fault(document(sources + triangle, nodes))
+  CHECK(error_of(document(sources + triangle, nodes))
             .ends_with("<instance_node>: the scene has more than 5 million triangles"));
   // Without triangles there is nothing to place.
-  CHECK(fault(document(sources, nodes)) == " has no triangles");
+  CHECK(error_of(document(sources, nodes)) == " has no triangles");
 }
 
 } // namespace test_mechanism_collada

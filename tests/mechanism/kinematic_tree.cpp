@@ -35,7 +35,7 @@ dual_quaternion<double> pose_of(const placement<double>& at) { return at.pose();
 /// What functions are asked about: links before and behind others, on the root, points, and frames
 /// seen from others, above, below and beside them.
 template <class F>
-void for_each_place(const kinematic_tree& tree, F&& f) {
+void for_each_frame_of_interest(const kinematic_tree& tree, F&& f) {
   const auto hand = tree.link("hand").at_point({.3, -.2, .5});
   f(tree.link("finger"));
   f(tree.link("flange"));
@@ -164,7 +164,7 @@ TEST_CASE("the plane of a planar joint, also where its axis is near -z") {
 TEST_CASE("Jacobians of frames, points and relative poses against dual numbers") {
   const kinematic_tree tree(all_joints());
   for (const VectorXd& q : coordinates_of(tree, 5)) {
-    for_each_place(tree, [&](const auto& at) {
+    for_each_frame_of_interest(tree, [&](const auto& at) {
       for_each_frame([&](auto frame) {
         const auto by_duals = jacobian<duet_test::shared_tag>(
             [&](const auto& x) { return tree.pose(x, at); }, q, frame);
@@ -187,7 +187,7 @@ TEST_CASE("rates and Hessians against derivatives of the Jacobian") {
   duet_test::random_source random(5);
   for (const VectorXd& q : coordinates_of(tree, 2)) {
     const VectorXd v = random_vector(q.size(), random);
-    for_each_place(tree, [&](const auto& at) {
+    for_each_frame_of_interest(tree, [&](const auto& at) {
       for_each_frame([&](auto frame) {
         const auto [m, m_dot] = derivative<duet_test::shared_tag>(
             [&](const auto& t) { return jacobian(tree, along(q, v, t), frame, at); }, 0.0);
@@ -292,7 +292,7 @@ TEST_CASE("50 digits, also near full turns of a floating base") {
 
 TEST_CASE("one body alone; a fixed one beside it") {
   const kinematic_tree alone(
-      {.links = {{"a", link_inertia{2, duet_test::place(0, 0, 0, 1, 2, 3)}}}});
+      {.links = {{"a", link_inertia{2, duet_test::placement_at(0, 0, 0, 1, 2, 3)}}}});
   const VectorXd none(0);
   CHECK(alone.size() == 0);
   CHECK(alone.poses(none).size() == 1);
@@ -347,7 +347,7 @@ TEST_CASE("paths of all lengths, with balls anywhere on them, are walked alike")
         {name,
          std::to_string(i - 1),
          name,
-         {kind, duet_test::place(.1 * i, 1, -.2, .02, .1, .01 * i), {0, .6, .8}}});
+         {kind, duet_test::placement_at(.1 * i, 1, -.2, .02, .1, .01 * i), {0, .6, .8}}});
   }
   const kinematic_tree tree(robot);
   const VectorXd q = random_vector(tree.size(), random);
@@ -360,9 +360,9 @@ TEST_CASE("paths of all lengths, with balls anywhere on them, are walked alike")
     if (moves.kind == joint_kind::prismatic) {
       at = at * pose(quaternion<double>(1), Vector3d(q[k] * axis));
     } else {
-      const Vector3d turn =
+      const Vector3d rotated_by =
           moves.kind == joint_kind::spherical ? Vector3d(q.segment<3>(k)) : Vector3d(q[k] * axis);
-      at = at * pose(from_rotation_vector(turn), Vector3d(0, 0, 0));
+      at = at * pose(from_rotation_vector(rotated_by), Vector3d(0, 0, 0));
     }
     k += moves.coordinates();
     CHECK(max_abs_difference(transform_matrix(tree.pose(q, i)), transform_matrix(at)) < 1e-13);
@@ -426,54 +426,54 @@ TEST_CASE("joints that follow narrow the limits of what they follow") {
   CHECK(upper_limits(tree)[0] == limits.upper);
   CHECK(translation(tree.pose(Eigen::Matrix<double, 1, 1>(.1), 3))[2] ==
         doctest::Approx(-.3).epsilon(1e-15));
-  const auto says = [&] { return duet_test::message_of([&] { (void)kinematic_tree(robot); }); };
+  const auto error_of = [&] { return duet_test::message_of([&] { (void)kinematic_tree(robot); }); };
   robot.joints[1].motion.limits = {2.2, 3};
-  CHECK(says() ==
+  CHECK(error_of() ==
         "duet: kinematic_tree: <joint name=\"q\">: no motion of \"p\" is within its limits, "
         "2.2 to 3");
   robot.joints[1].motion.limits = {-3, 3};
   robot.joints[1].mimic->multiplier = 0;
   CHECK(kinematic_tree(robot).limits(0).upper == 2);
   robot.joints[1].mimic->offset = 4;
-  CHECK(says() ==
+  CHECK(error_of() ==
         "duet: kinematic_tree: <joint name=\"q\">: no motion of \"p\" is within its limits, "
         "-3 to 3");
   robot.joints[1].mimic->offset = NAN;
-  CHECK(says() ==
+  CHECK(error_of() ==
         "duet: kinematic_tree: <joint name=\"q\">: the multiplier or the offset by which it "
         "follows is not finite");
 }
 
 TEST_CASE("what is no tree") {
-  const auto says = [](const robot_description& robot) {
+  const auto error_of = [](const robot_description& robot) {
     return duet_test::message_of([&] { (void)kinematic_tree(robot); });
   };
   const std::string begin = "duet: kinematic_tree: ";
   const std::string p = begin + "<joint name=\"p\">: ";
   const std::vector<tree_link> links = {{"a"}, {"b"}, {"c"}};
-  const joint<double> turn;
-  CHECK(says({}) == begin + "there are no links");
-  CHECK(says({{{"a"}, {"a"}}}) == begin + "<link name=\"a\">: another link has this name");
-  CHECK(says({links, {{"p", "a", "b", turn}}}) ==
+  const joint<double> revolute;
+  CHECK(error_of({}) == begin + "there are no links");
+  CHECK(error_of({{{"a"}, {"a"}}}) == begin + "<link name=\"a\">: another link has this name");
+  CHECK(error_of({links, {{"p", "a", "b", revolute}}}) ==
         begin +
             "<link name=\"c\">: no joint is above it, and none above \"a\": a tree has one root");
-  CHECK(says({links, {{"p", "a", "d", turn}}}) ==
+  CHECK(error_of({links, {{"p", "a", "d", revolute}}}) ==
         p + "no link \"d\": there are \"a\", \"b\", \"c\"");
-  CHECK(says({links, {{"p", "a", "b", turn}, {"p", "a", "c", turn}}}) ==
+  CHECK(error_of({links, {{"p", "a", "b", revolute}, {"p", "a", "c", revolute}}}) ==
         p + "another joint has this name");
-  CHECK(says({links, {{"q", "a", "b", turn}, {"p", "c", "b", turn}}}) ==
+  CHECK(error_of({links, {{"q", "a", "b", revolute}, {"p", "c", "b", revolute}}}) ==
         p + "the link \"b\" has a joint above it already, \"q\"");
-  CHECK(says({links, {{"p", "c", "b", turn}, {"q", "b", "c", turn}}}) ==
+  CHECK(error_of({links, {{"p", "c", "b", revolute}, {"q", "b", "c", revolute}}}) ==
         p + "closes a cycle at the link \"b\"");
-  CHECK(says({{{"b"}}, {{"p", "b", "b", turn}}}) == p + "closes a cycle at the link \"b\"");
+  CHECK(error_of({{{"b"}}, {{"p", "b", "b", revolute}}}) == p + "closes a cycle at the link \"b\"");
   joint<double> bad;
   bad.axis = {0, 0, 2};
-  CHECK(says({links, {{"p", "a", "b", bad}}}) ==
+  CHECK(error_of({links, {{"p", "a", "b", bad}}}) ==
         begin + "joint 0 \"p\": the axis (0, 0, 2) is no unit vector");
   const auto follows = [&](const std::string& leader, joint_kind kind, joint_kind of_leader) {
     robot_description robot{links, {{"q", "a", "b", {of_leader}}, {"p", "b", "c", {kind}}}};
     robot.joints[1].mimic = joint_mimic{leader};
-    return says(robot);
+    return error_of(robot);
   };
   CHECK(follows("q", joint_kind::revolute, joint_kind::prismatic).empty());
   CHECK(follows("x", joint_kind::revolute, joint_kind::prismatic) ==
@@ -485,10 +485,10 @@ TEST_CASE("what is no tree") {
         p + "follows \"q\", but \"q\" has 6 coordinates, not one");
   CHECK(follows("q", joint_kind::revolute, joint_kind::fixed) ==
         p + "follows \"q\", but \"q\" has 0 coordinates, not one");
-  robot_description circle{links, {{"p", "a", "b", turn}, {"q", "b", "c", turn}}};
+  robot_description circle{links, {{"p", "a", "b", revolute}, {"q", "b", "c", revolute}}};
   circle.joints[0].mimic = joint_mimic{"q"};
   circle.joints[1].mimic = joint_mimic{"p"};
-  CHECK(says(circle) == p + "follows itself");
+  CHECK(error_of(circle) == p + "follows itself");
 }
 
 TEST_CASE("chains between links, up and down") {
@@ -534,16 +534,16 @@ TEST_CASE("chains between links, up and down") {
   CHECK(duet_test::message_of([&] {
           (void)tree.chain("worlt", "tool");
         }).starts_with("duet: kinematic_tree: no link \"worlt\": there are \"world\", "));
-  const kinematic_tree whole(all_joints());
-  CHECK(duet_test::message_of([&] { (void)whole.chain("world", "tool"); }) ==
+  const kinematic_tree complete(all_joints());
+  CHECK(duet_test::message_of([&] { (void)complete.chain("world", "tool"); }) ==
         "duet: kinematic_tree: <joint name=\"free\">: has 6 coordinates: that takes a "
         "kinematic_tree, "
         "not a chain");
-  CHECK(duet_test::message_of([&] { (void)whole.chain("hand", "thumb"); }) ==
+  CHECK(duet_test::message_of([&] { (void)complete.chain("hand", "thumb"); }) ==
         "duet: kinematic_tree: <joint name=\"oppose\">: follows \"grip\": that takes a "
         "kinematic_tree, "
         "not a chain");
-  CHECK(whole.chain("elbow", "tool").size() == 1);
+  CHECK(complete.chain("elbow", "tool").size() == 1);
 }
 
 } // namespace test_mechanism_kinematic_tree

@@ -62,8 +62,8 @@ TEST_CASE("limits change, and nothing else") {
     }
     for (int i = 0; i < arm.size(); ++i) {
       CHECK(changed.limits(i).velocity == arm.limits(i).velocity);
-      const bool turned_round = arm.kind(i) == joint_kind::continuous;
-      CHECK(changed.kind(i) == (turned_round ? joint_kind::revolute : arm.kind(i)));
+      const bool is_continuous = arm.kind(i) == joint_kind::continuous;
+      CHECK(changed.kind(i) == (is_continuous ? joint_kind::revolute : arm.kind(i)));
     }
     const auto back = with_limits(changed, lower_limits(arm), upper_limits(arm));
     CHECK(lower_limits(back) == lower_limits(arm));
@@ -90,13 +90,13 @@ TEST_CASE("one joint alone; chains that the compiler knows") {
 
   // What reads limits reads these.
   const Eigen::Matrix<double, 7, 1> start(0, -.8, 0, -1.5, 0, 1.6, .8),
-      there(.3, -.6, .2, -2.4, .1, 1.9, .5);
-  const auto goal = arm.pose(there);
-  const auto found = inverse_kinematics(narrow, goal, start);
+      target(.3, -.6, .2, -2.4, .1, 1.9, .5);
+  const auto goal = arm.pose(target);
+  const auto result = inverse_kinematics(narrow, goal, start);
   const auto free = inverse_kinematics(arm, goal, start);
   CHECK(free.reason == stop_reason::reached);
   CHECK(free.joints[3] < -2);
-  CHECK(found.joints[3] >= -2);
+  CHECK(result.joints[3] >= -2);
 }
 
 TEST_CASE("a chain from a file keeps its names") {

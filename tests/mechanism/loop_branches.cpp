@@ -59,10 +59,10 @@ void check_crossing(const std::array<double, 4>& bar, const branch_point& at) {
   CHECK(std::abs(at.tangents[0].dot(at.tangents[1])) < .999);
   const double first = at.tangents[1][0]; // increases on the first way of a pair
   CHECK((std::abs(first) < 1e-13 ? at.tangents[1][1] : first) > 0);
-  for (const VectorXd& way : at.tangents) {
-    CHECK(std::abs(way.norm() - 1) < 1e-14);
-    CHECK(std::abs(first_order(bar, at.coordinates, way)) < 1e-13);
-    CHECK(std::abs(second_order(bar, at.coordinates, way)) < 1e-13);
+  for (const VectorXd& tangent : at.tangents) {
+    CHECK(std::abs(tangent.norm() - 1) < 1e-14);
+    CHECK(std::abs(first_order(bar, at.coordinates, tangent)) < 1e-13);
+    CHECK(std::abs(second_order(bar, at.coordinates, tangent)) < 1e-13);
   }
 }
 
@@ -81,9 +81,9 @@ std::array<double, 4> change_point(duet::random_source& random) {
 /// One of the positions with the crank at an angle that allows some.
 VectorXd some_position(const closed_chain_mechanism& mechanism, duet::random_source& random) {
   for (;;) {
-    const auto found = find_assembly_configurations(
+    const auto result = find_assembly_configurations(
         mechanism, {0}, VectorXd::Constant(1, random.uniform(-3, 3)), {.random_starts = 20});
-    for (const assembly_configuration& each : found.positions) {
+    for (const assembly_configuration& each : result.positions) {
       if (each.smallest_singular_value > .05) {
         return each.coordinates;
       }
@@ -115,11 +115,11 @@ TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram")
           1e-13);
   }
 
-  for (const std::size_t way : {1, 2}) {
-    const motion_trace other = trace(motion, 0, {.branches = {way}});
+  for (const std::size_t tangent : {1, 2}) {
+    const motion_trace other = trace(motion, 0, {.branches = {tangent}});
     CHECK(other.is_closed);
     REQUIRE(other.branch_points.size() == 3); // back through the first one
-    CHECK(other.branch_points[0].chosen == way);
+    CHECK(other.branch_points[0].chosen == tangent);
     CHECK(other.branch_points[1].chosen == 0);
     int crossed = 0;
     for (const VectorXd& q : other.positions) {
@@ -146,8 +146,9 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
     const std::array<double, 4> bar = change_point(random);
     closed_chain_mechanism mechanism = bars(bar);
     robot_description robot = mechanism.tree().description();
-    const auto base = duet_test::place(random.uniform(-3, 3), random.uniform(-1, 1),
-                                       random.uniform(-3, 3), random.uniform(-1, 1), .3, -.2);
+    const auto base =
+        duet_test::placement_at(random.uniform(-3, 3), random.uniform(-1, 1), random.uniform(-3, 3),
+                                random.uniform(-1, 1), .3, -.2);
     for (tree_joint& joint : robot.joints) {
       if (joint.parent == "ground") {
         joint.motion.origin = base * joint.motion.origin;
@@ -155,15 +156,15 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
     }
     mechanism = closed_chain_mechanism(kinematic_tree(robot), {mechanism.loops()});
     const driven_motion motion(mechanism, some_position(mechanism, random), {0});
-    const motion_trace whole = trace(motion);
-    CHECK(whole.is_closed);
-    CHECK(!whole.meets_branches);
-    REQUIRE(whole.branch_points.size() == 2); // once on each branch
-    for (const branch_point& at : whole.branch_points) {
+    const motion_trace complete = trace(motion);
+    CHECK(complete.is_closed);
+    CHECK(!complete.meets_branches);
+    REQUIRE(complete.branch_points.size() == 2); // once on each branch
+    for (const branch_point& at : complete.branch_points) {
       check_crossing(bar, at);
     }
-    for (const std::size_t way : {1, 2, 3}) {
-      const motion_trace other = trace(motion, 0, {.branches = {way}});
+    for (const std::size_t tangent : {1, 2, 3}) {
+      const motion_trace other = trace(motion, 0, {.branches = {tangent}});
       CHECK(other.is_closed);
       CHECK(!other.meets_branches);
       for (const VectorXd& q : other.positions) {
@@ -171,17 +172,17 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
       }
     }
     // Newton's method with 100 digits so near to the crossing that chords are tangents.
-    const branch_point& at = whole.branch_points[0];
-    for (const VectorXd& way : at.tangents) {
+    const branch_point& at = complete.branch_points[0];
+    for (const VectorXd& tangent : at.tangents) {
       const real_100 step("1e-25");
       std::vector<real_100> flat, q;
       for (int i = 0; i < 3; ++i) {
         flat.push_back(boost::math::constants::pi<real_100>() *
                        std::lround(at.coordinates[i] / pi));
-        q.push_back(flat.back() + step * way[i]);
+        q.push_back(flat.back() + step * tangent[i]);
       }
-      const int held = std::abs(way[0]) > .5 ? 0 : std::abs(way[1]) > .5 ? 1 : 2;
-      const int i = held == 0 ? 1 : 0, j = held == 2 ? 1 : 2;
+      const int fixed = std::abs(tangent[0]) > .5 ? 0 : std::abs(tangent[1]) > .5 ? 1 : 2;
+      const int i = fixed == 0 ? 1 : 0, j = fixed == 2 ? 1 : 2;
       const real_100 a = bar[0], b = bar[1], c = bar[2], d = bar[3];
       // b as the crossing has it in exact arithmetic: lengths of bars are rounded
       const auto sign = [&](int n) { return cos(flat[std::size_t(n)]); };
@@ -201,7 +202,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
         q[l] -= (by_x[m] * y - x * by_y[m]) / det;
       }
       for (std::size_t n = 0; n < 3; ++n) {
-        CHECK(std::abs(double((q[n] - flat[n]) / step) - way[Eigen::Index(n)]) < 2e-13);
+        CHECK(std::abs(double((q[n] - flat[n]) / step) - tangent[Eigen::Index(n)]) < 2e-13);
       }
     }
   }
@@ -210,10 +211,10 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
 TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
   const std::array bar{.8, .5, .5, .8};
   const driven_motion motion(bars(bar), Vector3d(1, 2, 2), {0});
-  const motion_trace whole = trace(motion);
-  CHECK(whole.is_closed);
-  REQUIRE(whole.branch_points.size() == 2);
-  for (const branch_point& at : whole.branch_points) {
+  const motion_trace complete = trace(motion);
+  CHECK(complete.is_closed);
+  REQUIRE(complete.branch_points.size() == 2);
+  for (const branch_point& at : complete.branch_points) {
     check_crossing(bar, at);
     CHECK(std::abs(at.tangents[1][0]) < 1e-14); // coupler and rocker turn as one
   }
@@ -232,15 +233,15 @@ TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
                                         {{{constraint_kind::revolute,
                                            {"left_coupler", at_point(.7, 0)},
                                            {"right_coupler", at_point(.7, 0)}}}});
-  const double held = std::acos(-.6); // from (.3, 0) by .5 to the point above (0, 0)
+  const double fixed = std::acos(-.6); // from (.3, 0) by .5 to the point above (0, 0)
   VectorXd guess(4);
-  guess << 2, -1, held, 1;
+  guess << 2, -1, fixed, 1;
   const motion_trace five = trace(driven_motion(five_bar, guess, {0, 2}));
   CHECK(five.is_closed);
   REQUIRE(!five.branch_points.empty());
   int cranks_meet = 0;
   for (const branch_point& at : five.branch_points) {
-    CHECK(at.coordinates[2] == doctest::Approx(held).epsilon(1e-14));
+    CHECK(at.coordinates[2] == doctest::Approx(fixed).epsilon(1e-14));
     CHECK(at.tangents.size() == 4);
     const double x = -.3 + .5 * std::cos(at.coordinates[0]), y = .5 * std::sin(at.coordinates[0]);
     cranks_meet += std::hypot(x, y - .4) < 1e-12 ? 1 : 0; // both cranks end at (0, .4)
@@ -257,12 +258,12 @@ TEST_CASE("four-bars that are nearly flat have one branch, and are told from tho
       CAPTURE(miss);
       const double a = flat[0], b = flat[1], c = flat[2], d = flat[3];
       const closed_chain_mechanism mechanism = four_bar(a, b + miss, c, d);
-      const motion_trace whole =
+      const motion_trace complete =
           trace(driven_motion(mechanism, some_position(mechanism, random), {0}));
-      CHECK(whole.branch_points.empty());
-      CHECK(whole.is_closed);
-      CHECK(!whole.meets_branches);
-      for (const dead_point& each : whole.dead_points) {
+      CHECK(complete.branch_points.empty());
+      CHECK(complete.is_closed);
+      CHECK(!complete.meets_branches);
+      for (const dead_point& each : complete.dead_points) {
         if (each.coordinate == 0) { // coupler and rocker in a row
           const double theta = std::abs(std::remainder(each.coordinates[0], 2 * pi));
           const auto distance =
@@ -291,21 +292,21 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
   for (const double start : {.8, 1., 1.234, 1.7}) {
     VectorXd q(5);
     q << start, -start, start, -start, start;
-    const motion_trace whole = trace(driven_motion(both, q, {0}));
-    CHECK(whole.is_closed);
-    REQUIRE(whole.branch_points.size() == 2);
-    for (const branch_point& at : whole.branch_points) {
+    const motion_trace complete = trace(driven_motion(both, q, {0}));
+    CHECK(complete.is_closed);
+    REQUIRE(complete.branch_points.size() == 2);
+    for (const branch_point& at : complete.branch_points) {
       REQUIRE(at.tangents.size() == 8);
-      for (const VectorXd& way : at.tangents) {
-        CHECK(std::abs(first_order({.3, .8, .3, .8}, at.coordinates, way)) < 1e-11);
-        CHECK(std::abs(second_order({.3, .8, .3, .8}, at.coordinates, way)) < 1e-11);
-        VectorXd second = at.coordinates, v = way;
+      for (const VectorXd& tangent : at.tangents) {
+        CHECK(std::abs(first_order({.3, .8, .3, .8}, at.coordinates, tangent)) < 1e-11);
+        CHECK(std::abs(second_order({.3, .8, .3, .8}, at.coordinates, tangent)) < 1e-11);
+        VectorXd second = at.coordinates, v = tangent;
         second.segment(1, 2) = at.coordinates.tail(2);
-        v.segment(1, 2) = way.tail(2);
+        v.segment(1, 2) = tangent.tail(2);
         CHECK(std::abs(first_order({.3, -.6, .3, -.6}, second, v)) < 1e-11);
         CHECK(std::abs(second_order({.3, -.6, .3, -.6}, second, v)) < 1e-11);
         for (const VectorXd& other : at.tangents) {
-          CHECK((&way == &other || way.dot(other) < .999));
+          CHECK((&tangent == &other || tangent.dot(other) < .999));
         }
       }
     }
@@ -321,10 +322,10 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
         {constraint_kind::revolute, {"coupler", at_point(.5, 0)}, {"third", at_point(.3, 0)}}}});
-  const motion_trace whole = trace(driven_motion(three, Eigen::Vector4d(1, -1, 1, 1), {0}));
-  CHECK(whole.is_closed);
-  REQUIRE(whole.branch_points.size() == 2);
-  for (const branch_point& at : whole.branch_points) {
+  const motion_trace complete = trace(driven_motion(three, Eigen::Vector4d(1, -1, 1, 1), {0}));
+  CHECK(complete.is_closed);
+  REQUIRE(complete.branch_points.size() == 2);
+  for (const branch_point& at : complete.branch_points) {
     REQUIRE(at.tangents.size() == 2);
     CHECK((at.tangents[0] - Eigen::Vector4d(.5, -.5, .5, .5)).norm() < 1e-13);
   }
@@ -342,11 +343,11 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
     const closed_chain_mechanism mechanism(
         kinematic_tree(robot),
         {{{constraint_kind::revolute, {"coupler", at_point(r, 0)}, {"slide", {}}}}});
-    const motion_trace whole =
+    const motion_trace complete =
         trace(driven_motion(mechanism, Vector3d(1, -2, 2 * r * std::cos(1)), {0}));
-    CHECK(whole.is_closed);
-    REQUIRE(whole.branch_points.size() == 2);
-    for (const branch_point& at : whole.branch_points) {
+    CHECK(complete.is_closed);
+    REQUIRE(complete.branch_points.size() == 2);
+    for (const branch_point& at : complete.branch_points) {
       const double sine = std::sin(at.coordinates[0]);
       CHECK(std::abs(std::abs(sine) - 1) < 1e-15);
       CHECK(std::abs(at.coordinates[2]) < 1e-14 * mm);
@@ -362,14 +363,14 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
   const closed_chain_mechanism sphere = duet_test::ring({{0, a}, {0, b}, {0, a}, {0, b}});
   const std::array constants{std::cos((a + b) / 2) / std::cos((b - a) / 2),
                              std::sin((a + b) / 2) / std::sin((b - a) / 2)};
-  const assembly_search_result found =
+  const assembly_search_result result =
       find_assembly_configurations(sphere, {0}, VectorXd::Constant(1, .8), {.random_starts = 60});
-  REQUIRE(found.positions.size() == 2);
-  for (const assembly_configuration& each : found.positions) {
-    const motion_trace whole = trace(driven_motion(sphere, each.coordinates, {0}));
-    CHECK(whole.is_closed);
-    REQUIRE(whole.branch_points.size() == 2);
-    for (const branch_point& at : whole.branch_points) {
+  REQUIRE(result.positions.size() == 2);
+  for (const assembly_configuration& each : result.positions) {
+    const motion_trace complete = trace(driven_motion(sphere, each.coordinates, {0}));
+    CHECK(complete.is_closed);
+    REQUIRE(complete.branch_points.size() == 2);
+    for (const branch_point& at : complete.branch_points) {
       REQUIRE(at.tangents.size() == 4);
       const bool first_is_straight = std::cos(at.coordinates[0]) > 0;
       std::array<double, 2> ratios{};
@@ -399,11 +400,11 @@ TEST_CASE("of ways that fill a plane none is returned") {
         {constraint_kind::revolute, {"d", at_point(.3, 0)}, {"slide", {}}}}});
   VectorXd start(5);
   start << 1, -2, -1, 2, .6 * std::cos(1);
-  const motion_trace whole = trace(driven_motion(mechanism, start, {0}));
-  CHECK(whole.is_closed);
-  REQUIRE(whole.branch_points.size() == 4);
+  const motion_trace complete = trace(driven_motion(mechanism, start, {0}));
+  CHECK(complete.is_closed);
+  REQUIRE(complete.branch_points.size() == 4);
   for (std::size_t i = 0; i < 4; ++i) {
-    const branch_point& at = whole.branch_points[i];
+    const branch_point& at = complete.branch_points[i];
     if (i % 2 == 0) { // both are folded
       CHECK(std::abs(at.coordinates[4]) < 1e-14);
       CHECK(at.tangents.size() == 2);
@@ -417,15 +418,16 @@ TEST_CASE("of ways that fill a plane none is returned") {
 TEST_CASE("traces that start beside a crossing, and with large steps") {
   const closed_chain_mechanism mechanism = bars({.3, .8, .3, .8});
   for (const double start : {1e-2, 2e-3, 1e-3, 5e-4, 1e-4, 1e-5}) {
-    const motion_trace whole = trace(driven_motion(mechanism, Vector3d(start, -start, start), {0}));
-    CHECK(whole.is_closed);
-    CHECK(whole.branch_points.size() == 2);
+    const motion_trace complete =
+        trace(driven_motion(mechanism, Vector3d(start, -start, start), {0}));
+    CHECK(complete.is_closed);
+    CHECK(complete.branch_points.size() == 2);
   }
   for (const double step : {.03, .5, 1.5}) {
-    const motion_trace whole =
+    const motion_trace complete =
         trace(driven_motion(mechanism, Vector3d(1, -1, 1), {0}), 0, {.largest_step = step});
-    CHECK(whole.is_closed);
-    CHECK(whole.branch_points.size() == 2);
+    CHECK(complete.is_closed);
+    CHECK(complete.branch_points.size() == 2);
   }
 }
 

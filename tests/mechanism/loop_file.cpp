@@ -26,7 +26,7 @@ loop_constraints read(const std::string& content) {
 }
 
 /// What is said of the content, without the file's name.
-std::string fault(const std::string& content) {
+std::string error_of(const std::string& content) {
   const std::string text = message_of<file_error>([&] { (void)read(content); });
   const std::string begin = "duet: " + path + ":";
   REQUIRE(text.starts_with(begin));
@@ -58,9 +58,10 @@ TEST_CASE("loops of every kind, with points, axes and angles, comments and blank
   const loop_constraint& slider = loops.loops[1];
   CHECK(slider.kind == constraint_kind::prismatic);
   CHECK(slider.line == 4);
-  const auto turned = duet_test::place(0, 0, .3, 0, 0, 0) * duet_test::place(0, .2, 0, 0, 0, 0) *
-                      duet_test::place(.1, 0, 0, 1, 2, 3);
-  CHECK(distance(slider.first.offset.rotation, turned.rotation) < 1e-15);
+  const auto rotated_frame = duet_test::placement_at(0, 0, .3, 0, 0, 0) *
+                             duet_test::placement_at(0, .2, 0, 0, 0, 0) *
+                             duet_test::placement_at(.1, 0, 0, 1, 2, 3);
+  CHECK(distance(slider.first.offset.rotation, rotated_frame.rotation) < 1e-15);
   CHECK(slider.second.offset.rotation == quaternion<double>(1.0));
   CHECK(loops.loops[3].first.offset.rotation == frame_with_z_axis({0, 0, 0}, {1, 0, 0}).rotation);
   const loop_constraint& rod = loops.loops[7]; // the names of the links are words of the format
@@ -88,30 +89,30 @@ TEST_CASE("kinds of loops by the words of joints") {
 }
 
 TEST_CASE("what is wrong with a file of loops, and where") {
-  CHECK(fault(" # nothing\n") == " no loops");
-  CHECK(fault("# a\nhing a 0 0 0 b 0 0 0")
+  CHECK(error_of(" # nothing\n") == " no loops");
+  CHECK(error_of("# a\nhing a 0 0 0 b 0 0 0")
             .starts_with("2: no kind of loop is \"hing\": there are \"hinge\", "));
-  CHECK(fault("distanc a 0 0 0 b 0 0 0")
+  CHECK(error_of("distanc a 0 0 0 b 0 0 0")
             .starts_with("1: no kind of loop is \"distanc\": there are \"distance\", "));
-  CHECK(fault("hinge") == "1: a link is missing");
-  CHECK(fault("hinge a 0 0") == "1: z on \"a\" is missing");
-  CHECK(fault("hinge a 0 0 b 0 0 0") == "1: z on \"a\" is not a number: 'b'");
-  CHECK(fault("hinge a 0 0,5 0 b 0 0 0") ==
+  CHECK(error_of("hinge") == "1: a link is missing");
+  CHECK(error_of("hinge a 0 0") == "1: z on \"a\" is missing");
+  CHECK(error_of("hinge a 0 0 b 0 0 0") == "1: z on \"a\" is not a number: 'b'");
+  CHECK(error_of("hinge a 0 0,5 0 b 0 0 0") ==
         "1: y on \"a\" is not a number: '0,5' (expected a decimal point, not a comma)");
-  CHECK(fault("hinge a 0 0 0 b 0 inf 0") == "1: y on \"b\" is inf");
-  CHECK(fault("hinge a 0 0 0 b 0 1e999 0") ==
+  CHECK(error_of("hinge a 0 0 0 b 0 inf 0") == "1: y on \"b\" is inf");
+  CHECK(error_of("hinge a 0 0 0 b 0 1e999 0") ==
         "1: y on \"b\" is 1e999, beyond the range of a double");
-  CHECK(fault("hinge a 0 0 0 b 0 0 0 axis 0 0 0") == "1: axis on \"b\" has no direction");
-  CHECK(fault("hinge a 0 0 0 axis 0 0 b 0 0 0") == "1: axis z on \"a\" is not a number: 'b'");
-  CHECK(fault("hinge a 0 0 0 rpy 0 0") == "1: yaw on \"a\" is missing");
-  CHECK(fault("hinge a 0 0 0 rpy 0 1e300 0 b 0 0 0") ==
+  CHECK(error_of("hinge a 0 0 0 b 0 0 0 axis 0 0 0") == "1: axis on \"b\" has no direction");
+  CHECK(error_of("hinge a 0 0 0 axis 0 0 b 0 0 0") == "1: axis z on \"a\" is not a number: 'b'");
+  CHECK(error_of("hinge a 0 0 0 rpy 0 0") == "1: yaw on \"a\" is missing");
+  CHECK(error_of("hinge a 0 0 0 rpy 0 1e300 0 b 0 0 0") ==
         "1: the angle 1e+300 on \"a\" is beyond 1e6 radians");
-  CHECK(fault("hinge a 0 0 0 b 0 0 0 length 1") == "1: \"length\" is too much");
-  CHECK(fault("rod a 0 0 0 b 0 0 0") == "1: \"length\" of the rod is missing");
-  CHECK(fault("rod a 0 0 0 b 0 0 0 1") == "1: \"length\" of the rod expected, not \"1\"");
-  CHECK(fault("rod a 0 0 0 b 0 0 0 length 0") == "1: length is 0");
-  CHECK(fault("rod a 0 0 0 b 0 0 0 length -2") == "1: length is -2");
-  CHECK(fault("rod a 0 0 0 b 0 0 0 length nan") == "1: length is nan");
+  CHECK(error_of("hinge a 0 0 0 b 0 0 0 length 1") == "1: \"length\" is too much");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0") == "1: \"length\" of the rod is missing");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 1") == "1: \"length\" of the rod expected, not \"1\"");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 length 0") == "1: length is 0");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 length -2") == "1: length is -2");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 length nan") == "1: length is nan");
   CHECK(message_of<file_error>([] { (void)read_loops("/nowhere/loops.txt"); }) ==
         "duet: /nowhere/loops.txt: cannot be read");
   std::filesystem::remove(path);

@@ -99,8 +99,9 @@ TEST_CASE("derivatives up to the third against 50 digits") {
   // A spatial four-bar: crank, ball, ball, rocker on a skew axis; a rod is its coupler.
   robot_description robot;
   robot.links = {{"ground"}, {"crank"}, {"rocker"}};
-  robot.joints = {revolute_joint("crank", "ground", {}),
-                  revolute_joint("rocker", "ground", duet_test::place(.9, .4, 0, .9, .3, .2))};
+  robot.joints = {
+      revolute_joint("crank", "ground", {}),
+      revolute_joint("rocker", "ground", duet_test::placement_at(.9, .4, 0, .9, .3, .2))};
   const closed_chain_mechanism mechanism(kinematic_tree(robot), {{{constraint_kind::distance,
                                                                    {"crank", at_point(.3, 0, .1)},
                                                                    {"rocker", at_point(.6, .1, 0)},
@@ -193,11 +194,11 @@ TEST_CASE("dead points: where a motion stops, what moves there, and the way thro
   CHECK(std::abs(by_crank(dead - 1e-9)[0] - (dead - 1e-9)) == 0);
   CHECK_THROWS_AS((void)by_crank(dead + 1e-9), loop_closure_failure);
 
-  const motion_trace whole = trace(by_crank);
-  CHECK(whole.is_closed);
-  CHECK(!whole.meets_branches);
+  const motion_trace complete = trace(by_crank);
+  CHECK(complete.is_closed);
+  CHECK(!complete.meets_branches);
   int of_crank = 0, of_rocker = 0;
-  for (const dead_point& each : whole.dead_points) {
+  for (const dead_point& each : complete.dead_points) {
     CHECK(mechanism.residuals(each.coordinates).norm() < 1e-13);
     const double rate = each.rates[each.coordinate];
     CHECK(std::abs(rate) < 1e-13);
@@ -245,10 +246,10 @@ TEST_CASE("of 200 random four-bars each motion ends where its coupler and rocker
     double first = 2;
     for (const double reach : {b + c, std::abs(b - c)}) {
       const double cosine = (a * a + d * d - reach * reach) / (2 * a * d);
-      for (int turn = -2; turn <= 2 && std::abs(cosine) < 1; ++turn) {
+      for (int revolutions = -2; revolutions <= 2 && std::abs(cosine) < 1; ++revolutions) {
         for (const double sign : {-1., 1.}) {
           const double part =
-              (sign * std::acos(cosine) + 2 * std::numbers::pi * turn - from) / (to - from);
+              (sign * std::acos(cosine) + 2 * std::numbers::pi * revolutions - from) / (to - from);
           first = part > 0 ? std::min(first, part) : first;
         }
       }
@@ -276,17 +277,17 @@ TEST_CASE("coordinates that are singular, drives that do not drive, and other mi
   robot_description robot;
   robot.links = {{"base"}, {"body"}};
   robot.joints = {{"ball", "base", "body", {joint_kind::spherical}}};
-  const driven_motion turn(
+  const driven_motion about_z(
       closed_chain_mechanism(kinematic_tree(robot),
                              {{{constraint_kind::revolute, {"base", {}}, {"body", {}}}}}),
       vector({0, 0, 1}), {2});
-  CHECK(max_abs_difference(turn(6.), vector({0, 0, 6})) < 1e-12);
-  const std::string text = message_of<loop_closure_failure>([&] { (void)turn(7.); });
+  CHECK(max_abs_difference(about_z(6.), vector({0, 0, 6})) < 1e-12);
+  const std::string text = message_of<loop_closure_failure>([&] { (void)about_z(7.); });
   CHECK(text.starts_with("duet: driven_motion: cannot close beyond ball.rz = 6.2831"));
   CHECK(text.ends_with(": no step leads on, branches touch or coordinates are singular"));
-  const motion_trace whole = trace(turn);
-  CHECK(whole.meets_branches);
-  CHECK(whole.branch_points.empty());
+  const motion_trace complete = trace(about_z);
+  CHECK(complete.meets_branches);
+  CHECK(complete.branch_points.empty());
 
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});

@@ -19,12 +19,12 @@ namespace duet_test {
 
 /// At a point, with the link's axes.
 inline duet::placement<double> at_point(double x, double y, double z = 0) {
-  return place(0, 0, 0, x, y, z);
+  return placement_at(0, 0, 0, x, y, z);
 }
 
 /// Turning joints about z of the frames in a row, on a base; the links are named "0" (the base),
 /// "1" …
-inline duet::robot_description turning(const std::vector<duet::placement<double>>& origins) {
+inline duet::robot_description revolute_chain(const std::vector<duet::placement<double>>& origins) {
   duet::robot_description robot;
   robot.links = {{"0"}};
   for (std::size_t i = 0; i < origins.size(); ++i) {
@@ -61,12 +61,14 @@ four_bar(double crank, double coupler, double rocker, double ground,
 /// offsets, cut at the last joint.
 inline duet::closed_chain_mechanism ring(const std::vector<std::array<double, 2>>& links) {
   std::vector<duet::placement<double>> origins = {{}};
-  const auto link = [&](std::size_t i) { return place(links[i][1], 0, 0, links[i][0], 0, 0); };
+  const auto link = [&](std::size_t i) {
+    return placement_at(links[i][1], 0, 0, links[i][0], 0, 0);
+  };
   for (std::size_t i = 0; i + 2 < links.size(); ++i) {
     origins.push_back(link(i));
   }
   const duet::placement<double> back(duet::conj(link(links.size() - 1).pose()));
-  return duet::closed_chain_mechanism(duet::kinematic_tree(turning(origins)),
+  return duet::closed_chain_mechanism(duet::kinematic_tree(revolute_chain(origins)),
                                       {{{duet::constraint_kind::revolute,
                                          {std::to_string(links.size() - 1), link(links.size() - 2)},
                                          {"0", back}}}});

@@ -74,7 +74,7 @@ TEST_CASE("a planar arm of two links: w = a b |sin θ₂|") {
     const Eigen::Vector2d theta(.4, bend);
     CHECK(upper(theta) == doctest::Approx(a * b * std::sin(bend)).epsilon(1e-12));
     // With the angular rows: det JᵀJ = (|u₁|² + 1)(|u₂|² + 1) − (u₁·u₂ + 1)².
-    const auto [w, slope] = derivative(
+    const auto [w, gradient] = derivative(
         [&](const auto& x) {
           const auto u1 = a * a + b * b + 2 * a * b * cos(x) + 1;
           const auto both = b * (a * cos(x) + b) + 1;
@@ -83,7 +83,7 @@ TEST_CASE("a planar arm of two links: w = a b |sin θ₂|") {
         bend);
     const auto closed = manipulability_gradient(arm, theta);
     CHECK(closed.value == doctest::Approx(w).epsilon(1e-12));
-    CHECK(max_abs_difference(closed.gradient, Eigen::Vector2d(0, slope)) < 1e-13);
+    CHECK(max_abs_difference(closed.gradient, Eigen::Vector2d(0, gradient)) < 1e-13);
   }
 }
 
@@ -110,8 +110,8 @@ TEST_CASE("the gradient within rounding of a singularity is as steep as beside i
   const auto arm = robots::ur5e().table();
   coordinates<6> theta;
   theta << .3, -1, 1e-6, -.7, .9, .7; // the elbow is all but stretched
-  const double slope = manipulability_gradient(arm, theta).gradient[2];
-  CHECK(slope > .05);
+  const double gradient = manipulability_gradient(arm, theta).gradient[2];
+  CHECK(gradient > .05);
   int regular = 0;
   for (const double bend : {1e-14, 1e-15, 7e-16, 4e-16, 1e-16, 5e-17, 1e-17, 1e-100}) {
     CAPTURE(bend);
@@ -119,7 +119,7 @@ TEST_CASE("the gradient within rounding of a singularity is as steep as beside i
     if (manipulability(arm, theta) > 0) { // as rounded; of either side
       ++regular;
       coordinates<6> g = manipulability_gradient(arm, theta).gradient;
-      CHECK(std::abs(g[2]) == doctest::Approx(slope).epsilon(1e-6));
+      CHECK(std::abs(g[2]) == doctest::Approx(gradient).epsilon(1e-6));
       g[2] = 0;
       CHECK(g.norm() < 1e-13);
     }

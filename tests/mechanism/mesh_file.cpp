@@ -51,7 +51,7 @@ std::string write(const std::string& ending, const std::string& content) {
 }
 
 /// What is wrong, behind the file's name.
-std::string fault(const std::string& ending, const std::string& content) {
+std::string error_of(const std::string& ending, const std::string& content) {
   const std::string path = write(ending, content);
   const std::string message = duet_test::message_of<file_error>([&] { (void)read_mesh(path); });
   const std::string begin = "duet: " + path + ":";
@@ -67,37 +67,38 @@ const std::string facet =
 TEST_CASE("binary STL, also with a header as text has it, and however it is spelt") {
   for (const char* ending : {".stl", ".STL"}) {
     const auto m = read_mesh(write(ending, binary(3)));
-    REQUIRE(m.corners.size() == 9);
-    CHECK(m.corners[5] == std::array<double, 3>{1, 2, .5});
-    CHECK(m.corners[8] == std::array<double, 3>{2, 2, .5});
+    REQUIRE(m.vertices.size() == 9);
+    CHECK(m.vertices[5] == std::array<double, 3>{1, 2, .5});
+    CHECK(m.vertices[8] == std::array<double, 3>{2, 2, .5});
   }
   for (const std::string& rest :
        {std::string("\n"), std::string(49, 'x'), std::string(428, '\0')}) {
-    CHECK(read_mesh(write(".stl", binary(3) + rest)).corners.size() == 9);
+    CHECK(read_mesh(write(".stl", binary(3) + rest)).vertices.size() == 9);
   }
   // More than padding: the number of triangles is wrong.
-  CHECK(fault(".stl", binary(3) + std::string(50, 'x')) == "1: the file ends before \"endsolid\"");
+  CHECK(error_of(".stl", binary(3) + std::string(50, 'x')) ==
+        "1: the file ends before \"endsolid\"");
   std::string bad = binary(2);
   bad.replace(84 + 50 + 12 + 4, 4, bytes(std::numeric_limits<float>::infinity()));
-  CHECK(fault(".stl", bad) == " triangle 1 has a corner that is not finite");
-  CHECK(fault(".stl", binary(0)) == " has no triangles");
+  CHECK(error_of(".stl", bad) == " triangle 1 has a corner that is not finite");
+  CHECK(error_of(".stl", binary(0)) == " has no triangles");
   // One byte is missing: it is no binary file then, and no text either.
-  CHECK(fault(".stl", binary(2).substr(0, 183)) == "1: the file ends before \"endsolid\"");
-  CHECK(fault(".stl", std::string(90, 'x')) ==
+  CHECK(error_of(".stl", binary(2).substr(0, 183)) == "1: the file ends before \"endsolid\"");
+  CHECK(error_of(".stl", std::string(90, 'x')) ==
         " is no STL: neither does it begin with \"solid\", nor has it the length of a binary file "
         "with as many triangles as it says");
-  CHECK(fault(".stl", "").find("is no STL") != std::string::npos);
+  CHECK(error_of(".stl", "").find("is no STL") != std::string::npos);
 }
 
 TEST_CASE("STL as text: several solids, blank lines, and each line that is another") {
   const auto m = read_mesh(write(".stl", "solid one\n\n" + facet + facet +
                                              "endsolid one\r\nsolid\n" + facet + "endsolid"));
-  REQUIRE(m.corners.size() == 9);
-  CHECK(m.corners[1] == std::array<double, 3>{.1, 0, 0});
-  CHECK(m.corners[8] == std::array<double, 3>{0, 2, -3});
+  REQUIRE(m.vertices.size() == 9);
+  CHECK(m.vertices[1] == std::array<double, 3>{.1, 0, 0});
+  CHECK(m.vertices[8] == std::array<double, 3>{0, 2, -3});
   const auto without = [&](const std::string& text, const std::string& other) {
     std::string result = "solid x\n" + facet + "endsolid x\n";
-    return fault(".stl", result.replace(result.find(text), text.size(), other));
+    return error_of(".stl", result.replace(result.find(text), text.size(), other));
   };
   const auto expected = [](const std::string& line, const char* form, const char* text) {
     return line + ": \"" + form + "\" expected, not \"" + text + "\"";
@@ -131,65 +132,67 @@ TEST_CASE("STL as text: several solids, blank lines, and each line that is anoth
   for (const char* none : {"nan", "-nan", "-nan(ind)", "inf"}) {
     CHECK(read_mesh(write(".stl", "solid\nfacet normal 0 1 " + std::string(none) +
                                       facet.substr(20) + "endsolid"))
-              .corners.size() == 3);
+              .vertices.size() == 3);
   }
 }
 
 TEST_CASE("OBJ: triangles, faces of more corners, numbers from the end back") {
-  const std::string corners = "# a square\no it\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 .1 .2 .3\nv 0 1 0\n";
+  const std::string vertices = "# a square\no it\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 .1 .2 .3\nv 0 1 0\n";
   const auto m = read_mesh(
-      write(".obj", corners + "vn 0 0 1\ns off\nf 1//1 2//1 3/4/1 4\n#f 9\nf -1 -2 -3\n"));
-  REQUIRE(m.corners.size() == 9);
-  CHECK(m.corners[4] == std::array<double, 3>{1, 1, 0});
-  CHECK(m.corners[5] == std::array<double, 3>{0, 1, 0});
-  CHECK(m.corners[6] == std::array<double, 3>{0, 1, 0});
-  CHECK(m.corners[8] == std::array<double, 3>{1, 0, 0});
-  CHECK(read_mesh(write(".obj", "\xef\xbb\xbf" + corners + "f 1 2 3")).corners.size() == 3);
-  CHECK(fault(".obj", corners) == " has no triangles");
-  CHECK(fault(".obj", corners + "f 1 2\n") == "7: a face has three corners or more, not \"f 1 2\"");
+      write(".obj", vertices + "vn 0 0 1\ns off\nf 1//1 2//1 3/4/1 4\n#f 9\nf -1 -2 -3\n"));
+  REQUIRE(m.vertices.size() == 9);
+  CHECK(m.vertices[4] == std::array<double, 3>{1, 1, 0});
+  CHECK(m.vertices[5] == std::array<double, 3>{0, 1, 0});
+  CHECK(m.vertices[6] == std::array<double, 3>{0, 1, 0});
+  CHECK(m.vertices[8] == std::array<double, 3>{1, 0, 0});
+  CHECK(read_mesh(write(".obj", "\xef\xbb\xbf" + vertices + "f 1 2 3")).vertices.size() == 3);
+  CHECK(error_of(".obj", vertices) == " has no triangles");
+  CHECK(error_of(".obj", vertices + "f 1 2\n") ==
+        "7: a face has three corners or more, not \"f 1 2\"");
   for (const char* bad : {"0", "5", "-5", "1.5", "x", "", "nan", "1e99"}) {
     const std::string text(bad);
-    CHECK(fault(".obj", corners + "f 1 2 " + text + "/7\n") ==
+    CHECK(error_of(".obj", vertices + "f 1 2 " + text + "/7\n") ==
           "7: \"" + text + "/7\" is no corner of the 4 vertices before");
   }
   for (const char* bad : {"1/x/2", "1/2/y", "1/1/1/1", "1/0", "1/1.5", "1//nan", "1///"}) {
     const std::string text(bad);
-    CHECK(fault(".obj", corners + "f 1 2\t" + text + "\n") ==
+    CHECK(error_of(".obj", vertices + "f 1 2\t" + text + "\n") ==
           "7: \"" + text + "\" is none of k, k/t, k//n and k/t/n");
   }
-  CHECK(read_mesh(write(".obj", corners + "f 1/ 2// -2/-7/+1")).corners.size() == 3);
-  CHECK(fault(".obj", "v 1 2\n") == "1: \"v x y z\" expected, not \"v 1 2\"");
-  CHECK(fault(".obj", "v 1 2 inf\n") == "1: \"inf\" is not finite");
-  CHECK(fault(".obj", "v 1 2 3 O\n") == "1: \"O\" is no number");
-  CHECK(fault(".obj", "v 1 2 3 .1 .2 red\n") == "1: \"red\" is no number");
-  CHECK(fault(".obj", corners + "face 1 2 3\n") == "7: unknown statement \"face\"");
+  CHECK(read_mesh(write(".obj", vertices + "f 1/ 2// -2/-7/+1")).vertices.size() == 3);
+  CHECK(error_of(".obj", "v 1 2\n") == "1: \"v x y z\" expected, not \"v 1 2\"");
+  CHECK(error_of(".obj", "v 1 2 inf\n") == "1: \"inf\" is not finite");
+  CHECK(error_of(".obj", "v 1 2 3 O\n") == "1: \"O\" is no number");
+  CHECK(error_of(".obj", "v 1 2 3 .1 .2 red\n") == "1: \"red\" is no number");
+  CHECK(error_of(".obj", vertices + "face 1 2 3\n") == "7: unknown statement \"face\"");
 }
 
 TEST_CASE("OBJ: lines that a backslash joins, and the numbers of lines then") {
-  const std::string corners = "v 0 0 \\\n0\nv \\\r\n1 \\\r\n0 0\nv 1 1 0\n"; // 6 lines
+  const std::string vertices = "v 0 0 \\\n0\nv \\\r\n1 \\\r\n0 0\nv 1 1 0\n"; // 6 lines
   const auto m =
-      read_mesh(write(".obj", corners + "f 1\\\n 2 \\  \n\\\n3\ng a \\\n b\nf 3 2 1 \\"));
-  REQUIRE(m.corners.size() == 6);
-  CHECK(m.corners[1] == std::array<double, 3>{1, 0, 0});
-  CHECK(m.corners[2] == std::array<double, 3>{1, 1, 0});
-  CHECK(m.corners[5] == std::array<double, 3>{0, 0, 0});
-  CHECK(fault(".obj", corners + "f 1 2 \\\n 3 \\\n 9 \\\n 1\n") ==
+      read_mesh(write(".obj", vertices + "f 1\\\n 2 \\  \n\\\n3\ng a \\\n b\nf 3 2 1 \\"));
+  REQUIRE(m.vertices.size() == 6);
+  CHECK(m.vertices[1] == std::array<double, 3>{1, 0, 0});
+  CHECK(m.vertices[2] == std::array<double, 3>{1, 1, 0});
+  CHECK(m.vertices[5] == std::array<double, 3>{0, 0, 0});
+  CHECK(error_of(".obj", vertices + "f 1 2 \\\n 3 \\\n 9 \\\n 1\n") ==
         "9: \"9\" is no corner of the 3 vertices before");
-  CHECK(fault(".obj", corners + "\nv 1 \\\n\n2 3\n") ==
+  CHECK(error_of(".obj", vertices + "\nv 1 \\\n\n2 3\n") ==
         "8: \"v x y z\" expected, not \"v 1\""); // an empty line ends it
-  CHECK(fault(".obj", corners + "f 1\\\n2\nx\n") ==
+  CHECK(error_of(".obj", vertices + "f 1\\\n2\nx\n") ==
         "7: a face has three corners or more, not \"f 1\\\\n2\"");
-  CHECK(fault(".obj", corners + "f 1 \\ 2 3\n") ==
+  CHECK(error_of(".obj", vertices + "f 1 \\ 2 3\n") ==
         "7: \"\\\" is no corner of the 3 vertices before");
   // A comment ends with its line, so that one with a folder's name takes nothing with it.
-  CHECK(read_mesh(write(".obj", "# of C:\\models\\\n" + corners + "f 1 2 3")).corners.size() == 3);
-  CHECK(fault(".obj", "\\") == " has no triangles");
+  CHECK(read_mesh(write(".obj", "# of C:\\models\\\n" + vertices + "f 1 2 3")).vertices.size() ==
+        3);
+  CHECK(error_of(".obj", "\\") == " has no triangles");
   // Nor has STL such lines.
-  CHECK(fault(".stl", "solid a\nfacet normal 0 0 \\\n1\n") == "2: \"\\\" is no number");
+  CHECK(error_of(".stl", "solid a\nfacet normal 0 0 \\\n1\n") == "2: \"\\\" is no number");
 }
 
 TEST_CASE("other files, and none") {
-  CHECK(fault(".ply", "ply\n") == " is none of .stl, .obj and .dae");
+  CHECK(error_of(".ply", "ply\n") == " is none of .stl, .obj and .dae");
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("nowhere.stl"); }) ==
         "duet: nowhere.stl: cannot be read");
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("."); }) ==

@@ -41,12 +41,16 @@ TEST_CASE("constants mix with derivatives: arms and equations") {
   const auto f = [](const auto& x) { return x[0] * x[0] * x[1] + x[2] * x[1]; };
   check(
       "directional_derivative",
-      [&](const auto& x, const auto& way) { return directional_derivative(f, x, way).derivative; },
+      [&](const auto& x, const auto& direction) {
+        return directional_derivative(f, x, direction).derivative;
+      },
       u, v);
   check(
       "hessian_vector_product",
-      [&](const auto& x, const auto& way) { return hessian_vector_product(f, x, way).product; }, u,
-      v);
+      [&](const auto& x, const auto& direction) {
+        return hessian_vector_product(f, x, direction).product;
+      },
+      u, v);
 }
 
 } // namespace test_mechanism_mixed_arguments

@@ -54,9 +54,10 @@ TEST_CASE(
     "Bennett's and Goldberg's linkages move, a general ring of four or five joints does not") {
   const auto a = with_twist(.6, .9), b = with_twist(.9, .9), c = with_twist(.45, .9);
   const closed_chain_mechanism bennett = ring({a, b, a, b});
-  const auto ways = find_assembly_configurations(bennett, {0}, vector({.8}), {.random_starts = 30});
-  REQUIRE(!ways.positions.empty());
-  const VectorXd& q = ways.positions[0].coordinates;
+  const auto assemblies =
+      find_assembly_configurations(bennett, {0}, vector({.8}), {.random_starts = 30});
+  REQUIRE(!assemblies.positions.empty());
+  const VectorXd& q = assemblies.positions[0].coordinates;
   const mobility_result m = mobility(bennett, q);
   CHECK(m.mobility == 1);
   CHECK(m.counted == -2);
@@ -110,9 +111,10 @@ TEST_CASE("a stretched frame has rates, but does not move") {
   const closed_chain_mechanism rigid(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"second", at_point(.5, 0)}, {"ground", at_point(.9, 0)}}}});
-  const auto ways = find_assembly_configurations(rigid, {}, VectorXd(), {.random_starts = 20});
-  CHECK(ways.positions.size() == 2);
-  for (const assembly_configuration& each : ways.positions) {
+  const auto assemblies =
+      find_assembly_configurations(rigid, {}, VectorXd(), {.random_starts = 20});
+  CHECK(assemblies.positions.size() == 2);
+  for (const assembly_configuration& each : assemblies.positions) {
     CHECK(mobility(rigid, each.coordinates).mobility == 0);
     CHECK(mobility(rigid, each.coordinates).evidence == mobility_evidence::no_rates);
   }
@@ -142,7 +144,7 @@ TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carri
 }
 
 TEST_CASE("a tree without loops moves by all coordinates, and nothing moves without coordinates") {
-  const kinematic_tree tree(duet_test::turning({{}, at_point(1, 0)}));
+  const kinematic_tree tree(duet_test::revolute_chain({{}, at_point(1, 0)}));
   const closed_chain_mechanism open(tree, {});
   CHECK(open.equations() == 0);
   CHECK(mobility(open, vector({1, 2})).mobility == 2);
@@ -157,8 +159,8 @@ TEST_CASE("a tree without loops moves by all coordinates, and nothing moves with
       kinematic_tree(robot), {{{constraint_kind::spherical, {"a", at_point(1, 0)}, {"b", {}}}}});
   CHECK(mobility(still, VectorXd()).mobility == 0);
   CHECK(still.independent_coordinates(VectorXd()).empty());
-  const auto ways = find_assembly_configurations(still, {}, VectorXd(), {.random_starts = 3});
-  CHECK(ways.positions.size() == 1);
+  const auto assemblies = find_assembly_configurations(still, {}, VectorXd(), {.random_starts = 3});
+  CHECK(assemblies.positions.size() == 1);
 }
 
 TEST_CASE("equations that do not depend on each other are counted") {

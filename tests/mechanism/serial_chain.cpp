@@ -25,7 +25,7 @@ using duet_test::max_abs_difference;
 
 using std::numbers::pi;
 
-double gap_of_poses(const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
+double pose_difference(const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
   return max_abs_difference(transform_matrix(a), transform_matrix(b));
 }
 
@@ -33,7 +33,7 @@ double gap_of_poses(const dual_quaternion<double>& a, const dual_quaternion<doub
 struct by_matrices {
   Eigen::Isometry3d value = Eigen::Isometry3d::Identity();
 
-  by_matrices& turn(const Eigen::Vector3d& axis, double angle) {
+  by_matrices& rotate(const Eigen::Vector3d& axis, double angle) {
     value = value * Eigen::AngleAxisd(angle, axis);
     return *this;
   }
@@ -80,11 +80,11 @@ TEST_CASE("both conventions of Denavit and Hartenberg against products of matric
     by_matrices a, b;
     for (int i = 0; i < 3; ++i) {
       const dh_row<>& row = rows[std::size_t(i)];
-      const bool slides = row.kind == joint_kind::prismatic;
-      const double angle = row.theta + (slides ? 0 : theta[i]);
-      const double d = row.d + (slides ? theta[i] : 0);
-      a.turn(z_axis, angle).shift(0, 0, d).shift(row.a, 0, 0).turn(x_axis, row.alpha);
-      b.turn(x_axis, row.alpha).shift(row.a, 0, 0).turn(z_axis, angle).shift(0, 0, d);
+      const bool is_prismatic = row.kind == joint_kind::prismatic;
+      const double angle = row.theta + (is_prismatic ? 0 : theta[i]);
+      const double d = row.d + (is_prismatic ? theta[i] : 0);
+      a.rotate(z_axis, angle).shift(0, 0, d).shift(row.a, 0, 0).rotate(x_axis, row.alpha);
+      b.rotate(x_axis, row.alpha).shift(row.a, 0, 0).rotate(z_axis, angle).shift(0, 0, d);
       CHECK(max_abs_difference(transform_matrix(standard.pose(theta, i + 1)), a.value.matrix()) <
             1e-14);
       CHECK(max_abs_difference(transform_matrix(modified.pose(theta, i + 1)), b.value.matrix()) <
@@ -130,11 +130,11 @@ TEST_CASE("a chain is a product of exponentials of its screws") {
       twist << s.moment[0], s.moment[1], s.moment[2], s.direction[0], s.direction[1],
           s.direction[2];
       expected = expected * exp(dual_vector<double>(dual_vector_of(twist) * (theta[i] / 2)));
-      CHECK(gap_of_poses(product.pose(theta, i + 1), expected) < rounding(expected));
+      CHECK(pose_difference(product.pose(theta, i + 1), expected) < rounding(expected));
     }
     const double bound = rounding(arm.pose(theta));
-    CHECK(gap_of_poses(product.pose(theta), arm.pose(theta)) < bound);
-    CHECK(gap_of_poses(product.pose(theta), expected * arm.pose(zero)) < bound);
+    CHECK(pose_difference(product.pose(theta), arm.pose(theta)) < bound);
+    CHECK(pose_difference(product.pose(theta), expected * arm.pose(zero)) < bound);
   }
 }
 
@@ -143,7 +143,7 @@ TEST_CASE("an arm known to the compiler is the arm of its table") {
     // What is fused with what differs: a rounding a joint, on the scale of where it leads.
     const auto close = [&](const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
       const double rounding = std::numeric_limits<double>::epsilon();
-      return gap_of_poses(a, b) < double(arm.size()) * rounding * (1 + translation(b).norm());
+      return pose_difference(a, b) < double(arm.size()) * rounding * (1 + translation(b).norm());
     };
     for (const auto& theta : duet_test::configurations(arm, 20)) {
       CHECK(close(arm.pose(theta), arm.table().pose(theta)));
@@ -188,7 +188,7 @@ TEST_CASE("frames on links and points of them") {
     CHECK(max_abs_difference(translation(arm.pose(theta, at)),
                              transform_point(arm.pose(theta, 4), Eigen::Vector3d(.1, -.2, .3))) <
           1e-15);
-    CHECK(gap_of_poses(arm.pose(theta, 0), dual_quaternion<double>(1)) == 0);
+    CHECK(pose_difference(arm.pose(theta, 0), dual_quaternion<double>(1)) == 0);
   }
 }
 
@@ -208,14 +208,14 @@ TEST_CASE("fixed joints are merged; the number of joints may be known at run tim
 }
 
 TEST_CASE("a chain whose number of joints is no more in its type is the same chain") {
-  const auto given = robots::baxter_left().table(); // its link frames are not those of its joints
-  const bounded_chain<16> chain = given;
+  const auto table = robots::baxter_left().table(); // its link frames are not those of its joints
+  const bounded_chain<16> chain = table;
   static_assert(!std::is_convertible_v<serial_chain<7>, bounded_chain<6>>);
-  for (const auto& theta : duet_test::configurations(given, 3)) {
-    CHECK(gap_of_poses(chain.pose(theta), given.pose(theta)) == 0);
-    CHECK(gap_of_poses(chain.pose(theta, 4), given.pose(theta, 4)) == 0);
+  for (const auto& theta : duet_test::configurations(table, 3)) {
+    CHECK(pose_difference(chain.pose(theta), table.pose(theta)) == 0);
+    CHECK(pose_difference(chain.pose(theta, 4), table.pose(theta, 4)) == 0);
   }
-  CHECK(chain.limits(3).upper == given.limits(3).upper);
+  CHECK(chain.limits(3).upper == table.limits(3).upper);
   CHECK(chain.kind(6) == joint_kind::revolute);
 }
 
@@ -267,8 +267,8 @@ TEST_CASE("what is wrong with a chain is said in one line") {
 
 TEST_CASE("a tool and fixed joints whose rotations have few digits move nothing farther") {
   joint<> fixed{.kind = joint_kind::fixed, .origin = {{.707, .707, 0, 0}, {0, 0, 0}}};
-  joint<> turning{.origin = {quaternion<double>(1), {0, 1, 0}}};
-  const serial_chain<1> chain(std::array{fixed, turning}, {{.707, 0, .707, 0}, {1, 0, 0}});
+  joint<> revolute{.origin = {quaternion<double>(1), {0, 1, 0}}};
+  const serial_chain<1> chain(std::array{fixed, revolute}, {{.707, 0, .707, 0}, {1, 0, 0}});
   const auto a = chain.pose(std::array{0.0});
   CHECK(is_unit(a));
   CHECK(max_abs_difference(translation(a), Eigen::Vector3d(1, 0, 1)) < 1e-15);
@@ -299,12 +299,12 @@ TEST_CASE("sines of all joints at once: as one after the other, under derivative
     const auto h = hessian(at, Eigen::Vector2d(.5, -.25));
     const auto h_expected = hessian(at, Eigen::Matrix<long double, 2, 1>(.5L, -.25L));
     CHECK(max_abs_difference(h.hessian, h_expected.hessian.template cast<double>()) < 2e-12);
-    const auto slope = [&](const auto& t) {
+    const auto derivative_of = [&](const auto& t) {
       return derivative<struct inner>([&](const auto& u) { return height(chain, t, u); }, t)
           .derivative;
     };
-    CHECK(std::abs(double(derivative(slope, .5).derivative - derivative(slope, .5L).derivative)) <
-          2e-12);
+    CHECK(std::abs(double(derivative(derivative_of, .5).derivative -
+                          derivative(derivative_of, .5L).derivative)) < 2e-12);
   };
   check(arm);
   check(unsized);

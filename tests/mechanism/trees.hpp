@@ -17,7 +17,8 @@
 
 namespace duet_test {
 
-inline duet::placement<double> place(double a, double b, double c, double x, double y, double z) {
+inline duet::placement<double> placement_at(double a, double b, double c, double x, double y,
+                                            double z) {
   return duet::placement<double>(
       duet::pose(duet::from_rotation_vector(Eigen::Vector3d(a, b, c)), Eigen::Vector3d(x, y, z)));
 }
@@ -31,7 +32,7 @@ inline duet::robot_description all_joints() {
     return std::array<double, 3>{n[0], n[1], n[2]};
   };
   const auto mass = [](double m, double x, double y, double z) {
-    return duet::link_inertia{m, place(.1, .2, .3, x, y, z), {1, 0, 0, 1, 0, 1}};
+    return duet::link_inertia{m, placement_at(.1, .2, .3, x, y, z), {1, 0, 0, 1, 0, 1}};
   };
   duet::robot_description robot;
   robot.links = {{"finger", mass(.2, .01, .02, .05)},
@@ -49,33 +50,33 @@ inline duet::robot_description all_joints() {
       {"grip",
        "hand",
        "finger",
-       {joint_kind::prismatic, place(.3, -1, .2, .1, .2, -.1), axis(1, 2, -.3)}},
-      {"free", "world", "body", {joint_kind::floating, place(1, 0, 2, .3, 0, .2)}},
-      {"ball", "body", "shoulder", {joint_kind::spherical, place(-.5, .6, 0, 0, .5, 0)}},
+       {joint_kind::prismatic, placement_at(.3, -1, .2, .1, .2, -.1), axis(1, 2, -.3)}},
+      {"free", "world", "body", {joint_kind::floating, placement_at(1, 0, 2, .3, 0, .2)}},
+      {"ball", "body", "shoulder", {joint_kind::spherical, placement_at(-.5, .6, 0, 0, .5, 0)}},
       {"bend",
        "shoulder",
        "elbow",
-       {joint_kind::revolute, place(0, 0, 1, 0, 0, .4), axis(.2, -.4, 1)}},
+       {joint_kind::revolute, placement_at(0, 0, 1, 0, 0, .4), axis(.2, -.4, 1)}},
       {"turn",
        "elbow",
        "hand",
-       {joint_kind::continuous, place(.1, .2, .3, .2, .1, 0), axis(0, 1, 0)}},
-      {"weld", "hand", "tool", {joint_kind::fixed, place(2, 1, 0, .05, 0, .1)}},
+       {joint_kind::continuous, placement_at(.1, .2, .3, .2, .1, 0), axis(0, 1, 0)}},
+      {"weld", "hand", "tool", {joint_kind::fixed, placement_at(2, 1, 0, .05, 0, .1)}},
       {"oppose",
        "hand",
        "thumb",
-       {joint_kind::revolute, place(0, .4, 0, 0, .1, .1), axis(1, 1, 1)},
+       {joint_kind::revolute, placement_at(0, .4, 0, 0, .1, .1), axis(1, 1, 1)},
        duet::joint_mimic{"grip", -2.5, .1}},
       {"slide",
        "world",
        "cart",
-       {joint_kind::planar, place(.2, .3, -.4, 1, 0, 0), axis(.3, -.5, .7)}},
+       {joint_kind::planar, placement_at(.2, .3, -.4, 1, 0, 0), axis(.3, -.5, .7)}},
       {"lead",
        "cart",
        "screw",
-       {joint_kind::helical, place(.5, 0, .1, 0, 0, .3), axis(1, 1, -1), {}, .07},
+       {joint_kind::helical, placement_at(.5, 0, .1, 0, 0, .3), axis(1, 1, -1), {}, .07},
        duet::joint_mimic{"oppose", .5, -.2}},
-      {"mount", "world", "flange", {joint_kind::fixed, place(0, 0, 1, -1, 0, 0)}}};
+      {"mount", "world", "flange", {joint_kind::fixed, placement_at(0, 0, 1, -1, 0, 0)}}};
   return robot;
 }
 

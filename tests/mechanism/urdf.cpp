@@ -78,49 +78,53 @@ TEST_CASE("origins, axes and limits as the format says") {
 TEST_CASE("what is wrong is said with file, line and element") {
   const std::string file = "duet: " + path + ":";
   const std::string q = file + "5: <joint name=\"q\">";
-  const auto says = [&](const std::string& joint, const std::string& expected) {
+  const auto check_error = [&](const std::string& joint, const std::string& expected) {
     write(links + first + joint);
     CHECK(message() == expected);
   };
   const std::string origins = ": there are \"a\", \"b\", \"c\"";
-  says(joint_to_c("<mimic joint=\"p\"/>"),
-       q + ": follows \"p\": that takes a kinematic_tree, not a chain");
-  says(joint_to_c("<axis xyz=\"0 0 2\"/>"), q + " <axis>: length 2, not 1");
-  says(joint_to_c("<axis xyz=\"0 0 0\"/>"), q + " <axis>: length 0, not 1");
-  says(joint_to_c("\n<axis xyz=\"0 0 x\"/>"),
-       file + "6: <joint name=\"q\"> <axis>: xyz=\"x\" is no number up to 1e6");
-  says(joint_to_c("<axis xyz=\"0 0\"/>"), q + " <axis>: xyz=\"0 0\" is not three numbers");
-  says(joint_to_c("<origin xyz=\"1 2 3 4\"/>"),
-       q + " <origin>: xyz=\"1 2 3 4\" is not three numbers");
-  says(joint_to_c("<origin rpy=\"nan 0 0\"/>"),
-       q + " <origin>: rpy=\"nan\" is no number up to 1e6");
-  says(joint_to_c("<origin xyz=\"0 0 1e16\"/>"),
-       q + " <origin>: xyz=\"1e16\" is no number up to 1e6");
-  says(joint_to_c("", "revolute"), q + ": no element <limit>, which a revolute joint must have");
-  says(joint_to_c("<limit lower=\"2\" upper=\"1\"/>", "revolute"),
-       q + " <limit>: lower 2 is above upper 1");
-  says(joint_to_c("<limit velocity=\"-1\"/>", "revolute"),
-       q + " <limit>: velocity=\"-1\" is negative");
-  says(joint_to_c("<limit upper=\"1,5\"/>", "revolute"),
-       q + " <limit>: upper=\"1,5\" is no number up to 1e6");
-  says(joint_to_c("", "floating"),
-       q + ": has 6 coordinates: that takes a kinematic_tree, not a chain");
-  says(joint_to_c("", "spherical"), q + ": type \"spherical\" is none of revolute, continuous, "
-                                        "prismatic, fixed, planar and floating");
-  says("<joint name=\"q\" type=\"fixed\"><child link=\"c\"/></joint>", q + ": no element <parent>");
-  says("<joint name=\"q\" type=\"fixed\"><parent link=\"b\"/><child/></joint>",
-       q + " <child>: no attribute \"link\"");
-  says("<joint type=\"fixed\"/>", file + "5: <joint>: no attribute \"name\"");
-  says("<joint name=\"q\"><parent link=\"b\"/><child link=\"c\"/></joint>",
-       q + ": no attribute \"type\"");
-  says("", "duet: " + path +
-               ": no joints connect the links \"a\" and \"c\": above \"c\" there is none");
-  says("<joint name=\"q\" type=\"fixed\"><parent link=\"z\"/><child link=\"c\"/></joint>",
-       q + " <parent>: no link \"z\"" + origins);
+  check_error(joint_to_c("<mimic joint=\"p\"/>"),
+              q + ": follows \"p\": that takes a kinematic_tree, not a chain");
+  check_error(joint_to_c("<axis xyz=\"0 0 2\"/>"), q + " <axis>: length 2, not 1");
+  check_error(joint_to_c("<axis xyz=\"0 0 0\"/>"), q + " <axis>: length 0, not 1");
+  check_error(joint_to_c("\n<axis xyz=\"0 0 x\"/>"),
+              file + "6: <joint name=\"q\"> <axis>: xyz=\"x\" is no number up to 1e6");
+  check_error(joint_to_c("<axis xyz=\"0 0\"/>"), q + " <axis>: xyz=\"0 0\" is not three numbers");
+  check_error(joint_to_c("<origin xyz=\"1 2 3 4\"/>"),
+              q + " <origin>: xyz=\"1 2 3 4\" is not three numbers");
+  check_error(joint_to_c("<origin rpy=\"nan 0 0\"/>"),
+              q + " <origin>: rpy=\"nan\" is no number up to 1e6");
+  check_error(joint_to_c("<origin xyz=\"0 0 1e16\"/>"),
+              q + " <origin>: xyz=\"1e16\" is no number up to 1e6");
+  check_error(joint_to_c("", "revolute"),
+              q + ": no element <limit>, which a revolute joint must have");
+  check_error(joint_to_c("<limit lower=\"2\" upper=\"1\"/>", "revolute"),
+              q + " <limit>: lower 2 is above upper 1");
+  check_error(joint_to_c("<limit velocity=\"-1\"/>", "revolute"),
+              q + " <limit>: velocity=\"-1\" is negative");
+  check_error(joint_to_c("<limit upper=\"1,5\"/>", "revolute"),
+              q + " <limit>: upper=\"1,5\" is no number up to 1e6");
+  check_error(joint_to_c("", "floating"),
+              q + ": has 6 coordinates: that takes a kinematic_tree, not a chain");
+  check_error(joint_to_c("", "spherical"),
+              q + ": type \"spherical\" is none of revolute, continuous, "
+                  "prismatic, fixed, planar and floating");
+  check_error("<joint name=\"q\" type=\"fixed\"><child link=\"c\"/></joint>",
+              q + ": no element <parent>");
+  check_error("<joint name=\"q\" type=\"fixed\"><parent link=\"b\"/><child/></joint>",
+              q + " <child>: no attribute \"link\"");
+  check_error("<joint type=\"fixed\"/>", file + "5: <joint>: no attribute \"name\"");
+  check_error("<joint name=\"q\"><parent link=\"b\"/><child link=\"c\"/></joint>",
+              q + ": no attribute \"type\"");
+  check_error("", "duet: " + path +
+                      ": no joints connect the links \"a\" and \"c\": above \"c\" there is none");
+  check_error("<joint name=\"q\" type=\"fixed\"><parent link=\"z\"/><child link=\"c\"/></joint>",
+              q + " <parent>: no link \"z\"" + origins);
   // Where it is in nobody's way it does no harm.
-  says(joint_to_c("") +
-           "<joint name=\"r\" type=\"fixed\"><parent link=\"y\"/><child link=\"z\"/></joint>",
-       "");
+  check_error(
+      joint_to_c("") +
+          "<joint name=\"r\" type=\"fixed\"><parent link=\"y\"/><child link=\"z\"/></joint>",
+      "");
   write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
   const std::string missing = "duet: " + path + ": no link \"z\"" + origins;
   CHECK(message("a", "z") == missing);
@@ -140,43 +144,46 @@ TEST_CASE("what is wrong is said with file, line and element") {
 
 TEST_CASE("what URDF has not: attributes are mistakes, elements are listed") {
   const std::string file = "duet: " + path + ":";
-  const auto says = [&](const std::string& joint, const std::string& expected) {
+  const auto check_error = [&](const std::string& joint, const std::string& expected) {
     write(links + first + joint);
     CHECK(message("a", "a") == expected); // wherever it stands
   };
   const std::string q = file + "5: <joint name=\"q\">";
   const std::string unknown = ": unknown attribute ";
-  says(joint_to_c("<limit lowr=\"-1\" upper=\"1\"/>"),
-       q + " <limit>" + unknown +
-           "\"lowr\": there are \"lower\", \"upper\", \"jerk\", \"effort\", \"velocity\", "
-           "\"acceleration\" and 1 more");
-  says(joint_to_c("<axis xzy=\"1 0 0\"/>"), q + " <axis>" + unknown + "\"xzy\": there are \"xyz\"");
-  says(joint_to_c("<origin xyz=\"1 0 0\" rpY=\"0 0 0\"/>"),
-       q + " <origin>" + unknown + "\"rpY\": there are \"rpy\", \"xyz\"");
-  says(joint_to_c("<parent link=\"b\"/>"), q + " <parent>: is there twice, first in line 5");
-  says(joint_to_c("<axis/>\n<limit/><axis/>"),
-       file + "6: <joint name=\"q\"> <axis>: is there twice, first in line 5");
-  says(joint_to_c("<safety_controller soft_lower=\"1\"/>"),
-       q + " <safety_controller>" + unknown +
-           "\"soft_lower\": there are \"soft_lower_limit\", \"soft_upper_limit\", "
-           "\"k_velocity\", \"k_position\"");
-  says("<joint name=\"q\" typ=\"fixed\"/>", q + unknown + "\"typ\": there are \"type\", \"name\"");
-  says("<link nam=\"q\"/>", file + "5: <link>" + unknown + "\"nam\": there are \"name\", \"type\"");
+  check_error(joint_to_c("<limit lowr=\"-1\" upper=\"1\"/>"),
+              q + " <limit>" + unknown +
+                  "\"lowr\": there are \"lower\", \"upper\", \"jerk\", \"effort\", \"velocity\", "
+                  "\"acceleration\" and 1 more");
+  check_error(joint_to_c("<axis xzy=\"1 0 0\"/>"),
+              q + " <axis>" + unknown + "\"xzy\": there are \"xyz\"");
+  check_error(joint_to_c("<origin xyz=\"1 0 0\" rpY=\"0 0 0\"/>"),
+              q + " <origin>" + unknown + "\"rpY\": there are \"rpy\", \"xyz\"");
+  check_error(joint_to_c("<parent link=\"b\"/>"), q + " <parent>: is there twice, first in line 5");
+  check_error(joint_to_c("<axis/>\n<limit/><axis/>"),
+              file + "6: <joint name=\"q\"> <axis>: is there twice, first in line 5");
+  check_error(joint_to_c("<safety_controller soft_lower=\"1\"/>"),
+              q + " <safety_controller>" + unknown +
+                  "\"soft_lower\": there are \"soft_lower_limit\", \"soft_upper_limit\", "
+                  "\"k_velocity\", \"k_position\"");
+  check_error("<joint name=\"q\" typ=\"fixed\"/>",
+              q + unknown + "\"typ\": there are \"type\", \"name\"");
+  check_error("<link nam=\"q\"/>",
+              file + "5: <link>" + unknown + "\"nam\": there are \"name\", \"type\"");
   // One name for two.
-  says("<link name=\"b\"/>", file + "5: <link name=\"b\">: is there twice, first in line 3");
-  says(joint_to_c("") + "<link name=\"d\"/>\n<joint name=\"q\" type=\"fixed\"><parent "
-                        "link=\"a\"/><child link=\"d\"/></joint>",
-       file + "7: <joint name=\"q\">: is there twice, first in line 5");
-  says(joint_to_c("") +
-           "<joint name=\"r\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>",
-       file +
-           "6: <joint name=\"r\">: the link \"c\" has a joint above it already, \"q\" of line 5");
+  check_error("<link name=\"b\"/>", file + "5: <link name=\"b\">: is there twice, first in line 3");
+  check_error(joint_to_c("") + "<link name=\"d\"/>\n<joint name=\"q\" type=\"fixed\"><parent "
+                               "link=\"a\"/><child link=\"d\"/></joint>",
+              file + "7: <joint name=\"q\">: is there twice, first in line 5");
+  check_error(
+      joint_to_c("") +
+          "<joint name=\"r\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>",
+      file + "6: <joint name=\"r\">: the link \"c\" has a joint above it already, \"q\" of line 5");
   // What is other programs'.
-  says(joint_to_c("<axis xyz=\"0 0 1\" rpy=\"0 0 0\"/><limit command_effort=\"1\"/>"), "");
-  says(joint_to_c("<dynamics D=\"1\" mu_coulomb=\"0\"/><calibration rising=\"0\"/>"), "");
-  says("<link name=\"x\" xmlns:v=\"w\" v:y=\"1\"><visual any=\"1\"/></link>"
-       "<gazebo any=\"1\"/><transmission><joint name=\"q\" any=\"1\"/></transmission>",
-       "");
+  check_error(joint_to_c("<axis xyz=\"0 0 1\" rpy=\"0 0 0\"/><limit command_effort=\"1\"/>"), "");
+  check_error(joint_to_c("<dynamics D=\"1\" mu_coulomb=\"0\"/><calibration rising=\"0\"/>"), "");
+  check_error("<link name=\"x\" xmlns:v=\"w\" v:y=\"1\"><visual any=\"1\"/></link>"
+              "<gazebo any=\"1\"/><transmission><joint name=\"q\" any=\"1\"/></transmission>",
+              "");
   CHECK(read_urdf_summary(path).unknown.empty());
   CHECK(to_text(read_urdf_summary(path)).find("unknown") == std::string::npos);
   // Elements.
@@ -225,16 +232,16 @@ TEST_CASE("limits: soft ones narrow, and numbers beyond a million are none") {
   CHECK(limits_of(hard + "<safety_controller soft_upper_limit=\"1\"/>", "continuous").upper ==
         INFINITY);
   const std::string q = "duet: " + path + ":5: <joint name=\"q\">";
-  const auto says = [&](const std::string& inside) {
+  const auto error_of = [&](const std::string& inside) {
     write(links + first + joint_to_c(inside, "revolute"));
     return message();
   };
-  CHECK(says("<limit lower=\"1e16\" upper=\"1e17\"/>") ==
+  CHECK(error_of("<limit lower=\"1e16\" upper=\"1e17\"/>") ==
         q + " <limit>: lower=\"1e16\" is no number up to 1e6");
-  CHECK(says("<limit lower=\"-2\" upper=\"-1e16\"/>") ==
+  CHECK(error_of("<limit lower=\"-2\" upper=\"-1e16\"/>") ==
         q + " <limit>: upper=\"-1e16\" is no number up to 1e6");
-  CHECK(says("<limit lower=\"nan\"/>") == q + " <limit>: lower=\"nan\" is no number up to 1e6");
-  CHECK(says(hard + "<safety_controller soft_lower_limit=\"4\"/>") ==
+  CHECK(error_of("<limit lower=\"nan\"/>") == q + " <limit>: lower=\"nan\" is no number up to 1e6");
+  CHECK(error_of(hard + "<safety_controller soft_lower_limit=\"4\"/>") ==
         q + " <safety_controller>: no motion is within its limits and those of <limit>");
   std::filesystem::remove(path);
 }
@@ -255,7 +262,7 @@ TEST_CASE("cycles, broken and missing files") {
 
 TEST_CASE("what is no XML") {
   const std::string file = "duet: " + path + ":";
-  const auto says = [&](const std::string& text) {
+  const auto error_of = [&](const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
     return message("a", "a");
   };
@@ -269,50 +276,53 @@ TEST_CASE("what is no XML") {
     }
     return text + "</robot>\n";
   };
-  CHECK(says(nested(99, "<x>", "</x>")).empty());
+  CHECK(error_of(nested(99, "<x>", "</x>")).empty());
   const std::string deep = file + "1: elements are nested more than 100 deep, in <x> of line 1";
-  CHECK(says(nested(100, "<x>", "</x>")) == deep);
-  CHECK(says(nested(200000, "<x>", "</x>")) == deep);
+  CHECK(error_of(nested(100, "<x>", "</x>")) == deep);
+  CHECK(error_of(nested(200000, "<x>", "</x>")) == deep);
   // Tags that are none.
-  CHECK(says(nested(1, "<!--<x><x>--><?p <x>?><y z='&lt;x>' w = \"&lt;x>\" /><![CDATA[<x>]]>", ""))
+  CHECK(error_of(
+            nested(1, "<!--<x><x>--><?p <x>?><y z='&lt;x>' w = \"&lt;x>\" /><![CDATA[<x>]]>", ""))
             .empty());
   const std::string in_a = ", in <link> of line 2";
   const std::string invalid = "not well-formed (invalid token)";
-  CHECK(says("<robot>\n<link name=\"a\"></robot>\n</link>") == file + "2: mismatched tag" + in_a);
-  CHECK(says("<robot>\n<link name=\"a\">\n</link>\n") ==
+  CHECK(error_of("<robot>\n<link name=\"a\"></robot>\n</link>") ==
+        file + "2: mismatched tag" + in_a);
+  CHECK(error_of("<robot>\n<link name=\"a\">\n</link>\n") ==
         file + "4: no element found, in <robot> of line 1");
-  CHECK(says("<robot/>\n</robot>") == file + "2: " + invalid);
-  CHECK(says("<robot><link name=\"a\"/></robot>\n\ntext") ==
+  CHECK(error_of("<robot/>\n</robot>") == file + "2: " + invalid);
+  CHECK(error_of("<robot><link name=\"a\"/></robot>\n\ntext") ==
         file + "3: junk after document element");
-  CHECK(says("<robot><link name=\"a\"/></robot>\n<robot/>") ==
+  CHECK(error_of("<robot><link name=\"a\"/></robot>\n<robot/>") ==
         file + "2: junk after document element");
-  CHECK(says("<robot>\n<!-- </robot>") == file + "2: unclosed token, in <robot> of line 1");
-  CHECK(says("<robot>\n<link name=\"a\" name=\"b\"/></robot>") ==
+  CHECK(error_of("<robot>\n<!-- </robot>") == file + "2: unclosed token, in <robot> of line 1");
+  CHECK(error_of("<robot>\n<link name=\"a\" name=\"b\"/></robot>") ==
         file + "2: duplicate attribute, in <robot> of line 1");
-  CHECK(says("<robot>\n<link name=\"&a;\"/></robot>") ==
+  CHECK(error_of("<robot>\n<link name=\"&a;\"/></robot>") ==
         file + "2: undefined entity, in <robot> of line 1");
-  CHECK(says("<robot>\n<link name=\"a\">&nbsp;</link></robot>") ==
+  CHECK(error_of("<robot>\n<link name=\"a\">&nbsp;</link></robot>") ==
         file + "2: undefined entity" + in_a);
   for (const char* broken : {"<robot a=>", "<robot a>", "<robot a='<'/>", "<robot / >", "< robot>",
                              "<robot &#0;/>", "<robot a='\xff'/>"}) {
-    CHECK(says(broken) == file + "1: " + invalid);
+    CHECK(error_of(broken) == file + "1: " + invalid);
   }
-  CHECK(says("<robot a=\"b>") == file + "1: unclosed token");
-  CHECK(says(std::string("<robot>\n\0</robot>", 18)) ==
+  CHECK(error_of("<robot a=\"b>") == file + "1: unclosed token");
+  CHECK(error_of(std::string("<robot>\n\0</robot>", 18)) ==
         file + "2: " + invalid + ", in <robot> of line 1");
-  CHECK(says("<robot a='&#0;'/>") == file + "1: reference to invalid character number");
-  CHECK(says("<!DOCTYPE robot [<!ENTITY a \"&b;&b;\">]><robot>&a;</robot>") ==
+  CHECK(error_of("<robot a='&#0;'/>") == file + "1: reference to invalid character number");
+  CHECK(error_of("<!DOCTYPE robot [<!ENTITY a \"&b;&b;\">]><robot>&a;</robot>") ==
         file + "1: document types, <!DOCTYPE, are not supported");
-  CHECK(says("<!DOCTYPE robot SYSTEM \"x.dtd\"><robot/>") ==
+  CHECK(error_of("<!DOCTYPE robot SYSTEM \"x.dtd\"><robot/>") ==
         file + "1: document types, <!DOCTYPE, are not supported");
-  CHECK(says("") == file + "1: no element found");
-  CHECK(says("\xef\xbb\xbf<robot><link name=\"a\"/></robot>").empty()); // a byte order mark
-  CHECK(says("<?xml version='1.0' encoding='ISO-8859-1'?><robot><link name='a'/><link name='\xe4'/>"
-             "</robot>")
+  CHECK(error_of("") == file + "1: no element found");
+  CHECK(error_of("\xef\xbb\xbf<robot><link name=\"a\"/></robot>").empty()); // a byte order mark
+  CHECK(error_of(
+            "<?xml version='1.0' encoding='ISO-8859-1'?><robot><link name='a'/><link name='\xe4'/>"
+            "</robot>")
             .empty());
   CHECK(read_urdf_summary(path).links[1] == "\xc3\xa4");
-  CHECK(says("<?xml version='1.0' encoding='none'?><robot/>") == file + "1: unknown encoding");
-  CHECK(says(std::string((1U << 24U) + 1, ' ')) == "duet: " + path + ": has more than 16 MB");
+  CHECK(error_of("<?xml version='1.0' encoding='none'?><robot/>") == file + "1: unknown encoding");
+  CHECK(error_of(std::string((1U << 24U) + 1, ' ')) == "duet: " + path + ": has more than 16 MB");
   std::filesystem::remove(path);
   std::filesystem::create_directory(path);
   CHECK(message() == "duet: " + path + ": is a folder, not a file");

@@ -35,17 +35,17 @@ std::string robot_with(const std::string& inside) {
 }
 
 /// What is wrong behind the name of the file, of a tree and of a chain.
-std::string fault(const std::string& inside) {
+std::string error_of(const std::string& inside) {
   write(robot_with(inside));
   const std::string tree = duet_test::message_of<file_error>([] { (void)read_urdf_tree(path); });
   CHECK(tree == duet_test::message_of<file_error>([] { (void)read_urdf(path, "a", "b"); }));
   const std::string begin = "duet: " + path + ":";
   return tree.starts_with(begin) ? tree.substr(begin.size()) : tree;
 }
-std::string fault_of_shape(const std::string& shape) {
-  return fault("<collision>\n<geometry>\n" + shape + "</geometry></collision>\n");
+std::string error_of_shape(const std::string& shape) {
+  return error_of("<collision>\n<geometry>\n" + shape + "</geometry></collision>\n");
 }
-std::string fault_of_srdf(const std::string& inside) {
+std::string error_of_srdf(const std::string& inside) {
   write(inside);
   const std::string message =
       duet_test::message_of<file_error>([] { (void)read_disabled_collisions(path); });
@@ -92,33 +92,33 @@ TEST_CASE("shapes of links, in a tree and in both kinds of chains") {
 
 TEST_CASE("what is wrong with a shape: where, and what") {
   const std::string in = ": <link name=\"a\"> ";
-  CHECK(fault("<collision/>\n") == "4" + in + "<collision>: no element <geometry>");
-  CHECK(fault("<collision><geometry/></collision>\n") ==
+  CHECK(error_of("<collision/>\n") == "4" + in + "<collision>: no element <geometry>");
+  CHECK(error_of("<collision><geometry/></collision>\n") ==
         "4" + in + "<geometry>: has 0 shapes in place of one");
-  CHECK(fault_of_shape("<sphere radius=\"1\"/><box size=\"1 1 1\"/>") ==
+  CHECK(error_of_shape("<sphere radius=\"1\"/><box size=\"1 1 1\"/>") ==
         "5" + in + "<geometry>: has 2 shapes in place of one");
-  CHECK(fault_of_shape("<sphere radius=\"1\"/><sphere radius=\"1\"/>") ==
+  CHECK(error_of_shape("<sphere radius=\"1\"/><sphere radius=\"1\"/>") ==
         "6" + in + "<sphere>: is there twice, first in line 6");
-  CHECK(fault_of_shape("<cone radius=\"1\"/>") ==
+  CHECK(error_of_shape("<cone radius=\"1\"/>") ==
         "6" + in + "<cone>: is none of the shapes box, cylinder, capsule, sphere and mesh");
-  CHECK(fault_of_shape("<sphere radious=\"1\"/>") ==
+  CHECK(error_of_shape("<sphere radious=\"1\"/>") ==
         "6" + in + "<sphere>: unknown attribute \"radious\": there are \"radius\"");
-  CHECK(fault_of_shape("<sphere/>") == "6" + in + "<sphere>: no attribute \"radius\"");
-  CHECK(fault_of_shape("<sphere radius=\"-1\"/>") ==
+  CHECK(error_of_shape("<sphere/>") == "6" + in + "<sphere>: no attribute \"radius\"");
+  CHECK(error_of_shape("<sphere radius=\"-1\"/>") ==
         "6" + in + "<sphere>: radius=\"-1\" is negative");
-  CHECK(fault_of_shape("<cylinder radius=\"1\" length=\"x\"/>") ==
+  CHECK(error_of_shape("<cylinder radius=\"1\" length=\"x\"/>") ==
         "6" + in + "<cylinder>: length=\"x\" is no number up to 1e6");
-  CHECK(fault_of_shape("<box size=\"1 1\"/>") ==
+  CHECK(error_of_shape("<box size=\"1 1\"/>") ==
         "6" + in + "<box>: size=\"1 1\" is not three numbers");
-  CHECK(fault_of_shape("<box/>") == "6" + in + "<box>: no attribute \"size\"");
-  CHECK(fault_of_shape("<box size=\"1 1 -1\"/>") ==
+  CHECK(error_of_shape("<box/>") == "6" + in + "<box>: no attribute \"size\"");
+  CHECK(error_of_shape("<box size=\"1 1 -1\"/>") ==
         "6" + in + "<box>: size=\"1 1 -1\" is negative");
-  CHECK(fault_of_shape("<box size=\"1 1 1\" scale=\"1 1 2\"/>") ==
+  CHECK(error_of_shape("<box size=\"1 1 1\" scale=\"1 1 2\"/>") ==
         "6" + in + "<box>: has a scale, which is for meshes");
-  CHECK(fault_of_shape("<mesh scale=\"1 1 1\"/>") ==
+  CHECK(error_of_shape("<mesh scale=\"1 1 1\"/>") ==
         "6" + in + "<mesh>: no attribute \"filename\"");
-  CHECK(fault("<collision><origin xyz=\"1 2\"/><geometry><sphere radius=\"1\"/></geometry>"
-              "</collision>\n") == "4" + in + "<origin>: xyz=\"1 2\" is not three numbers");
+  CHECK(error_of("<collision><origin xyz=\"1 2\"/><geometry><sphere radius=\"1\"/></geometry>"
+                 "</collision>\n") == "4" + in + "<origin>: xyz=\"1 2\" is not three numbers");
 }
 
 TEST_CASE("disabled collisions") {
@@ -130,18 +130,18 @@ TEST_CASE("disabled collisions") {
   CHECK(pairs[0].first == "a");
   CHECK(pairs[0].second == "b");
   CHECK(pairs[1].second == "c");
-  CHECK(fault_of_srdf("<disable_collisions link1=\"a\"/>") ==
+  CHECK(error_of_srdf("<disable_collisions link1=\"a\"/>") ==
         "3: <disable_collisions>: no attribute \"link2\"");
-  CHECK(fault_of_srdf("\n<disable_collisions link1=\"a\" linc2=\"b\"/>") ==
+  CHECK(error_of_srdf("\n<disable_collisions link1=\"a\" linc2=\"b\"/>") ==
         "4: <disable_collisions>: unknown attribute \"linc2\": there are \"link1\", \"link2\" and "
         "\"reason\"");
-  CHECK(fault_of_srdf("<disable_collisions link1=\"\" link2=\"b\"/>") ==
+  CHECK(error_of_srdf("<disable_collisions link1=\"\" link2=\"b\"/>") ==
         "3: <disable_collisions>: link1=\"\" names no link");
-  CHECK(fault_of_srdf("<disable_collisions link1=\"a\" link2=\"\"/>") ==
+  CHECK(error_of_srdf("<disable_collisions link1=\"a\" link2=\"\"/>") ==
         "3: <disable_collisions>: link2=\"\" names no link");
-  CHECK(fault_of_srdf("\n<disable_collisions link1=\"a\" link2=\"a\" reason=\"Never\"/>") ==
+  CHECK(error_of_srdf("\n<disable_collisions link1=\"a\" link2=\"a\" reason=\"Never\"/>") ==
         "4: <disable_collisions>: link1 and link2 are both \"a\"");
-  CHECK(fault_of_srdf("<enable_collisions link1=\"a\" link2=\"b\"/>") ==
+  CHECK(error_of_srdf("<enable_collisions link1=\"a\" link2=\"b\"/>") ==
         "3: <enable_collisions> is not supported");
   std::ofstream(path) << "<sdf/>";
   CHECK(duet_test::message_of<file_error>([] { (void)read_disabled_collisions(path); }) ==

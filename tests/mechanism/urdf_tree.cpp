@@ -89,62 +89,66 @@ TEST_CASE("a whole file: kinds, followers, masses, lines") {
 
 TEST_CASE("mistakes, with file, line and element") {
   const std::string file = "duet: " + path + ":";
-  const auto says = [&](const std::string& inside, const std::string& expected) {
+  const auto check_error = [&](const std::string& inside, const std::string& expected) {
     write(inside);
     CHECK(message() == expected);
   };
-  const std::string turns = "<limit lower=\"-1\" upper=\"1\"/>";
-  const std::string p = joint_of("p", "revolute", "a", "b", turns);
+  const std::string limit = "<limit lower=\"-1\" upper=\"1\"/>";
+  const std::string p = joint_of("p", "revolute", "a", "b", limit);
   const auto follows = [&](const std::string& mimic, const std::string& type = "revolute") {
-    return links + p + joint_of("q", type, "b", "c", turns + "<mimic " + mimic + "/>");
+    return links + p + joint_of("q", type, "b", "c", limit + "<mimic " + mimic + "/>");
   };
   const std::string q = file + "5: <joint name=\"q\">";
-  says(follows("joint=\"p\""), "");
-  says(follows("joint=\"x\""), q + ": it follows no joint \"x\": there are \"p\", \"q\"");
-  says(follows("joint=\"q\""), q + ": follows itself");
-  says(follows("joint=\"p\"", "planar"),
-       q + ": follows \"p\", but \"q\" has 3 coordinates, not one");
-  says(follows("multiplier=\"2\""), q + " <mimic>: no attribute \"joint\"");
-  says(follows("joint=\"p\" multiplier=\"x\""),
-       q + " <mimic>: multiplier=\"x\" is no number up to 1e6");
-  says(follows("joint=\"p\" offset=\"3\""),
-       q + ": no motion of \"p\" is within its limits, -1 to 1");
-  says(links + joint_of("p", "revolute", "a", "b", turns + "<mimic joint=\"q\"/>") +
-           joint_of("q", "revolute", "b", "c", turns + "<mimic joint=\"p\"/>"),
-       file + "4: <joint name=\"p\">: follows itself");
-  says(links + p, file + "3: <link name=\"c\">: no joint is above it, and none above \"a\": a tree "
-                         "has one root");
-  says(links + joint_of("q", "fixed", "b", "c") + joint_of("r", "fixed", "c", "b"),
-       file + "5: <joint name=\"r\">: closes a cycle at the link \"b\"");
-  says(links + p + joint_of("q", "fixed", "z", "c"),
-       q + ": no link \"z\": there are \"a\", \"b\", \"c\"");
-  says("", "duet: " + path + ": there are no links");
+  check_error(follows("joint=\"p\""), "");
+  check_error(follows("joint=\"x\""), q + ": it follows no joint \"x\": there are \"p\", \"q\"");
+  check_error(follows("joint=\"q\""), q + ": follows itself");
+  check_error(follows("joint=\"p\"", "planar"),
+              q + ": follows \"p\", but \"q\" has 3 coordinates, not one");
+  check_error(follows("multiplier=\"2\""), q + " <mimic>: no attribute \"joint\"");
+  check_error(follows("joint=\"p\" multiplier=\"x\""),
+              q + " <mimic>: multiplier=\"x\" is no number up to 1e6");
+  check_error(follows("joint=\"p\" offset=\"3\""),
+              q + ": no motion of \"p\" is within its limits, -1 to 1");
+  check_error(links + joint_of("p", "revolute", "a", "b", limit + "<mimic joint=\"q\"/>") +
+                  joint_of("q", "revolute", "b", "c", limit + "<mimic joint=\"p\"/>"),
+              file + "4: <joint name=\"p\">: follows itself");
+  check_error(links + p,
+              file + "3: <link name=\"c\">: no joint is above it, and none above \"a\": a tree "
+                     "has one root");
+  check_error(links + joint_of("q", "fixed", "b", "c") + joint_of("r", "fixed", "c", "b"),
+              file + "5: <joint name=\"r\">: closes a cycle at the link \"b\"");
+  check_error(links + p + joint_of("q", "fixed", "z", "c"),
+              q + ": no link \"z\": there are \"a\", \"b\", \"c\"");
+  check_error("", "duet: " + path + ": there are no links");
   const auto weighs = [&](const std::string& inside) {
     return "<link name=\"a\">\n<inertial>" + inside + "</inertial></link>";
   };
   const std::string a = file + "4: <link name=\"a\"> ";
-  says(weighs(""), a + "<inertial>: no element <mass>");
-  says(weighs("<mass/>"), a + "<mass>: no attribute \"value\"");
-  says(weighs("<mass value=\"-1\"/>"), a + "<mass>: value=\"-1\" is negative");
-  says(weighs("<mass value=\"1\" unit=\"kg\"/>"),
-       a + "<mass>: unknown attribute \"unit\": there are \"value\"");
-  says(weighs("<mass value=\"1\"/><mass value=\"1\"/>"),
-       a + "<mass>: is there twice, first in line 4");
+  check_error(weighs(""), a + "<inertial>: no element <mass>");
+  check_error(weighs("<mass/>"), a + "<mass>: no attribute \"value\"");
+  check_error(weighs("<mass value=\"-1\"/>"), a + "<mass>: value=\"-1\" is negative");
+  check_error(weighs("<mass value=\"1\" unit=\"kg\"/>"),
+              a + "<mass>: unknown attribute \"unit\": there are \"value\"");
+  check_error(weighs("<mass value=\"1\"/><mass value=\"1\"/>"),
+              a + "<mass>: is there twice, first in line 4");
   const auto moments = [&](const std::string& more) {
     return weighs(
         "<mass value=\"1\"/><inertia ixx=\"1\" ixy=\".1\" ixz=\".2\" iyy=\"2\" iyz=\".3\" "
         "izz=\"3\" " +
         more + "/>");
   };
-  says(moments("iyx=\".1\" izx=\".2\" izy=\"-.3\""),
-       a + "<inertia>: izy=\"-.3\" is not iyz=\".3\": the matrix of inertia must be symmetric");
-  says(moments("iyx=\"x\""), a + "<inertia>: iyx=\"x\" is not a finite number");
-  says(weighs("<mass value=\"1e9\"/>"), "");
-  says(weighs("<mass value=\"1e400\"/>"), a + "<mass>: value=\"1e400\" is not a finite number");
-  says(weighs("<mass value=\"1\"/><inertia ixx=\"1\"/>"), a + "<inertia>: no attribute \"ixy\"");
-  says(weighs("<mass value=\"1\"/><origin xyz=\"1 2\"/>"),
-       a + "<origin>: xyz=\"1 2\" is not three numbers");
-  says(weighs("<mass value=\"1\"/><colour/>"), "");
+  check_error(
+      moments("iyx=\".1\" izx=\".2\" izy=\"-.3\""),
+      a + "<inertia>: izy=\"-.3\" is not iyz=\".3\": the matrix of inertia must be symmetric");
+  check_error(moments("iyx=\"x\""), a + "<inertia>: iyx=\"x\" is not a finite number");
+  check_error(weighs("<mass value=\"1e9\"/>"), "");
+  check_error(weighs("<mass value=\"1e400\"/>"),
+              a + "<mass>: value=\"1e400\" is not a finite number");
+  check_error(weighs("<mass value=\"1\"/><inertia ixx=\"1\"/>"),
+              a + "<inertia>: no attribute \"ixy\"");
+  check_error(weighs("<mass value=\"1\"/><origin xyz=\"1 2\"/>"),
+              a + "<origin>: xyz=\"1 2\" is not three numbers");
+  check_error(weighs("<mass value=\"1\"/><colour/>"), "");
   CHECK(to_text(read_urdf_summary(path))
             .ends_with("unknown elements:\n  line 4: <colour> in <link name=\"a\"> <inertial>\n"));
   std::filesystem::remove(path);

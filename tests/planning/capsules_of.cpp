@@ -64,9 +64,9 @@ triangle_mesh octahedron(double a, double b, double c) {
   for (int k = 0; k < 8; ++k) {
     const double x = k % 2 == 0 ? a : -a, y = k / 2 % 2 == 0 ? b : -b, z = k / 4 == 0 ? c : -c;
     const bool is_turned = x * y * z < 0;
-    result.corners.push_back({x, 0, 0});
-    result.corners.push_back(is_turned ? std::array{0., 0., z} : std::array{0., y, 0.});
-    result.corners.push_back(is_turned ? std::array{0., y, 0.} : std::array{0., 0., z});
+    result.vertices.push_back({x, 0, 0});
+    result.vertices.push_back(is_turned ? std::array{0., 0., z} : std::array{0., y, 0.});
+    result.vertices.push_back(is_turned ? std::array{0., y, 0.} : std::array{0., 0., z});
   }
   return result;
 }
@@ -103,18 +103,18 @@ TEST_CASE("boxes are inside, along the edge for which it is least") {
         {random.log_uniform(.1, 10), random.log_uniform(.1, 10), random.log_uniform(.1, 10)}};
     const double scale = b.size[0] + b.size[1] + b.size[2];
     const capsule<> c = bounding_capsule(b);
-    std::vector<point> corners;
+    std::vector<point> vertices;
     for (int i = 0; i < 8; ++i) {
-      corners.push_back(corner(b, i));
+      vertices.push_back(corner(b, i));
     }
-    check_touches(c, corners, scale);
+    check_touches(c, vertices, scale);
     for (int i = 0; i < 12500; ++i) {
       CHECK(outside(c, {b.size[0] * random.uniform(-.5, .5), b.size[1] * random.uniform(-.5, .5),
                         b.size[2] * random.uniform(-.5, .5)}) < 1e-13 * scale);
     }
     // What is sought in all directions is not smaller, by more than rounding and its own accuracy.
-    const capsule<> sought = bounding_capsule(corners);
-    check_touches(sought, corners, scale);
+    const capsule<> sought = bounding_capsule(vertices);
+    check_touches(sought, vertices, scale);
     CHECK(volume_of(sought) > volume_of(c) * (1 - 1e-3));
     CHECK(volume_of(sought) < volume_of(c) * 1.01);
   }
@@ -177,11 +177,11 @@ TEST_CASE("few points, in line, in a plane, one again and again, none") {
 TEST_CASE("volumes of surfaces: closed, turned inside out, open") {
   auto m = octahedron(1, 2, .5);
   CHECK(volume_of(m) == doctest::Approx(4. / 3).epsilon(1e-14));
-  for (auto& x : m.corners) {
+  for (auto& x : m.vertices) {
     x = {-x[0] + 7, x[1] - 5, x[2] + 1e3};
   }
   CHECK(volume_of(m) == doctest::Approx(4. / 3).epsilon(1e-10));
-  m.corners.resize(m.corners.size() - 3);
+  m.vertices.resize(m.vertices.size() - 3);
   CHECK(std::isnan(volume_of(m)));
 }
 
@@ -192,10 +192,16 @@ TEST_CASE("the links of a tree and a chain: each shape where it stands") {
   robot_description robot;
   robot.links = {{"base"}, {"arm"}, {"weld"}, {"hand"}};
   robot.joints = {
-      {"shoulder", "base", "arm", {joint_kind::revolute, duet_test::place(.1, .2, .3, 0, 0, 1)}},
-      {"fixed", "arm", "weld", {joint_kind::fixed, duet_test::place(.5, 0, 1, .3, .1, 0)}},
-      {"wrist", "weld", "hand", {joint_kind::revolute, duet_test::place(0, 1, 0, 0, 0, .5)}}};
-  const placement<double> placed = duet_test::place(.7, -.2, .4, .1, .2, -.3);
+      {"shoulder",
+       "base",
+       "arm",
+       {joint_kind::revolute, duet_test::placement_at(.1, .2, .3, 0, 0, 1)}},
+      {"fixed", "arm", "weld", {joint_kind::fixed, duet_test::placement_at(.5, 0, 1, .3, .1, 0)}},
+      {"wrist",
+       "weld",
+       "hand",
+       {joint_kind::revolute, duet_test::placement_at(0, 1, 0, 0, 0, .5)}}};
+  const placement<double> placed = duet_test::placement_at(.7, -.2, .4, .1, .2, -.3);
   robot.links[0].collision = {{placed, collision_cylinder{.1, 1}}, {{}, collision_sphere{.2}}};
   robot.links[2].collision = {{placed, collision_box{{.1, .2, .5}}},
                               {placed, collision_mesh{"package://" + file, {.1, -.2, .3}}}};

@@ -24,8 +24,8 @@ namespace detail {
 ///
 /// \throws invalid_input if the translation is not finite
 template <class T>
-constexpr void require_finite(const placement<T>& given, const char* function) {
-  const auto& t = given.translation;
+constexpr void require_finite(const placement<T>& offset, const char* function) {
+  const auto& t = offset.translation;
   if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
     raise(invalid_input(
         message("duet: ", function, ": its translation is (", t[0], ", ", t[1], ", ", t[2], ")")));
@@ -86,11 +86,11 @@ template <SerialChain C, detail::JointOf<C> Which>
         detail::message(theta, " is not within its limits, ", limits.lower, " to ", limits.upper),
         "with_locked_joint", detail::joint_name(chain, i));
   }
-  const auto held = detail::placement_at(chain.steps()[std::size_t(i)], theta);
+  const auto locked = detail::placement_at(chain.steps()[std::size_t(i)], theta);
   if constexpr (C::joints > 1) {
-    return serial_chain<C::joints - 1, T>(detail::copy_of_chain(chain), i, held);
+    return serial_chain<C::joints - 1, T>(detail::copy_of_chain(chain), i, locked);
   } else {
-    return C(chain, i, held);
+    return C(chain, i, locked);
   }
 }
 

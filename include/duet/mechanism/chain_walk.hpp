@@ -68,11 +68,11 @@ void require_size(const C& chain, const X& theta) {
 /// \tparam X  type of the configuration θ
 template <class S, int N, class X>
 class half_angle_sincos {
-  static constexpr int most = N > 0 ? N : -N;
-  static constexpr bool at_once = most > 1 && std::same_as<real_type_t<S>, double>;
+  static constexpr int max_joints = N > 0 ? N : -N;
+  static constexpr bool at_once = max_joints > 1 && std::same_as<real_type_t<S>, double>;
   // Eight lanes are not faster.
   static constexpr int lanes = DUET_VECTOR_BYTES < 32 ? 2 : 4;
-  static constexpr int vectors = at_once ? (most + lanes - 1) / lanes : 0;
+  static constexpr int vectors = at_once ? (max_joints + lanes - 1) / lanes : 0;
   using packet = vector_of<double, lanes>;
 
 public:
@@ -126,9 +126,10 @@ template <class S>
 using link_displacement = displacement<quaternion<S>, three_vector<S>>;
 
 /// Traversal from the I-th joint on of a table known to the compiler.
-template <bool WithRotation, class C, int I, class S, class Link, class X, class Turns, class Visit>
+template <bool WithRotation, class C, int I, class S, class Link, class X, class HalfAngles,
+          class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
-traverse_static(const Link& link, const X& theta, const Turns& periodicity_of, int links,
+traverse_static(const Link& link, const X& theta, const HalfAngles& half_angles, int links,
                 const Visit& visit) {
   if constexpr (I == C::joints) {
     return link;
@@ -140,12 +141,11 @@ traverse_static(const Link& link, const X& theta, const Turns& periodicity_of, i
     const S x(vector_argument<X>::get(theta, I));
     if constexpr (!WithRotation) {
       if (I + 1 == links) {
-        return after_joint<false>(link, step, I, x, periodicity_of, visit);
+        return after_joint<false>(link, step, I, x, half_angles, visit);
       }
     }
     return traverse_static<WithRotation, C, I + 1, S>(
-        after_joint<true>(link, step, I, x, periodicity_of, visit), theta, periodicity_of, links,
-        visit);
+        after_joint<true>(link, step, I, x, half_angles, visit), theta, half_angles, links, visit);
   }
 }
 
@@ -155,23 +155,23 @@ template <bool WithRotation, class S, class C, class X, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> walk(const C& chain, const X& theta,
                                                            int links, const Visit& visit) {
   require_size(chain, theta);
-  const half_angle_sincos<S, C::joints, X> periodicity_of(theta, chain.size(), links);
+  const half_angle_sincos<S, C::joints, X> half_angles(theta, chain.size(), links);
   if constexpr (requires { typename C::arm; }) {
     const known_one one;
     const known_zero zero;
     return traverse_static<WithRotation, C, 0, S>(
         displacement{partially_constant_quaternion{one, zero, zero, zero},
                      three_vector{zero, zero, zero}},
-        theta, periodicity_of, links, visit);
+        theta, half_angles, links, visit);
   } else {
     link_displacement<S> link{quaternion<S>(S(1)), {S(0), S(0), S(0)}};
     for (int i = 0; i < links; ++i) {
       const step_in_memory<typename C::scalar_type> step{chain.steps()[std::size_t(i)]};
       const S x(vector_argument<X>::get(theta, i));
       if (!WithRotation && i + 1 == links) {
-        return after_joint<false>(link, step, i, x, periodicity_of, visit);
+        return after_joint<false>(link, step, i, x, half_angles, visit);
       }
-      link = after_joint<true>(link, step, i, x, periodicity_of, visit);
+      link = after_joint<true>(link, step, i, x, half_angles, visit);
     }
     return link;
   }
@@ -181,8 +181,8 @@ template <bool WithRotation, class S, class C, class X, class Visit>
 template <class S, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S> attached(const link_displacement<S>& link,
                                                                const placement<T>& offset) {
-  const bool is_turned = !(offset.rotation == quaternion<T>(T(1)));
-  return {is_turned ? link.rotation * offset.rotation : link.rotation,
+  const bool has_rotation = !(offset.rotation == quaternion<T>(T(1)));
+  return {has_rotation ? link.rotation * offset.rotation : link.rotation,
           link.point(components(offset.translation))};
 }
 

@@ -179,34 +179,34 @@ private:
 
   /// The position at `target`, reached from the start of the motion.
   [[nodiscard]] solution followed(const P& target) const {
-    const coordinates way = numbers(target) - numbers(u_);
-    if (!way.allFinite()) {
+    const coordinates displacement = numbers(target) - numbers(u_);
+    if (!displacement.allFinite()) {
       detail::raise(
           invalid_input("duet: constrained_mechanism: u = " + text(target) + " is not finite"));
     }
-    solution here = start_;
+    solution current = start_;
     P u = u_;
-    const double limit = options_.largest_step / way.norm();
-    double done = way.isZero(0) ? 1 : 0;
-    for (double largest = limit; done < 1;) {
-      const bool is_last = 1 - done <= largest;
-      const double to = is_last ? 1 : done + largest;
-      const P next = is_last ? target : P(manifold<P>::plus(u_, coordinates(to * way)));
+    const double limit = options_.largest_step / displacement.norm();
+    double done = displacement.isZero(0) ? 1 : 0;
+    for (double max_step = limit; done < 1;) {
+      const bool is_last = 1 - done <= max_step;
+      const double to = is_last ? 1 : done + max_step;
+      const P next = is_last ? target : P(manifold<P>::plus(u_, coordinates(to * displacement)));
       const double length = to - done;
-      if (const auto there = step(here, u, next)) {
-        here = *there;
+      if (const auto reached = step(current, u, next)) {
+        current = *reached;
         u = next;
         done = to;
-        largest = std::min(limit, 2 * length);
+        max_step = std::min(limit, 2 * length);
       } else if (length <= 1e-6 * (1 - done)) {
         fail("cannot close beyond u = " + text(u) + " on the way from " + text(u_) + " to " +
                  text(target),
              u);
       } else {
-        largest = length / 2;
+        max_step = length / 2;
       }
     }
-    return here;
+    return current;
   }
 
   F constraints_;

@@ -39,12 +39,12 @@ public:
   /// \throws invalid_input (`file_error` with the line if the constraints are from a file) for
   /// frames on links that do not exist or on the same link, numbers that are not finite, rods
   /// without length
-  closed_chain_mechanism(kinematic_tree tree, loop_constraints given);
+  closed_chain_mechanism(kinematic_tree tree, loop_constraints constraints);
 
   /// The tree that is left after joints are cut.
   [[nodiscard]] const kinematic_tree& tree() const { return tree_; }
   /// The loop-closure constraints.
-  [[nodiscard]] const std::vector<loop_constraint>& loops() const { return given_.loops; }
+  [[nodiscard]] const std::vector<loop_constraint>& loops() const { return constraints_.loops; }
   /// Number of coordinates, which are those of the tree.
   [[nodiscard]] int size() const { return tree_.size(); }
   /// Number of equations of all loops.
@@ -80,11 +80,11 @@ public:
   /// equations do no harm.
   ///
   /// \param guess  initial guess of all coordinates
-  /// \param held  numbers of the held coordinates
+  /// \param fixed  numbers of the held coordinates
   /// \throws loop_closure_failure if no configuration is near; invalid_input if the number of
   /// coordinates differs from `size()`, and for numbers that are not finite
   [[nodiscard]] Eigen::VectorXd closed(const Eigen::VectorXd& guess,
-                                       const std::vector<int>& held = {}) const;
+                                       const std::vector<int>& fixed = {}) const;
 
   /// Independent coordinates, which to first order determine all others, chosen so that the
   /// dependent ones move as little as possible per unit of the independent ones: pivots of a QR
@@ -127,7 +127,7 @@ private:
   void measure();
 
   kinematic_tree tree_;
-  loop_constraints given_;
+  loop_constraints constraints_;
   std::vector<detail::loop_equations> equations_;
   Eigen::Index rows_ = 0;
   double length_ = 0;

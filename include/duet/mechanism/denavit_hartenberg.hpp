@@ -51,28 +51,28 @@ namespace detail {
 /// T_x(a) R_x(α)
 template <class T>
 [[nodiscard]] constexpr placement<T> along_link(const dh_row<T>& row) {
-  return {turn_about(0, row.alpha), {row.a, T(0), T(0)}};
+  return {rotation_about_axis(0, row.alpha), {row.a, T(0), T(0)}};
 }
 
 /// T_x(a) R_x(α) T_z(d) R_z(θ), with exact products of the sine and cosine of a right angle.
 template <class T>
 [[nodiscard]] constexpr placement<T> between_axes(const dh_row<T>& link, const dh_row<T>& joint) {
   const auto [sine, cosine] = sine_and_cosine_of_constant(link.alpha);
-  return {turn_about(0, link.alpha) * turn_about(2, joint.theta),
+  return {rotation_about_axis(0, link.alpha) * rotation_about_axis(2, joint.theta),
           {link.a, -sine * joint.d, cosine * joint.d}};
 }
 
 template <class T>
 constexpr void require_row(const dh_row<T>& row, std::size_t i) {
-  const T largest(1e6);
+  const T max_number(1e6);
   for (const T& x : {row.a, row.d, row.alpha, row.theta}) {
-    if (!(x <= largest && -x <= largest)) {
+    if (!(x <= max_number && -x <= max_number)) {
       bad_joint(i, "its row of parameters has a number beyond 1e6, or none");
     }
   }
-  const T turn(6.2832);
+  const T full_turn(6.2832);
   for (const T& x : {row.alpha, row.theta}) {
-    if (!(x <= turn && -x <= turn)) {
+    if (!(x <= full_turn && -x <= full_turn)) {
       bad_joint(i, "its row turns by more than a whole turn: angles are in radians");
     }
   }

@@ -91,10 +91,10 @@ template <class Frame, bool WithRotation, class S, class C, class X, class At, c
     }
   }
   if constexpr (std::same_as<Frame, body_frame>) { // in its axes: Rᵀv, Rᵀω
-    const rotation_of_many turn(conj(at_frame.rotation));
+    const rotation_of_many to_body_axes(conj(at_frame.rotation));
     for (Eigen::Index i = 0; i < m.cols(); ++i) {
       const auto twist = column_of(m, i);
-      set_column(m, twist_column<S>{turn(twist.v), turn(twist.omega)}, i);
+      set_column(m, twist_column<S>{to_body_axes(twist.v), to_body_axes(twist.omega)}, i);
     }
   }
   return at_frame;

@@ -72,8 +72,9 @@ template <class T>
   } else {
     quarter = constant::pi<T>() / 2;
   }
-  const T turns = angle / quarter;
-  const auto quarters = static_cast<long long>(turns + (turns < 0 ? T(-0.5) : T(0.5)));
+  const T quarter_turns = angle / quarter;
+  const auto quarters =
+      static_cast<long long>(quarter_turns + (quarter_turns < 0 ? T(-0.5) : T(0.5)));
   const T rest = angle - T(quarters) * quarter;
   T cosine(1), sine(rest), term(rest);
   T even(1);
@@ -100,7 +101,7 @@ template <class T>
 
 /// Rotation about the axis 0 = x, 1 = y, 2 = z.
 template <class T>
-[[nodiscard]] constexpr quaternion<T> turn_about(int axis, const T& angle) {
+[[nodiscard]] constexpr quaternion<T> rotation_about_axis(int axis, const T& angle) {
   const table_angle<T> half = sine_and_cosine_of_constant(T(angle / 2));
   const T zero(0);
   return {half.cosine, axis == 0 ? half.sine : zero, axis == 1 ? half.sine : zero,

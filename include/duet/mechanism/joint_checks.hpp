@@ -35,40 +35,40 @@ namespace duet::detail {
 /// \throws invalid_input for a lower limit above the upper one, NaN, and infinite bounds of the
 /// wrong sign
 template <class T>
-constexpr void require_limits(const joint_limits<T>& given, std::size_t i,
+constexpr void require_limits(const joint_limits<T>& limits, std::size_t i,
                               const char* function = "serial_chain", std::string_view name = {}) {
   const T infinity = std::numeric_limits<T>::infinity();
-  if (!(given.lower <= given.upper && infinity > given.lower && given.upper > -infinity)) {
-    bad_joint(i, message("no motion is within its limits, ", given.lower, " to ", given.upper),
+  if (!(limits.lower <= limits.upper && infinity > limits.lower && limits.upper > -infinity)) {
+    bad_joint(i, message("no motion is within its limits, ", limits.lower, " to ", limits.upper),
               function, name);
   }
-  if (!(given.velocity >= 0)) {
-    bad_joint(i, message("its limit of velocity is ", given.velocity), function, name);
+  if (!(limits.velocity >= 0)) {
+    bad_joint(i, message("its limit of velocity is ", limits.velocity), function, name);
   }
 }
 
 template <class T>
-constexpr void require_joint(const joint<T>& given, std::size_t i,
+constexpr void require_joint(const joint<T>& joint, std::size_t i,
                              const char* function = "serial_chain", std::string_view name = {}) {
-  const auto& t = given.origin.translation;
+  const auto& t = joint.origin.translation;
   if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
     bad_joint(i, "its origin is not finite", function, name);
   }
-  if (!is_nearly_one(squared_norm(given.origin.rotation))) {
+  if (!is_nearly_one(squared_norm(joint.origin.rotation))) {
     bad_joint(i,
-              message("the rotation ", given.origin.rotation,
+              message("the rotation ", joint.origin.rotation,
                       " of its origin is no unit quaternion: normalized(q)"),
               function, name);
   }
-  const auto n = components(given.axis);
-  if (given.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
+  const auto n = components(joint.axis);
+  if (joint.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
     bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is no unit vector"), function,
               name);
   }
-  if (!(given.pitch - given.pitch == 0)) {
+  if (!(joint.pitch - joint.pitch == 0)) {
     bad_joint(i, "its pitch is not finite", function, name);
   }
-  require_limits(given.limits, i, function, name);
+  require_limits(joint.limits, i, function, name);
 }
 
 /// The type of a joint with limits: a `continuous` joint that gets a bound becomes `revolute`.
@@ -81,28 +81,28 @@ template <class T>
 
 /// The evaluation step of a joint whose frame is at an origin.
 template <class T>
-[[nodiscard]] constexpr joint_step<T> step_of(const joint<T>& given, const placement<T>& origin) {
+[[nodiscard]] constexpr joint_step<T> step_of(const joint<T>& joint, const placement<T>& origin) {
   const quaternion<T> a = origin.rotation * inverse_root_near_one(squared_norm(origin.rotation));
-  const auto axis = components(given.axis);
+  const auto axis = components(joint.axis);
   const auto n = inverse_root_near_one(dot(axis, axis)) * axis;
   joint_step<T> result;
   result.a = a;
   result.an = a * quaternion<T>(T(0), n.x, n.y, n.z);
   result.offset = components(origin.translation);
   result.axis = cleaned_direction(rotated(a, n));
-  result.turns = given.is_rotational();
-  result.slides = given.is_translational();
-  result.pitch = given.translation_per_unit();
+  result.is_rotational = joint.is_rotational();
+  result.is_translational = joint.is_translational();
+  result.pitch = joint.translation_per_unit();
   return result;
 }
 
 /// The step of a joint after the previous frame has been displaced.
 template <class T>
 [[nodiscard]] constexpr joint_step<T> displaced(const placement<T>& by, joint_step<T> step) {
-  const displacement stands{by.rotation, components(by.translation)};
+  const displacement frame{by.rotation, components(by.translation)};
   step.a = by.rotation * step.a;
   step.an = by.rotation * step.an;
-  step.offset = stands.point(step.offset);
+  step.offset = frame.point(step.offset);
   step.axis = cleaned_direction(rotated(by.rotation, step.axis));
   return step;
 }
@@ -111,9 +111,9 @@ template <class T>
 template <class T>
 [[nodiscard]] constexpr placement<T> placement_at(const joint_step<T>& step, const T& theta) {
   const auto half = sine_and_cosine_of_constant(T(theta / 2));
-  const quaternion<T> r = step.turns ? half.cosine * step.a + half.sine * step.an : step.a;
-  const T way = step.slides ? T(theta * step.pitch) : T(0);
-  const three_vector<T> t = step.offset + way * step.axis;
+  const quaternion<T> r = step.is_rotational ? half.cosine * step.a + half.sine * step.an : step.a;
+  const T travel = step.is_translational ? T(theta * step.pitch) : T(0);
+  const three_vector<T> t = step.offset + travel * step.axis;
   return {r, {t.x, t.y, t.z}};
 }
 

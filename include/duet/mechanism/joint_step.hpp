@@ -25,8 +25,8 @@ struct joint_step {
   three_vector<T> offset{}; ///< l
   three_vector<T> axis{};   ///< a n a*, the axis in the frame of the previous joint
   T pitch{};                ///< translation along the axis per unit of θ; 1 if purely prismatic
-  bool turns = true;
-  bool slides = false;
+  bool is_rotational = true;
+  bool is_translational = false;
 };
 
 /// A step of a table in memory. (If functions of chains read `joint_step` directly, clang takes 8 %
@@ -35,15 +35,15 @@ template <class T>
 struct step_in_memory {
   const joint_step<T>& s;
 
-  [[nodiscard]] bool is_rotational() const { return s.turns; }
-  [[nodiscard]] bool is_translational() const { return s.slides; }
-  template <class S, class Turns>
-  [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const Turns& periodicity_of,
+  [[nodiscard]] bool is_rotational() const { return s.is_rotational; }
+  [[nodiscard]] bool is_translational() const { return s.is_translational; }
+  template <class S, class HalfAngles>
+  [[nodiscard]] DUET_ALWAYS_INLINE quaternion<S> rotation(const HalfAngles& half_angles,
                                                           Eigen::Index i) const {
-    if (!s.turns) {
+    if (!s.is_rotational) {
       return quaternion<S>(s.a);
     }
-    const sine_cosine<S> half = periodicity_of[int(i)];
+    const sine_cosine<S> half = half_angles[int(i)];
     const S &c = half.cosine, &sine = half.sine; // no intermediate quaternions of duals
     return {c * s.a.w() + sine * s.an.w(), c * s.a.x() + sine * s.an.x(),
             c * s.a.y() + sine * s.an.y(), c * s.a.z() + sine * s.an.z()};
@@ -58,16 +58,16 @@ template <class Arm, std::size_t I>
 struct known_step {
   static constexpr const auto& s() { return Arm::chain.steps()[I]; }
 
-  [[nodiscard]] static constexpr bool is_rotational() { return s().turns; }
-  [[nodiscard]] static constexpr bool is_translational() { return s().slides; }
-  template <class S, class Turns>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const Turns& periodicity_of,
+  [[nodiscard]] static constexpr bool is_rotational() { return s().is_rotational; }
+  [[nodiscard]] static constexpr bool is_translational() { return s().is_translational; }
+  template <class S, class HalfAngles>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto rotation(const HalfAngles& half_angles,
                                                         Eigen::Index i) {
     constexpr auto a = known_quaternion([] { return s().a; });
     if constexpr (!is_rotational()) {
       return a;
     } else {
-      const sine_cosine<S> half = periodicity_of[int(i)];
+      const sine_cosine<S> half = half_angles[int(i)];
       return half.cosine * a + half.sine * known_quaternion([] { return s().an; });
     }
   }
@@ -84,10 +84,10 @@ struct known_step {
 /// space and a point on it.
 ///
 /// \tparam WithRotation  true if the rotation after the joint is required
-template <bool WithRotation, class Link, class Step, class S, class Turns, class Visit>
-[[nodiscard]] DUET_ALWAYS_INLINE auto after_joint(const Link& link, const Step& step,
-                                                  Eigen::Index i, const S& theta,
-                                                  const Turns& periodicity_of, const Visit& visit) {
+template <bool WithRotation, class Link, class Step, class S, class HalfAngles, class Visit>
+[[nodiscard]] DUET_ALWAYS_INLINE auto
+after_joint(const Link& link, const Step& step, Eigen::Index i, const S& theta,
+            const HalfAngles& half_angles, const Visit& visit) {
   three_vector<S> p = link.point(step.offset());
   const three_vector<S> axis = rotated(link.rotation, step.axis());
   if (step.is_translational()) {
@@ -95,7 +95,7 @@ template <bool WithRotation, class Link, class Step, class S, class Turns, class
   }
   visit(i, step, axis, p);
   if constexpr (WithRotation) {
-    return displacement{link.rotation * step.template rotation<S>(periodicity_of, i), p};
+    return displacement{link.rotation * step.template rotation<S>(half_angles, i), p};
   } else {
     return displacement{link.rotation, p};
   }

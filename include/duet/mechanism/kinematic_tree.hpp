@@ -84,8 +84,8 @@ public:
   /// links or two joints have the same name; a link does not exist, has two parent joints, or is a
   /// second root; joints close a cycle; a number is invalid; a joint mimics a joint that does not
   /// exist, itself, or one with several coordinates; or limits leave no motion
-  explicit kinematic_tree(robot_description given)
-      : description_(std::move(given)), table_(detail::table_of<double>(description_)) {}
+  explicit kinematic_tree(robot_description robot)
+      : description_(std::move(robot)), table_(detail::table_of<double>(description_)) {}
 
   /// Number of coordinates.
   [[nodiscard]] int size() const { return int(table_.names.size()); }
@@ -145,19 +145,19 @@ public:
     using S = detail::tree_scalar<X>;
     const detail::tree_view view = this->view(at);
     const detail::joint_coordinates<S, X> x(table_, q);
-    const auto stands_at = [&](const detail::frame_on_node& place) {
-      const detail::node_path path(table_, place.node, view.top);
+    const auto displacement_of = [&](const detail::frame_on_node& frame) {
+      const detail::node_path path(table_, frame.node, view.top);
       return detail::attached(detail::walk_down<S>(table_, x, path, detail::visit_nothing),
-                              place.offset);
+                              frame.offset);
     };
-    detail::link_displacement<S> stands = stands_at(view.frame);
+    detail::link_displacement<S> result = displacement_of(view.frame);
     if constexpr (std::same_as<At, relative_frame>) {
-      const detail::link_displacement<S> observer = stands_at(view.observer);
+      const detail::link_displacement<S> observer = displacement_of(view.observer);
       const quaternion<S> back = conj(observer.rotation);
-      stands = {back * stands.rotation,
-                detail::rotated(back, stands.translation - observer.translation)};
+      result = {back * result.rotation,
+                detail::rotated(back, result.translation - observer.translation)};
     }
-    return detail::pose_of_unit(stands.rotation, stands.translation.eigen());
+    return detail::pose_of_unit(result.rotation, result.translation.eigen());
   }
 
   /// Forward kinematics of all links at the configuration q, in the order of
@@ -169,7 +169,7 @@ public:
   [[nodiscard]] auto poses(const X& q) const {
     using S = detail::tree_scalar<X>;
     const detail::joint_coordinates<S, X> x(table_, q);
-    const auto root = detail::standing_still<S>();
+    const auto root = detail::identity_displacement<S>();
     const auto frames = detail::frames_of_all<S>(table_, x);
     std::vector<dual_quaternion<S>> result;
     result.reserve(table_.links.size());
@@ -218,7 +218,7 @@ public:
     }
   }
   /// The node and offset of a frame.
-  [[nodiscard]] detail::frame_on_node place(const attached_frame<double>& at) const {
+  [[nodiscard]] detail::frame_on_node node_frame(const attached_frame<double>& at) const {
     detail::frame_on_node result = table_.links[std::size_t(link(at.link).link)];
     if (!detail::is_identity(at.offset)) {
       result.offset = result.offset * at.offset;
@@ -231,9 +231,9 @@ public:
     if constexpr (std::integral<At>) {
       return {table_.links[std::size_t(link(int(at)).link)], {}};
     } else if constexpr (std::same_as<At, attached_frame<double>>) {
-      return {place(at), {}};
+      return {node_frame(at), {}};
     } else {
-      const detail::tree_view result{place(at.frame), place(at.observer), -1, false};
+      const detail::tree_view result{node_frame(at.frame), node_frame(at.observer), -1, false};
       int a = result.frame.node;
       int b = result.observer.node;
       while (a != b) { // parents have lower numbers

@@ -126,29 +126,29 @@ template <SerialChain C, VectorLike Lower, VectorLike Upper>
   return result;
 }
 
-/// The chain with its limits narrowed to configurations that differ from θ by at most `most`, one
-/// number for each joint: inverse kinematics and plans within these limits stay near θ.
+/// The chain with its limits narrowed to configurations that differ from θ by at most `max_change`,
+/// one number for each joint: inverse kinematics and plans within these limits stay near θ.
 ///
-/// Example: `inverse_kinematics(with_limits_about(arm, start, most), goal, start)`
+/// Example: `inverse_kinematics(with_limits_about(arm, start, max_change), goal, start)`
 ///
 /// \return as for one joint
 /// \throws invalid_input if the number of coordinates differs from that of joints, and if no
 /// coordinate within the limits is that near
-template <SerialChain C, VectorLike X, VectorLike Most>
-[[nodiscard]] auto with_limits_about(const C& chain, const X& theta, const Most& most) {
+template <SerialChain C, VectorLike X, VectorLike MaxChange>
+[[nodiscard]] auto with_limits_about(const C& chain, const X& theta, const MaxChange& max_change) {
   using T = typename C::scalar_type;
   using about = detail::vector_argument<X>;
-  using bound = detail::vector_argument<Most>;
-  detail::require(about::size(theta) == chain.size() && bound::size(most) == chain.size(),
+  using bound = detail::vector_argument<MaxChange>;
+  detail::require(about::size(theta) == chain.size() && bound::size(max_change) == chain.size(),
                   "duet: with_limits_about: ", about::size(theta), " coordinates and ",
-                  bound::size(most), " bounds for ", chain.size(), " moving joints");
+                  bound::size(max_change), " bounds for ", chain.size(), " moving joints");
   auto result = detail::copy_of_chain(chain);
   for (int i = 0; i < chain.size(); ++i) {
-    const auto& given = chain.limits(i);
-    const T at(about::get(theta, i)), by(bound::get(most, i));
+    const auto& current = chain.limits(i);
+    const T at(about::get(theta, i)), by(bound::get(max_change, i));
     const T lower = at - by, upper = at + by;
-    const joint_limits<T> limits{lower > given.lower ? lower : given.lower,
-                                 upper < given.upper ? upper : given.upper, given.velocity};
+    const joint_limits<T> limits{lower > current.lower ? lower : current.lower,
+                                 upper < current.upper ? upper : current.upper, current.velocity};
     detail::require(lower == lower && upper == upper, "duet: with_limits_about: joint ", i,
                     " is to stay within ", by, " of ", at);
     detail::require_limits(limits, std::size_t(i), "with_limits_about",

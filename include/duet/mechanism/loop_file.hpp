@@ -69,9 +69,9 @@ private:
 
   [[nodiscard]] double number(const std::string& name) {
     double result = 0;
-    const std::string fault = read_cell(path_, line_, name, word(name), result);
-    if (!fault.empty()) {
-      fail(fault);
+    const std::string error = read_cell(path_, line_, name, word(name), result);
+    if (!error.empty()) {
+      fail(error);
     }
     return result;
   }
@@ -117,7 +117,9 @@ private:
           fail("the angle " + to_text(angle) + " on \"" + result.link + "\" is beyond 1e6 radians");
         }
       }
-      result.offset = {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]), at};
+      result.offset = {rotation_about_axis(2, rpy[2]) * rotation_about_axis(1, rpy[1]) *
+                           rotation_about_axis(0, rpy[0]),
+                       at};
     } else {
       result.offset = {quaternion<double>(1.0), at};
     }

@@ -59,12 +59,12 @@ struct assembly_search_options {
 /// that it is complete, but estimates the probability that one more guess finds another
 /// configuration: `assembly_search_options::missing_probability`.
 ///
-/// \param held  numbers of coordinates, as many as the mechanism has degrees of freedom, so that
+/// \param fixed  numbers of coordinates, as many as the mechanism has degrees of freedom, so that
 ///              configurations are isolated
-/// \param at    values of the held coordinates, in the order of `held`
-/// \throws invalid_input for coordinates that do not exist, and if `held` and `at` differ in size
+/// \param at    values of the fixed coordinates, in the order of `fixed`
+/// \throws invalid_input for coordinates that do not exist, and if `fixed` and `at` differ in size
 [[nodiscard]] DUET_COMPILED_FUNCTION assembly_search_result find_assembly_configurations(
-    const closed_chain_mechanism& mechanism, const std::vector<int>& held,
+    const closed_chain_mechanism& mechanism, const std::vector<int>& fixed,
     const Eigen::VectorXd& at, const assembly_search_options& options = {});
 
 } // namespace duet

@@ -41,21 +41,21 @@ template <class M>
 struct volume_and_gradient {
   typename M::Scalar
       volume; ///< w = |det R| of M = QR, without squares of small numbers as in det(MᵀM)
-  M slope;    ///< w (M⁺)ᵀ = ∂w/∂M, if `WithSlope`
+  M gradient; ///< w (M⁺)ᵀ = ∂w/∂M, if `WithGradient`
 };
 
 /// w and its derivative by QR with column pivoting, one lane of a batch after the other. The last
 /// pivot is the smallest. However small it is, the derivative is not: w (M⁺)ᵀ = Q |r₀ r₁ …|
 /// (|r_last| R⁻ᵀ).
-template <bool WithSlope, class M>
+template <bool WithGradient, class M>
 [[nodiscard]] volume_and_gradient<M> volume_of(const M& m) {
   using std::abs;
   using S = typename M::Scalar;
   volume_and_gradient<M> result{S(1), {}};
   if constexpr (Batched<S>) {
     result.volume = by_lane([](const auto& x) { return volume_of<false>(x).volume; }, m);
-    if constexpr (WithSlope) {
-      result.slope = by_lane([](const auto& x) { return volume_of<true>(x).slope; }, m);
+    if constexpr (WithGradient) {
+      result.gradient = by_lane([](const auto& x) { return volume_of<true>(x).gradient; }, m);
     }
   } else {
     const Eigen::ColPivHouseholderQR<M> qr(m);
@@ -67,10 +67,10 @@ template <bool WithSlope, class M>
     }
     const S smallest = abs(r(n - 1, n - 1));
     result.volume = others * smallest;
-    if constexpr (WithSlope) { // qr.solve would omit what is divided by a small pivot
-      result.slope = M::Zero(m.rows(), n);
+    if constexpr (WithGradient) { // qr.solve would omit what is divided by a small pivot
+      result.gradient = M::Zero(m.rows(), n);
       for (Eigen::Index j = 0; j < n; ++j) { // column j of |r_last| R⁻ᵀ, then Q times it
-        auto column = result.slope.col(qr.colsPermutation().indices()[j]);
+        auto column = result.gradient.col(qr.colsPermutation().indices()[j]);
         for (Eigen::Index i = j; i < n; ++i) {
           S sum = i == j ? smallest : S(0);
           for (Eigen::Index k = j; k < i; ++k) {
@@ -120,7 +120,7 @@ template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
 [[nodiscard]] auto manipulability_gradient(const C& chain, const X& theta, const At& at = {}) {
   using S = detail::chain_scalar<C, X>;
   using vector = detail::joint_vector<S, C::joints>;
-  const auto [w, slope] = detail::volume_of<true>(detail::tall_jacobian(chain, theta, at));
+  const auto [w, by_entries] = detail::volume_of<true>(detail::tall_jacobian(chain, theta, at));
   if (any(innermost(w) == 0)) {
     detail::raise(invalid_input("duet: manipulability_gradient: the Jacobian loses rank here"));
   }
@@ -128,9 +128,9 @@ template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
   const auto h = kinematic_hessian(chain, theta, frame::hybrid, at);
   for (Eigen::Index j = 0; j < chain.size(); ++j) {
     S trace(0);
-    for (Eigen::Index i = 0; i < slope.rows(); ++i) {
-      for (Eigen::Index k = 0; k < slope.cols(); ++k) {
-        trace += slope(i, k) * (chain.size() >= 6 ? h(k, i, j) : h(i, k, j));
+    for (Eigen::Index i = 0; i < by_entries.rows(); ++i) {
+      for (Eigen::Index k = 0; k < by_entries.cols(); ++k) {
+        trace += by_entries(i, k) * (chain.size() >= 6 ? h(k, i, j) : h(i, k, j));
       }
     }
     result.gradient[j] = trace;
@@ -154,9 +154,9 @@ struct manipulability_objective {
   /// Gradient of the objective at the configuration θ.
   template <class X>
   [[nodiscard]] auto gradient(const X& theta) const {
-    auto [w, slope] = manipulability_gradient(chain, theta);
-    slope *= -weight / w;
-    return slope;
+    auto [w, result] = manipulability_gradient(chain, theta);
+    result *= -weight / w;
+    return result;
   }
 };
 template <class C, class... W>

@@ -16,7 +16,7 @@ namespace duet {
 /// A triangle mesh, a surface of separate triangles.
 struct triangle_mesh {
   /// Vertices of the triangles, three for each.
-  std::vector<std::array<double, 3>> corners = {};
+  std::vector<std::array<double, 3>> vertices = {};
 };
 
 /// The triangle mesh in a file: STL, binary or text, OBJ, or COLLADA (.dae), whose faces may also

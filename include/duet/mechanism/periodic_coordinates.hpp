@@ -39,7 +39,7 @@ struct periodic_coordinates {
     for (const tree_node& node : of.tree().table().nodes) {
       const coordinate_source& source = of.tree().table().sources[std::size_t(node.coordinate)];
       if (!node.is_ball &&
-          (node.step.slides || source.multiplier != std::round(source.multiplier))) {
+          (node.step.is_translational || source.multiplier != std::round(source.multiplier))) {
         angles[std::size_t(source.own)] = false; // what follows the coordinate would move
       }
     }

@@ -60,14 +60,14 @@ struct iiwa14_arm {
 struct ur5e_arm {
   static constexpr auto chain = [] {
     using detail::quarter;
-    const joint_limits<> turn = detail::within(2 * std::numbers::pi);
+    const joint_limits<> full_turn = detail::within(2 * std::numbers::pi);
     const joint_limits<> elbow = detail::within(std::numbers::pi);
-    const std::array<dh_row<>, 6> rows{{{.d = .1625, .alpha = quarter, .limits = turn},
-                                        {.a = -.425, .limits = turn},
+    const std::array<dh_row<>, 6> rows{{{.d = .1625, .alpha = quarter, .limits = full_turn},
+                                        {.a = -.425, .limits = full_turn},
                                         {.a = -.3922, .limits = elbow},
-                                        {.d = .1333, .alpha = quarter, .limits = turn},
-                                        {.d = .0997, .alpha = -quarter, .limits = turn},
-                                        {.d = .0996, .limits = turn}}};
+                                        {.d = .1333, .alpha = quarter, .limits = full_turn},
+                                        {.d = .0997, .alpha = -quarter, .limits = full_turn},
+                                        {.d = .0996, .limits = full_turn}}};
     return from_dh(rows);
   }();
 };

@@ -48,13 +48,13 @@ from_screws(const std::array<joint_screw<T>, N>& screws, const placement<T>& tip
     const auto m = detail::components(screws[i].moment);
     // The joint's frame: axes of the base at the point l × m, the point of the axis nearest to the
     // origin of the base.
-    detail::three_vector<T> here{};
+    detail::three_vector<T> point{};
     if (dot(l, l) == 0) {
       joints[i].kind = joint_kind::prismatic;
       joints[i].axis = m;
     } else {
       joints[i].axis = l;
-      here = cross(l, m);
+      point = cross(l, m);
       joints[i].pitch = dot(l, m);
       // Round-off of a moment is not a pitch.
       const T noise = 64 * std::numeric_limits<T>::epsilon();
@@ -62,10 +62,10 @@ from_screws(const std::array<joint_screw<T>, N>& screws, const placement<T>& tip
         joints[i].kind = joint_kind::helical;
       }
     }
-    joints[i].origin.translation = here - before;
+    joints[i].origin.translation = point - before;
     joints[i].limits = screws[i].limits;
-    link_frames[i].translation = T(-1) * here;
-    before = here;
+    link_frames[i].translation = T(-1) * point;
+    before = point;
   }
   return serial_chain<int(N), T>(joints, link_frames[N - 1] * tip, link_frames);
 }

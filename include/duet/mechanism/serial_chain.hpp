@@ -78,28 +78,28 @@ public:
   static constexpr int joints = N;
   static constexpr std::size_t capacity = std::size_t(N > 0 ? N : -N);
 
-  /// \param given        the joints from the base on; fixed joints are merged with the joint or tip
+  /// \param input        the joints from the base on; fixed joints are merged with the joint or tip
   ///                     that they carry
   /// \param tool         pose of the tip in the frame of the last joint
   /// \param link_frames  for each given joint, the pose of the frame of the link that it moves, in
   ///                     the frame of the joint; empty: they coincide
   /// \throws invalid_input if the number of moving joints is not N (exceeds −N), an axis or a
   /// rotation is not of unit norm, a number is not finite, or a lower limit exceeds the upper one
-  constexpr explicit serial_chain(std::span<const joint<T>> given, const placement<T>& tool = {},
+  constexpr explicit serial_chain(std::span<const joint<T>> input, const placement<T>& tool = {},
                                   std::span<const placement<T>> link_frames = {}) {
     placement<T> carried{};
-    for (std::size_t i = 0; i < given.size(); ++i) {
-      detail::require_joint(given[i], i);
-      if (given[i].coordinates() > 1) {
+    for (std::size_t i = 0; i < input.size(); ++i) {
+      detail::require_joint(input[i], i);
+      if (input[i].coordinates() > 1) {
         detail::bad_joint(i, "has several coordinates, which joints of a kinematic_tree may have");
       }
-      carried = carried * given[i].origin;
-      if (given[i].kind != joint_kind::fixed) {
+      carried = carried * input[i].origin;
+      if (input[i].kind != joint_kind::fixed) {
         if (size_ == int(capacity)) {
           detail::bad_joint(i, "the chain has room for " + std::to_string(capacity));
         }
         frames_[std::size_t(size_)] = link_frames.empty() ? placement<T>{} : link_frames[i];
-        add(given[i], carried);
+        add(input[i], carried);
         carried = {};
       }
     }
@@ -110,9 +110,9 @@ public:
     tip_ = {size_, carried * tool};
   }
   template <std::size_t M>
-  constexpr explicit serial_chain(const std::array<joint<T>, M>& given,
+  constexpr explicit serial_chain(const std::array<joint<T>, M>& input,
                                   const placement<T>& tool = {})
-      : serial_chain(std::span<const joint<T>>(given), tool) {}
+      : serial_chain(std::span<const joint<T>>(input), tool) {}
 
   /// A chain of any other type without its number of joints in the type, so that code is compiled
   /// once for all chains of up to −N joints.
@@ -151,14 +151,14 @@ public:
   /// The table of evaluation steps.
   [[nodiscard]] constexpr const auto& steps() const { return steps_; }
   /// Another chain without joint i, whose successor frames are displaced by the
-  /// constant pose `held`.
+  /// constant pose `locked`.
   template <int M>
-  constexpr serial_chain(const serial_chain<M, T>& other, int i, const placement<T>& held)
+  constexpr serial_chain(const serial_chain<M, T>& other, int i, const placement<T>& locked)
       : tip_{other.size() - 1, other.tip().offset}, size_(other.size() - 1) {
     for (int to = 0; to < size_; ++to) {
       take(other, to < i ? to : to + 1, std::size_t(to));
     }
-    displace(i, held);
+    displace(i, locked);
   }
   /// Displaces all that follows link i, relative to the frame of link i.
   constexpr void displace(int i, const placement<T>& by) {
@@ -186,11 +186,11 @@ private:
     kinds_[to] = other.kind(from);
     limits_[to] = other.limits(from);
   }
-  constexpr void add(const joint<T>& given, const placement<T>& origin) {
+  constexpr void add(const joint<T>& joint, const placement<T>& origin) {
     const auto i = std::size_t(size_);
-    steps_[i] = detail::step_of(given, origin);
-    kinds_[i] = given.kind;
-    limits_[i] = given.effective_limits();
+    steps_[i] = detail::step_of(joint, origin);
+    kinds_[i] = joint.kind;
+    limits_[i] = joint.effective_limits();
     ++size_;
   }
 

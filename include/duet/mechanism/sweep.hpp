@@ -51,8 +51,8 @@ DUET_ALWAYS_INLINE void write_lane(const value_and_jacobian<V, J>& both, int k, 
 /// True if a matrix of type M can have this size.
 template <class M>
 [[nodiscard]] constexpr bool can_become(Eigen::Index rows, Eigen::Index columns) {
-  constexpr auto fits = [](int fixed, int most, Eigen::Index n) {
-    return fixed == Eigen::Dynamic ? most == Eigen::Dynamic || n <= most : n == fixed;
+  constexpr auto fits = [](int fixed, int max_size, Eigen::Index n) {
+    return fixed == Eigen::Dynamic ? max_size == Eigen::Dynamic || n <= max_size : n == fixed;
   };
   return std::derived_from<M, Eigen::PlainObjectBase<M>> &&
          fits(M::RowsAtCompileTime, M::MaxRowsAtCompileTime, rows) &&

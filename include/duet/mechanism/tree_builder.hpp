@@ -227,13 +227,13 @@ private:
       const auto number = [&](const std::string& name) {
         return std::size_t(table_.link_numbers.at(name));
       };
-      frame_on_node place = table_.links[number(joint.parent)];
-      place.offset = place.offset * joint.motion.origin;
+      frame_on_node frame = table_.links[number(joint.parent)];
+      frame.offset = frame.offset * joint.motion.origin;
       if (joint.motion.kind != joint_kind::fixed) {
-        add_nodes_of_joint(table_.nodes, joint.motion, first_[std::size_t(j)], place);
-        place = {int(table_.nodes.size()) - 1, {}};
+        add_nodes_of_joint(table_.nodes, joint.motion, first_[std::size_t(j)], frame);
+        frame = {int(table_.nodes.size()) - 1, {}};
       }
-      table_.links[number(joint.child)] = place;
+      table_.links[number(joint.child)] = frame;
     }
   }
   void add_masses() {
@@ -243,9 +243,9 @@ private:
         if (!(inertia->mass >= 0 && std::isfinite(inertia->mass))) {
           bad_part(robot_, robot_.links[i], "its mass is " + to_text(inertia->mass));
         }
-        const frame_on_node& place = table_.links[i];
-        mass_on_node& sum = table_.masses[std::size_t(place.node + 1)];
-        const auto centre = (place.offset * inertia->frame).translation;
+        const frame_on_node& frame = table_.links[i];
+        mass_on_node& sum = table_.masses[std::size_t(frame.node + 1)];
+        const auto centre = (frame.offset * inertia->frame).translation;
         sum.mass += inertia->mass;
         sum.moment = sum.moment + inertia->mass * components(centre);
       }

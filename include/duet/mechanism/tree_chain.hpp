@@ -44,7 +44,7 @@ template <class Joints, class Pass, class Fail>
     above.emplace(joints[j].child, j);
   }
   // Goes up from a link to one for which `ends` is true, or to a root.
-  const auto climb = [&](std::string_view link, std::vector<std::size_t>& way, const auto& ends) {
+  const auto climb = [&](std::string_view link, std::vector<std::size_t>& path, const auto& ends) {
     std::unordered_set<std::string_view> seen{link};
     while (!ends(link)) {
       const auto joint = above.find(link);
@@ -52,7 +52,7 @@ template <class Joints, class Pass, class Fail>
         break;
       }
       pass(joint->second);
-      way.push_back(joint->second);
+      path.push_back(joint->second);
       link = joints[joint->second].parent;
       if (!seen.insert(link).second) {
         fail(joint->second, "closes a cycle at the link \"" + std::string(link) + "\"");
@@ -92,15 +92,15 @@ template <class Joints, class Pass, class Fail>
 /// \param joint_at  returns the joint of a number, which must be valid in a chain: it has one
 ///                  coordinate of the tree, or is fixed
 template <class JointAt>
-[[nodiscard]] urdf_contents link_path_contents(const link_path& way, const std::string& base,
+[[nodiscard]] urdf_contents link_path_contents(const link_path& path, const std::string& base,
                                                const JointAt& joint_at) {
   urdf_contents result;
   result.links.push_back({base, {}});
   placement<double> since_joint; // fixed joints since the last moving one
-  const auto move = [&](const tree_joint& given, const joint<double>& motion) {
+  const auto move = [&](const tree_joint& source, const joint<double>& motion) {
     if (motion.kind != joint_kind::fixed) {
       since_joint = {};
-      result.joint_names.push_back(given.name);
+      result.joint_names.push_back(source.name);
     } else {
       since_joint = since_joint * motion.origin;
     }
@@ -109,21 +109,21 @@ template <class JointAt>
   const auto arrive = [&](const std::string& link) {
     result.links.push_back({link, {int(result.joint_names.size()), since_joint}});
   };
-  for (const std::size_t i : way.up) { // x ↦ O M(θ) x from the parent becomes M(θ)⁻¹ O⁻¹
-    const tree_joint& given = joint_at(i);
-    joint<double> motion = given.motion;
+  for (const std::size_t i : path.up) { // x ↦ O M(θ) x from the parent becomes M(θ)⁻¹ O⁻¹
+    const tree_joint& source = joint_at(i);
+    joint<double> motion = source.motion;
     if (motion.kind != joint_kind::fixed) {
       motion.origin = {};
       motion.axis = {-motion.axis[0], -motion.axis[1], -motion.axis[2]};
-      move(given, motion);
+      move(source, motion);
     }
-    move(given, {joint_kind::fixed, inverse_placement(given.motion.origin)});
-    arrive(given.parent);
+    move(source, {joint_kind::fixed, inverse_placement(source.motion.origin)});
+    arrive(source.parent);
   }
-  for (const std::size_t i : way.down) {
-    const tree_joint& given = joint_at(i);
-    move(given, given.motion);
-    arrive(given.child);
+  for (const std::size_t i : path.down) {
+    const tree_joint& source = joint_at(i);
+    move(source, source.motion);
+    arrive(source.child);
   }
   return result;
 }
@@ -144,20 +144,20 @@ template <class JointAt>
 /// \throws invalid_input as `kinematic_tree::chain`
 [[nodiscard]] inline urdf_contents chain_contents(const robot_description& robot,
                                                   const std::string& base, const std::string& tip,
-                                                  std::size_t most) {
+                                                  std::size_t max_joints) {
   struct {
     void operator()(std::size_t, const std::string& what) const { raise(invalid_input(what)); }
     void operator()(const std::string& what) const { raise(invalid_input(what)); }
   } const fail; // not called for a valid tree
-  const auto way = find_link_path(
+  const auto path = find_link_path(
       robot.joints, base, tip, [](std::size_t) {}, fail);
-  urdf_contents result = link_path_contents(way, base, [&](std::size_t i) -> const tree_joint& {
+  urdf_contents result = link_path_contents(path, base, [&](std::size_t i) -> const tree_joint& {
     if (const std::string reason = not_in_a_chain(robot.joints[i]); !reason.empty()) {
       bad_part(robot, robot.joints[i], reason);
     }
     return robot.joints[i];
   });
-  if (result.joint_names.size() > most) {
+  if (result.joint_names.size() > max_joints) {
     bad_robot(robot, std::to_string(result.joint_names.size()) + " moving joints from \"" + base +
                          "\" to \"" + tip + "\": use chain<" +
                          std::to_string(result.joint_names.size()) + ">");

@@ -68,13 +68,13 @@ struct relative_motion : relative_frames<S> {
   relative_motion(const tree_table& table, const X& x, const tree_view& view)
       : to_frame(motion_to<S>(table, x, view.frame.node, view.top)),
         to_observer(motion_to<S>(table, x, view.observer.node, view.top)) {
-    this->frame = stands(to_frame, view.frame.offset);
-    this->observer = stands(to_observer, view.observer.offset);
+    this->frame = pose_on(to_frame, view.frame.offset);
+    this->observer = pose_on(to_observer, view.observer.offset);
   }
 
 private:
-  [[nodiscard]] static link_displacement<S> stands(const tree_motion<S>& motion,
-                                                   const placement<double>& offset) {
+  [[nodiscard]] static link_displacement<S> pose_on(const tree_motion<S>& motion,
+                                                    const placement<double>& offset) {
     return attached(motion.frame(int(motion.frames.size()) - 1), offset);
   }
 };
@@ -110,7 +110,7 @@ template <class Frame, class S, class X>
   m.setConstant(6, Eigen::Index(table.names.size()), S(0));
   const node_path to_frame(table, view.frame.node, view.top);
   relative_frames<S> result{attached(add_screws<S>(m, table, x, to_frame, 1), view.frame.offset),
-                            standing_still<S>()};
+                            identity_displacement<S>()};
   if (!view.is_from_above) {
     const node_path to_observer(table, view.observer.node, view.top);
     result.observer = attached(add_screws<S>(m, table, x, to_observer, -1), view.observer.offset);
@@ -124,10 +124,10 @@ template <class Frame, class S, class X>
     }
   }
   if (std::same_as<Frame, body_frame> || !view.is_from_above) {
-    const rotation_of_many turn(conj(result.template axes<Frame>().rotation));
+    const rotation_of_many to_axes(conj(result.template axes<Frame>().rotation));
     for (Eigen::Index i = 0; i < m.cols(); ++i) {
       const twist_column<S> twist = column_of(m, i);
-      set_column(m, twist_column<S>{turn(twist.v), turn(twist.omega)}, i);
+      set_column(m, twist_column<S>{to_axes(twist.v), to_axes(twist.omega)}, i);
     }
   }
   return result;
@@ -152,7 +152,7 @@ template <class Frame, class S, class X, class V>
   const quaternion<S> back = conj(motion.template axes<Frame>().rotation);
   const twist_column<S>& of_origin = std::same_as<Frame, spatial_frame> ? of_observer : of_frame;
   const three_vector<S> p_dot = of_origin.v + cross(of_origin.omega, p);
-  const three_vector<S>& turning =
+  const three_vector<S>& axes_omega =
       std::same_as<Frame, body_frame> ? of_frame.omega : of_observer.omega;
   const auto add = [&](const tree_motion<S>& branch, const tree_rates<S>& rates, double sign) {
     for (std::size_t i = 0; i < branch.screws.size(); ++i) {
@@ -160,8 +160,8 @@ template <class Frame, class S, class X, class V>
       const twist_column<S>& s_dot = rates.screws[i];
       const three_vector<S> at_p = s.v + cross(s.omega, p);
       const twist_column<S> change{s_dot.v + cross(s_dot.omega, p) + cross(s.omega, p_dot) -
-                                       cross(turning, at_p),
-                                   s_dot.omega - cross(turning, s.omega)};
+                                       cross(axes_omega, at_p),
+                                   s_dot.omega - cross(axes_omega, s.omega)};
       add_to_column(result, table.sources[std::size_t(branch.screws[i].coordinate)], sign,
                     twist_column<S>{rotated(back, change.v), rotated(back, change.omega)});
     }

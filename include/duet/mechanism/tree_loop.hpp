@@ -68,12 +68,12 @@ struct loop_constraints {
 [[nodiscard]] inline placement<double> frame_with_z_axis(const std::array<double, 3>& point,
                                                          const std::array<double, 3>& direction) {
   const auto n = detail::components(direction);
-  const double largest = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
-  detail::require(largest > 0 && n.x - n.x == 0 && n.y - n.y == 0 && n.z - n.z == 0,
+  const double scale = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
+  detail::require(scale > 0 && n.x - n.x == 0 && n.y - n.y == 0 && n.z - n.z == 0,
                   "duet: frame_with_z_axis: (", n.x, ", ", n.y, ", ", n.z, ") is no direction");
-  const double x = n.x / largest, y = n.y / largest, z = n.z / largest;
+  const double x = n.x / scale, y = n.y / scale, z = n.z / scale;
   const double length = std::hypot(x, y, z);
-  return {detail::turn_to({x / length, y / length, z / length}), point};
+  return {detail::rotation_from_z({x / length, y / length, z / length}), point};
 }
 
 namespace detail {

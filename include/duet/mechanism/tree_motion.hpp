@@ -35,7 +35,7 @@ struct tree_motion {
 
   /// Frame of the node at an index; for −1 the frame above.
   [[nodiscard]] link_displacement<S> frame(int i) const {
-    return i < 0 ? standing_still<S>() : frames[std::size_t(i)];
+    return i < 0 ? identity_displacement<S>() : frames[std::size_t(i)];
   }
 
   template <class X>

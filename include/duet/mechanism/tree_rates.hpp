@@ -70,18 +70,19 @@ template <class S, class X, class V>
     const tree_node& node = table.nodes[std::size_t(motion.nodes[i])];
     const twist_column<S> before = result.node(motion.before[i]);
     twist_column<S> after = before;
-    matrix3<S> turns;
+    matrix3<S> j_rate;
     link_displacement<S> origin;
     if (node.is_ball) {
       origin = origin_of_ball(motion.frame(motion.before[i]), node);
-      turns = left_jacobian_rate<S>(ball_coordinates<S>(node, x), ball_coordinates<S>(node, x_dot));
+      j_rate =
+          left_jacobian_rate<S>(ball_coordinates<S>(node, x), ball_coordinates<S>(node, x_dot));
     }
     for (int k = 0; k < node.coordinates(); ++k, ++screw) {
       const twist_column<S>& twist = screw->twist;
       twist_column<S> rate = bracket(before, twist);
       if (node.is_ball) {
         const three_vector<S> omega =
-            rotated(origin.rotation, three_vector<S>{turns(0, k), turns(1, k), turns(2, k)});
+            rotated(origin.rotation, three_vector<S>{j_rate(0, k), j_rate(1, k), j_rate(2, k)});
         rate = sum(rate, {cross(origin.translation, omega), omega});
       }
       result.screws.push_back(rate);

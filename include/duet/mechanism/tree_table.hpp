@@ -67,7 +67,7 @@ struct tree_table {
 
 /// The shortest rotation that takes z to the unit vector n: (1 + n·z, z × n), normalised; for −z
 /// the half turn about x.
-[[nodiscard]] inline quaternion<double> turn_to(const three_vector<double>& n) {
+[[nodiscard]] inline quaternion<double> rotation_from_z(const three_vector<double>& n) {
   const double w = n.z > 0 ? 1 + n.z : (n.x * n.x + n.y * n.y) / (1 - n.z); // both are 1 + n·z
   const double length = std::sqrt(2 * w);
   return w > 0 ? quaternion<double>(w / length, -n.y / length, n.x / length, 0)
@@ -77,14 +77,14 @@ struct tree_table {
 /// Image of e under the shortest rotation that takes z to n.
 [[nodiscard]] inline three_vector<double> in_plane(const three_vector<double>& n,
                                                    const three_vector<double>& e) {
-  return cleaned_direction(rotated(turn_to(n), e));
+  return cleaned_direction(rotated(rotation_from_z(n), e));
 }
 
 /// Appends the nodes of a joint whose frame is at an offset of a node.
 inline void add_nodes_of_joint(std::vector<tree_node>& nodes, const joint<double>& motion,
-                               int coordinate, const frame_on_node& place) {
-  tree_node node{place.node, coordinate};
-  placement<double> origin = place.offset;
+                               int coordinate, const frame_on_node& frame) {
+  tree_node node{frame.node, coordinate};
+  placement<double> origin = frame.offset;
   const auto add = [&](joint<double> part) {
     node.is_ball = part.kind == joint_kind::spherical;
     node.step = step_of(part, origin);
@@ -93,19 +93,19 @@ inline void add_nodes_of_joint(std::vector<tree_node>& nodes, const joint<double
     node.parent = int(nodes.size()) - 1;
     ++node.coordinate;
   };
-  const auto slide = [&](const three_vector<double>& along) {
+  const auto add_prismatic = [&](const three_vector<double>& along) {
     add({.kind = joint_kind::prismatic, .axis = {along.x, along.y, along.z}});
   };
   if (motion.kind == joint_kind::planar) {
-    const auto given = components(motion.axis);
-    const auto n = cleaned_direction(inverse_root_near_one(dot(given, given)) * given);
-    slide(in_plane(n, {1, 0, 0}));
-    slide(in_plane(n, {0, 1, 0}));
+    const auto axis = components(motion.axis);
+    const auto n = cleaned_direction(inverse_root_near_one(dot(axis, axis)) * axis);
+    add_prismatic(in_plane(n, {1, 0, 0}));
+    add_prismatic(in_plane(n, {0, 1, 0}));
     add({.kind = joint_kind::continuous, .axis = motion.axis});
   } else if (motion.kind == joint_kind::floating) {
-    slide({1, 0, 0});
-    slide({0, 1, 0});
-    slide({0, 0, 1});
+    add_prismatic({1, 0, 0});
+    add_prismatic({0, 1, 0});
+    add_prismatic({0, 0, 1});
     add({.kind = joint_kind::spherical});
   } else {
     add(motion);

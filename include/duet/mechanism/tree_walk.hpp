@@ -95,7 +95,7 @@ template <class S, class X>
 }
 
 template <class S>
-[[nodiscard]] link_displacement<S> standing_still() {
+[[nodiscard]] link_displacement<S> identity_displacement() {
   return {quaternion<S>(S(1)), {S(0), S(0), S(0)}};
 }
 
@@ -140,16 +140,16 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
   const auto node = [&](int i) DUET_INLINE_LAMBDA -> const tree_node& {
     return table.nodes[std::size_t(node_at(i))];
   };
-  constexpr int most = 16;
+  constexpr int max_count = 16;
   for (int i = 0; i < count;) {
     // All nodes up to the next ball: with a branch for balls inside the loop, one in
     // five took longer.
-    std::array<S, most> theta;
+    std::array<S, max_count> theta;
     int some = 0;
-    for (; some < most && i + some < count && !node(i + some).is_ball; ++some) {
+    for (; some < max_count && i + some < count && !node(i + some).is_ball; ++some) {
       theta[std::size_t(some)] = x[node(i + some).coordinate];
     }
-    const half_angle_sincos<S, -most, std::array<S, most>> periodicity_of(theta, some, some);
+    const half_angle_sincos<S, -max_count, std::array<S, max_count>> half_angles(theta, some, some);
     for (int k = 0; k < some; ++k, ++i) {
       const int coordinate = node(i).coordinate;
       const auto put_screw = [&](Eigen::Index, const auto& step, const auto& axis,
@@ -167,7 +167,7 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
       };
       after(node(i), [&](const link_displacement<S>& parent) DUET_INLINE_LAMBDA {
         return link_displacement<S>(after_joint<true>(parent, step_in_memory<double>{node(i).step},
-                                                      k, theta[std::size_t(k)], periodicity_of,
+                                                      k, theta[std::size_t(k)], half_angles,
                                                       put_screw));
       });
     }
@@ -220,7 +220,7 @@ private:
 template <class S, class X, class Visit>
 [[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
 walk_down(const tree_table& table, const X& x, const node_path& path, const Visit& visit) {
-  link_displacement<S> result = standing_still<S>();
+  link_displacement<S> result = identity_displacement<S>();
   const int* nodes = path.begin();
   for_each_node<S>(
       table, x, path.size(), [&](int i) { return nodes[i]; }, visit,
@@ -231,7 +231,7 @@ walk_down(const tree_table& table, const X& x, const node_path& path, const Visi
 /// Frames of all nodes.
 template <class S, class X>
 [[nodiscard]] std::vector<link_displacement<S>> frames_of_all(const tree_table& table, const X& x) {
-  const link_displacement<S> root = standing_still<S>();
+  const link_displacement<S> root = identity_displacement<S>();
   std::vector<link_displacement<S>> result;
   result.reserve(table.nodes.size());
   for_each_node<S>(

@@ -35,14 +35,14 @@ public:
   explicit urdf_chain(detail::urdf_contents read)
       : urdf_chain(serial_chain<-Capacity>(std::span<const joint<double>>(read.joints)),
                    std::move(read.joint_names), std::move(read.links), std::move(read.unknown)) {}
-  /// For those who extend duet: another chain without joint i, whose link stays at `held`.
-  urdf_chain(const urdf_chain& other, int i, const placement<double>& held)
-      : serial_chain<-Capacity>(other, i, held), joint_names_(other.joint_names_),
+  /// For those who extend duet: another chain without joint i, whose link stays at `locked`.
+  urdf_chain(const urdf_chain& other, int i, const placement<double>& locked)
+      : serial_chain<-Capacity>(other, i, locked), joint_names_(other.joint_names_),
         links_(other.links_), unknown_(other.unknown_) {
     joint_names_.erase(joint_names_.begin() + i);
     for (urdf_link& each : links_) {
       if (each.frame.link == i + 1) {
-        each.frame.offset = held * each.frame.offset;
+        each.frame.offset = locked * each.frame.offset;
       }
       each.frame.link -= each.frame.link > i ? 1 : 0;
     }

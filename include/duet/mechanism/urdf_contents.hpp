@@ -89,11 +89,11 @@ struct xml_library;
 
 /// A template, so that only programs that read a file compile the parser.
 ///
-/// \param most  maximum number of moving joints
+/// \param max_joints  maximum number of moving joints
 /// \throws file_error as `read_urdf`
 template <class Xml>
 [[nodiscard]] urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
-                                               const std::string& tip, std::size_t most);
+                                               const std::string& tip, std::size_t max_joints);
 
 /// Disabled collision pairs of an SRDF file.
 ///

@@ -83,39 +83,39 @@ public:
   [[nodiscard]] const std::vector<urdf_unknown_element>& unknown() const { return unknown_; }
 
   [[noreturn]] void fail(const std::string& what) const { raise(file_error(path_, what)); }
-  [[noreturn]] void fail(const urdf_context& place, const std::string& what) const {
-    fail(place.element.line, name_of(place) + ": " + what);
+  [[noreturn]] void fail(const urdf_context& context, const std::string& what) const {
+    fail(context.element.line, name_of(context) + ": " + what);
   }
 
-  [[nodiscard]] const std::string& attribute(const urdf_context& place,
+  [[nodiscard]] const std::string& attribute(const urdf_context& context,
                                              std::string_view key) const {
-    const std::string* const value = place.element.attribute(key);
+    const std::string* const value = context.element.attribute(key);
     if (value == nullptr) {
-      fail(place, "no attribute \"" + std::string(key) + "\"");
+      fail(context, "no attribute \"" + std::string(key) + "\"");
     }
     return *value;
   }
 
-  [[noreturn]] void fail_negative(const urdf_context& place, std::string_view key) const {
-    fail(place, std::string(key) + "=\"" + attribute(place, key) + "\" is negative");
+  [[noreturn]] void fail_negative(const urdf_context& context, std::string_view key) const {
+    fail(context, std::string(key) + "=\"" + attribute(context, key) + "\" is negative");
   }
 
   /// A limit, infinite if it exceeds 1e6 in the direction of `sign`: such a number means unlimited.
-  [[nodiscard]] double limit(const urdf_context& place, std::string_view key, double otherwise,
+  [[nodiscard]] double limit(const urdf_context& context, std::string_view key, double otherwise,
                              int sign) const {
-    const std::string* const text = place.element.attribute(key);
+    const std::string* const text = context.element.attribute(key);
     if (text == nullptr) {
       return otherwise;
     }
     const auto value = parse_number(*text);
-    return value && sign * *value > most ? sign * std::numeric_limits<double>::infinity()
-                                         : number(*text, place, key);
+    return value && sign * *value > max_number ? sign * std::numeric_limits<double>::infinity()
+                                               : number(*text, context, key);
   }
 
   /// The three numbers of an attribute.
-  [[nodiscard]] std::array<double, 3> numbers(const urdf_context& place, std::string_view key,
+  [[nodiscard]] std::array<double, 3> numbers(const urdf_context& context, std::string_view key,
                                               const std::array<double, 3>& otherwise) const {
-    const std::string* const text = place.element.attribute(key);
+    const std::string* const text = context.element.attribute(key);
     if (text == nullptr) {
       return otherwise;
     }
@@ -128,47 +128,49 @@ public:
         ++count;
         break;
       }
-      result[count++] = number(text->substr(first, end - first), place, key);
+      result[count++] = number(text->substr(first, end - first), context, key);
     }
     if (count != 3) {
-      fail(place, std::string(key) + "=\"" + *text + "\" is not three numbers");
+      fail(context, std::string(key) + "=\"" + *text + "\" is not three numbers");
     }
     return result;
   }
 
   /// A required number.
-  [[nodiscard]] double number(const urdf_context& place, std::string_view key) const {
-    return number(attribute(place, key), place, key);
+  [[nodiscard]] double number(const urdf_context& context, std::string_view key) const {
+    return number(attribute(context, key), context, key);
   }
-  [[nodiscard]] double number(const urdf_context& place, std::string_view key,
+  [[nodiscard]] double number(const urdf_context& context, std::string_view key,
                               double otherwise) const {
-    const std::string* const text = place.element.attribute(key);
-    return text == nullptr ? otherwise : number(*text, place, key);
+    const std::string* const text = context.element.attribute(key);
+    return text == nullptr ? otherwise : number(*text, context, key);
   }
 
   /// A required mass or moment of inertia, of any size.
-  [[nodiscard]] double measure(const urdf_context& place, std::string_view key) const {
-    return number(attribute(place, key), place, key, std::numeric_limits<double>::max());
+  [[nodiscard]] double measure(const urdf_context& context, std::string_view key) const {
+    return number(attribute(context, key), context, key, std::numeric_limits<double>::max());
   }
 
 private:
-  static constexpr double most = 1e6; ///< maximum length (m) and angle (rad); larger: digits lost
+  static constexpr double max_number =
+      1e6; ///< maximum length (m) and angle (rad); larger: digits lost
 
-  [[nodiscard]] static std::string name_of(const urdf_context& place) {
-    const std::string* const name = place.element.attribute("name");
-    return (place.owner != nullptr ? name_of({*place.owner}) + " " : "") + "<" +
-           place.element.name + (name != nullptr ? " name=\"" + *name + "\"" : "") + ">";
+  [[nodiscard]] static std::string name_of(const urdf_context& context) {
+    const std::string* const name = context.element.attribute("name");
+    return (context.owner != nullptr ? name_of({*context.owner}) + " " : "") + "<" +
+           context.element.name + (name != nullptr ? " name=\"" + *name + "\"" : "") + ">";
   }
   [[noreturn]] void fail(std::size_t line, const std::string& what) const {
     raise(file_error(path_, line, what));
   }
 
-  [[nodiscard]] double number(const std::string& text, const urdf_context& place,
-                              std::string_view key, double limit = most) const {
+  [[nodiscard]] double number(const std::string& text, const urdf_context& context,
+                              std::string_view key, double limit = max_number) const {
     const auto value = parse_number(text);
     if (!value || !(std::abs(*value) <= limit)) {
-      fail(place, std::string(key) + "=\"" + text +
-                      (limit > most ? "\" is not a finite number" : "\" is no number up to 1e6"));
+      fail(context,
+           std::string(key) + "=\"" + text +
+               (limit > max_number ? "\" is not a finite number" : "\" is no number up to 1e6"));
     }
     return *value;
   }
@@ -196,14 +198,14 @@ private:
         unknown_.push_back({each.name, name_of({element, owner}), each.line});
         continue;
       }
-      const urdf_context place{each, is_part ? &element : owner};
+      const urdf_context context{each, is_part ? &element : owner};
       const bool is_one_of_many =
           element.name == "robot" || each.name == "visual" || each.name == "collision";
       if (const xml_element* first = is_one_of_many ? &each : element.child(each.name);
           first != &each) {
-        fail(place, "is there twice, first in line " + std::to_string(first->line));
+        fail(context, "is there twice, first in line " + std::to_string(first->line));
       }
-      check(each, place.owner);
+      check(each, context.owner);
     }
   }
   [[nodiscard]] static bool has(const auto& words, std::string_view word) {

@@ -24,8 +24,8 @@ struct xml_library {
 
 template <class Xml>
 urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
-                                 const std::string& tip, std::size_t most) {
-  return urdf_reader(path, Xml::read(path)).chain(base, tip, most);
+                                 const std::string& tip, std::size_t max_joints) {
+  return urdf_reader(path, Xml::read(path)).chain(base, tip, max_joints);
 }
 
 template <class Xml>

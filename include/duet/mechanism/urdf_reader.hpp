@@ -47,7 +47,7 @@ public:
 
   /// The chain from the link `base` to the link `tip`.
   [[nodiscard]] urdf_contents chain(const std::string& base, const std::string& tip,
-                                    std::size_t most) const {
+                                    std::size_t max_joints) const {
     for (const std::string& link : {base, tip}) {
       if (!links_.contains(link)) {
         document_.fail(no_link(link));
@@ -63,15 +63,15 @@ public:
       }
       void operator()(const std::string& what) const { reader.document_.fail(what); }
     } const fail{*this};
-    const link_path way = find_link_path(names_.joints, base, tip, pass, fail);
-    urdf_contents result = link_path_contents(way, base, [&](std::size_t i) {
+    const link_path path = find_link_path(names_.joints, base, tip, pass, fail);
+    urdf_contents result = link_path_contents(path, base, [&](std::size_t i) {
       const tree_joint joint = read_joint(*elements_[i]);
       if (const std::string reason = not_in_a_chain(joint); !reason.empty()) {
         document_.fail({*elements_[i]}, reason);
       }
       return joint;
     });
-    if (const std::size_t count = result.joint_names.size(); count > most) {
+    if (const std::size_t count = result.joint_names.size(); count > max_joints) {
       document_.fail(std::to_string(count) + " moving joints from \"" + base + "\" to \"" + tip +
                      "\": use read_urdf<" + std::to_string(count) + ">");
     }
@@ -123,22 +123,22 @@ private:
   }
 
   /// Upper half of a symmetric matrix, whose lower half may also be given.
-  [[nodiscard]] std::array<double, 6> read_moments(const urdf_context& place) const {
+  [[nodiscard]] std::array<double, 6> read_moments(const urdf_context& context) const {
     constexpr std::array<const char*, 6> keys = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
     constexpr std::array<const char*, 6> below = {"", "iyx", "izx", "", "izy", ""};
     std::array<double, 6> result{};
     for (std::size_t i = 0; i < keys.size(); ++i) {
-      result[i] = document_.measure(place, keys[i]);
-      if (place.element.attribute(below[i]) == nullptr) {
+      result[i] = document_.measure(context, keys[i]);
+      if (context.element.attribute(below[i]) == nullptr) {
         continue;
       }
-      const double other = document_.measure(place, below[i]);
-      const double largest = std::max(std::abs(result[i]), std::abs(other));
-      if (!(std::abs(result[i] / 2 - other / 2) <= 1e-6 * (largest / 2))) { // few digits, maybe
-        document_.fail(place, std::string(below[i]) + "=\"" + document_.attribute(place, below[i]) +
-                                  "\" is not " + keys[i] + "=\"" +
-                                  document_.attribute(place, keys[i]) +
-                                  "\": the matrix of inertia must be symmetric");
+      const double other = document_.measure(context, below[i]);
+      const double magnitude = std::max(std::abs(result[i]), std::abs(other));
+      if (!(std::abs(result[i] / 2 - other / 2) <= 1e-6 * (magnitude / 2))) { // few digits, maybe
+        document_.fail(context, std::string(below[i]) + "=\"" +
+                                    document_.attribute(context, below[i]) + "\" is not " +
+                                    keys[i] + "=\"" + document_.attribute(context, keys[i]) +
+                                    "\": the matrix of inertia must be symmetric");
       }
     }
     return result;
@@ -152,9 +152,10 @@ private:
     result.line = element.line;
     result.motion = read_motion(element);
     if (const xml_element* const mimic = element.child("mimic")) {
-      const urdf_context place{*mimic, &element};
-      result.mimic = {document_.attribute(place, "joint"), document_.number(place, "multiplier", 1),
-                      document_.number(place, "offset", 0)};
+      const urdf_context context{*mimic, &element};
+      result.mimic = {document_.attribute(context, "joint"),
+                      document_.number(context, "multiplier", 1),
+                      document_.number(context, "offset", 0)};
     }
     return result;
   }
@@ -190,9 +191,9 @@ private:
     return "no link \"" + link + "\": " + closest_names(link, names_.links);
   }
 
-  void require_link(const urdf_context& place) const {
-    if (const std::string& link = document_.attribute(place, "link"); !links_.contains(link)) {
-      document_.fail(place, no_link(link));
+  void require_link(const urdf_context& context) const {
+    if (const std::string& link = document_.attribute(context, "link"); !links_.contains(link)) {
+      document_.fail(context, no_link(link));
     }
   }
 
@@ -252,28 +253,28 @@ private:
       }
       return result;
     }
-    const urdf_context place{*limit, &element};
-    result.velocity = document_.limit(place, "velocity", result.velocity, 1);
+    const urdf_context context{*limit, &element};
+    result.velocity = document_.limit(context, "velocity", result.velocity, 1);
     if (result.velocity < 0) {
-      document_.fail_negative(place, "velocity");
+      document_.fail_negative(context, "velocity");
     }
     if (!is_bounded) {
       return result;
     }
-    result.lower = document_.limit(place, "lower", 0, -1); // 0 is the default of the format
-    result.upper = document_.limit(place, "upper", 0, 1);
+    result.lower = document_.limit(context, "lower", 0, -1); // 0 is the default of the format
+    result.upper = document_.limit(context, "upper", 0, 1);
     if (result.lower > result.upper) {
-      document_.fail(place,
+      document_.fail(context,
                      "lower " + to_text(result.lower) + " is above upper " + to_text(result.upper));
     }
     if (const xml_element* soft = element.child("safety_controller")) {
-      const urdf_context there{*soft, &element};
-      result.lower =
-          std::max(result.lower, document_.limit(there, "soft_lower_limit", result.lower, -1));
-      result.upper =
-          std::min(result.upper, document_.limit(there, "soft_upper_limit", result.upper, 1));
+      const urdf_context soft_context{*soft, &element};
+      result.lower = std::max(result.lower,
+                              document_.limit(soft_context, "soft_lower_limit", result.lower, -1));
+      result.upper = std::min(result.upper,
+                              document_.limit(soft_context, "soft_upper_limit", result.upper, 1));
       if (result.lower > result.upper) {
-        document_.fail(there, "no motion is within its limits and those of <limit>");
+        document_.fail(soft_context, "no motion is within its limits and those of <limit>");
       }
     }
     return result;

@@ -25,16 +25,17 @@ read_origin(const urdf_document& document, const xml_element& in, const xml_elem
     return {};
   }
   const auto rpy = document.numbers({*origin, &owner}, "rpy", {0, 0, 0});
-  return {turn_about(2, rpy[2]) * turn_about(1, rpy[1]) * turn_about(0, rpy[0]),
+  return {rotation_about_axis(2, rpy[2]) * rotation_about_axis(1, rpy[1]) *
+              rotation_about_axis(0, rpy[0]),
           document.numbers({*origin, &owner}, "xyz", {0, 0, 0})};
 }
 
 /// A size of a shape.
-[[nodiscard]] inline double read_size(const urdf_document& document, const urdf_context& place,
+[[nodiscard]] inline double read_size(const urdf_document& document, const urdf_context& context,
                                       std::string_view key) {
-  const double result = document.number(place, key);
+  const double result = document.number(context, key);
   if (result < 0) {
-    document.fail_negative(place, key);
+    document.fail_negative(context, key);
   }
   return result;
 }
@@ -52,18 +53,18 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
   }
   collision_shape result{read_origin(document, collision, link), {}, collision.line};
   const xml_element& shape = geometry->children.front();
-  const urdf_context place{shape, &link};
-  const auto size = [&](std::string_view key) { return read_size(document, place, key); };
+  const urdf_context context{shape, &link};
+  const auto size = [&](std::string_view key) { return read_size(document, context, key); };
   if (shape.name == "box") {
-    (void)document.attribute(place, "size");
-    if (document.numbers(place, "scale", {1, 1, 1}) != std::array<double, 3>{1, 1, 1}) {
-      document.fail(place, "has a scale, which is for meshes");
+    (void)document.attribute(context, "size");
+    if (document.numbers(context, "scale", {1, 1, 1}) != std::array<double, 3>{1, 1, 1}) {
+      document.fail(context, "has a scale, which is for meshes");
     }
-    const collision_box given{document.numbers(place, "size", {})};
-    if (given.size[0] < 0 || given.size[1] < 0 || given.size[2] < 0) {
-      document.fail_negative(place, "size");
+    const collision_box box{document.numbers(context, "size", {})};
+    if (box.size[0] < 0 || box.size[1] < 0 || box.size[2] < 0) {
+      document.fail_negative(context, "size");
     }
-    result.geometry = given;
+    result.geometry = box;
   } else if (shape.name == "cylinder") {
     result.geometry = collision_cylinder{size("radius"), size("length")};
   } else if (shape.name == "capsule") {
@@ -71,10 +72,10 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
   } else if (shape.name == "sphere") {
     result.geometry = collision_sphere{size("radius")};
   } else if (shape.name == "mesh") {
-    result.geometry = collision_mesh{document.attribute(place, "filename"),
-                                     document.numbers(place, "scale", {1, 1, 1})};
+    result.geometry = collision_mesh{document.attribute(context, "filename"),
+                                     document.numbers(context, "scale", {1, 1, 1})};
   } else {
-    document.fail(place, "is none of the shapes box, cylinder, capsule, sphere and mesh");
+    document.fail(context, "is none of the shapes box, cylinder, capsule, sphere and mesh");
   }
   return result;
 }

@@ -29,11 +29,11 @@ enum class xml_text { skipped, kept };
 /// Parser of one file.
 class xml_parser {
 public:
-  static constexpr std::size_t most_depth = 100;
+  static constexpr std::size_t max_depth = 100;
 
-  explicit xml_parser(const std::string& path, std::size_t most_megabytes = 16,
+  explicit xml_parser(const std::string& path, std::size_t max_megabytes = 16,
                       xml_text text = xml_text::skipped)
-      : path_(path), most_megabytes_(most_megabytes),
+      : path_(path), max_megabytes_(max_megabytes),
         parser_(XML_ParserCreate(nullptr)) { // the file defines its encoding
     if (parser_ == nullptr) {
       raise(std::bad_alloc());
@@ -54,7 +54,7 @@ public:
   /// \throws file_error for XML that is not well formed, has a document type (and with it
   /// entities), is nested too deep or too large
   [[nodiscard]] xml_element root() {
-    const std::string text = whole_content(path_, most_megabytes_);
+    const std::string text = whole_content(path_, max_megabytes_);
     const bool is_good =
         XML_Parse(parser_, text.data(), int(text.size()), XML_TRUE) == XML_STATUS_OK;
     if (is_out_of_memory_) {
@@ -63,7 +63,7 @@ public:
     if (!is_good) {
       const std::string reason =
           reason_.empty() ? XML_ErrorString(XML_GetErrorCode(parser_)) : reason_;
-      raise(file_error(path_, line(), reason + place()));
+      raise(file_error(path_, line(), reason + location()));
     }
     return std::move(document_.children.front());
   }
@@ -72,7 +72,7 @@ private:
   [[nodiscard]] std::size_t line() const { return XML_GetCurrentLineNumber(parser_); }
 
   /// The element that the parser is in, for messages.
-  [[nodiscard]] std::string place() const {
+  [[nodiscard]] std::string location() const {
     return open_.size() < 2
                ? ""
                : ", in <" + open_.back()->name + "> of line " + std::to_string(open_.back()->line);
@@ -94,7 +94,7 @@ private:
   static void XMLCALL open_element(void* data, const XML_Char* name, const XML_Char** attributes) {
     auto& self = *static_cast<xml_parser*>(data);
     self.guarded([&] {
-      if (self.open_.size() > most_depth) {
+      if (self.open_.size() > max_depth) {
         return self.stop("elements are nested more than 100 deep");
       }
       // The parent is open, so the elements before it in its own parent keep their addresses.
@@ -121,7 +121,7 @@ private:
   }
 
   std::string path_;
-  std::size_t most_megabytes_;
+  std::size_t max_megabytes_;
   XML_Parser parser_;
   xml_element document_; ///< document that contains the root
   std::vector<xml_element*> open_{&document_};

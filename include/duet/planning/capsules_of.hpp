@@ -47,9 +47,9 @@ namespace duet {
 [[nodiscard]] inline double volume_of(const triangle_mesh& m) {
   double volume = 0, area = 0;
   vector3<double> sum = vector3<double>::Zero();
-  for (std::size_t i = 0; i + 2 < m.corners.size(); i += 3) {
+  for (std::size_t i = 0; i + 2 < m.vertices.size(); i += 3) {
     const auto corner = [&](std::size_t k) {
-      const auto &x = m.corners[i + k], &origin = m.corners[0];
+      const auto &x = m.vertices[i + k], &origin = m.vertices[0];
       return vector3<double>(x[0] - origin[0], x[1] - origin[1], x[2] - origin[2]);
     };
     const vector3<double> a = corner(0), b = corner(1), c = corner(2);
@@ -109,8 +109,8 @@ namespace duet {
 /// \throws invalid_input for a mesh without triangles
 [[nodiscard]] inline capsule<double> bounding_capsule(const triangle_mesh& m) {
   std::vector<vector3<double>> points;
-  points.reserve(m.corners.size());
-  for (const auto& x : m.corners) {
+  points.reserve(m.vertices.size());
+  for (const auto& x : m.vertices) {
     points.emplace_back(x[0], x[1], x[2]);
   }
   return bounding_capsule(points);
@@ -139,7 +139,7 @@ namespace detail {
 [[nodiscard]] inline triangle_mesh surface_of(const collision_mesh& mesh,
                                               const std::string& folder) {
   triangle_mesh result = read_mesh(mesh_path(mesh.file, folder));
-  for (auto& x : result.corners) {
+  for (auto& x : result.vertices) {
     for (std::size_t i = 0; i < 3; ++i) {
       x[i] *= mesh.scale[i];
     }

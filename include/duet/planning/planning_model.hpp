@@ -114,14 +114,14 @@ public:
       const three_vector<double> offset = step.offset;
       lower[i] = chain.limits(i).lower;
       upper[i] = chain.limits(i).upper;
-      turns[k] = step.turns;
-      slides[k] = step.slides;
+      turns[k] = step.is_rotational;
+      slides[k] = step.is_translational;
       if (i == 0) {
         reach.first = offset;
       } else {
         reach.links += length_of(offset);
       }
-      if (step.slides) {
+      if (step.is_translational) {
         const double way = std::abs(step.pitch) * std::max(std::abs(lower[i]), std::abs(upper[i]));
         reach.travel += way;
         reach.limited_travel += way - way == 0 ? way : 0;

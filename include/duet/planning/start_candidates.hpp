@@ -83,7 +83,8 @@ public:
   /// Joints moved by full turns into their limits, as far as that is possible.
   [[nodiscard]] joints turned(joints theta) const {
     for (int i = 0; i < chain_.size(); ++i) {
-      if (chain_.steps()[std::size_t(i)].turns && !chain_.steps()[std::size_t(i)].slides) {
+      if (chain_.steps()[std::size_t(i)].is_rotational &&
+          !chain_.steps()[std::size_t(i)].is_translational) {
         theta[i] = wrap_into_limits(theta[i], chain_.limits(i));
       }
     }

@@ -153,7 +153,7 @@ private:
     for (int i = 0; i < chain_.size() && plan.reason == stop_reason::joint_limit; ++i) {
       const auto& step = chain_.steps()[std::size_t(i)];
       const auto& limits = chain_.limits(i);
-      if (!step.turns || step.slides) {
+      if (!step.is_rotational || step.is_translational) {
         continue;
       }
       if (end[i] > limits.upper - close && start[i] - turn >= limits.lower) {

@@ -32,8 +32,8 @@ namespace detail {
 class assembly_search {
 public:
   assembly_search(const closed_chain_mechanism& of, const Eigen::VectorXd& at,
-                  const std::vector<int>& held)
-      : of_(of), at_(at), free_(all_but(of.size(), held)), turns_(of) {}
+                  const std::vector<int>& fixed)
+      : of_(of), at_(at), free_(all_but(of.size(), fixed)), periodic_(of) {}
 
   [[nodiscard]] assembly_search_result run(const assembly_search_options& options) {
     assembly_search_result result;
@@ -44,10 +44,10 @@ public:
              (result.starts >= options.max_starts || chance <= options.missing_probability);
     };
     for (; !is_enough(); ++result.starts) {
-      const loop_closure_solver found(of_, guess(random), free_, 100);
-      if (found.has_closed()) {
+      const loop_closure_solver solver(of_, guess(random), free_, 100);
+      if (solver.has_closed()) {
         ++result.closed;
-        add(result, wrapped(found.coordinates()));
+        add(result, wrapped(solver.coordinates()));
       }
     }
     std::sort(result.positions.begin(), result.positions.end(), &comes_first);
@@ -69,18 +69,18 @@ private:
 
   /// The coordinates without full turns.
   [[nodiscard]] Eigen::VectorXd wrapped(Eigen::VectorXd q) const {
-    constexpr double turn = 2 * std::numbers::pi;
+    constexpr double full_turn = 2 * std::numbers::pi;
     for (const int i : free_) {
-      if (turns_.angles[std::size_t(i)]) {
-        const double x = std::remainder(q[i], turn);
+      if (periodic_.angles[std::size_t(i)]) {
+        const double x = std::remainder(q[i], full_turn);
         q[i] = x <= -std::numbers::pi ? std::numbers::pi : x;
       }
     }
-    for (const int i : turns_.vectors) {
+    for (const int i : periodic_.vectors) {
       if (std::find(free_.begin(), free_.end(), i) != free_.end()) {
         const double angle = q.segment<3>(i).norm();
         if (angle > std::numbers::pi) {
-          q.segment<3>(i) *= std::remainder(angle, turn) / angle;
+          q.segment<3>(i) *= std::remainder(angle, full_turn) / angle;
         }
       }
     }
@@ -88,7 +88,8 @@ private:
   }
 
   /// Poses of all links: two configurations are the same if all links have the same poses.
-  [[nodiscard]] std::vector<Eigen::Matrix<double, 7, 1>> places(const Eigen::VectorXd& q) const {
+  [[nodiscard]] std::vector<Eigen::Matrix<double, 7, 1>>
+  link_poses(const Eigen::VectorXd& q) const {
     std::vector<Eigen::Matrix<double, 7, 1>> result;
     for (const dual_quaternion<double>& a : of_.tree().poses(q)) {
       const quaternion<double> r = rotation(a);
@@ -101,9 +102,9 @@ private:
                                      const std::vector<Eigen::Matrix<double, 7, 1>>& b) {
     constexpr double rounding = 1e-6; // singular configurations are known to half the digits
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const double turned = std::min((a[i].head<4>() - b[i].head<4>()).norm(),
-                                     (a[i].head<4>() + b[i].head<4>()).norm());
-      if (turned > rounding || (a[i].tail<3>() - b[i].tail<3>()).norm() > rounding) {
+      const double rotation_error = std::min((a[i].head<4>() - b[i].head<4>()).norm(),
+                                             (a[i].head<4>() + b[i].head<4>()).norm());
+      if (rotation_error > rounding || (a[i].tail<3>() - b[i].tail<3>()).norm() > rounding) {
         return false;
       }
     }
@@ -111,23 +112,24 @@ private:
   }
 
   void add(assembly_search_result& result, const Eigen::VectorXd& q) {
-    const auto where = places(q);
-    for (std::size_t i = 0; i < places_.size(); ++i) {
-      if (are_same(where, places_[i])) {
+    const auto poses = link_poses(q);
+    for (std::size_t i = 0; i < known_poses_.size(); ++i) {
+      if (are_same(poses, known_poses_[i])) {
         ++result.positions[i].found;
         return;
       }
     }
-    places_.push_back(where);
-    assembly_configuration found{q, 0, 1, true};
+    known_poses_.push_back(poses);
+    assembly_configuration configuration{q, 0, 1, true};
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q), free_);
     const Eigen::VectorXd s = rank_revealing_svd(j).singular_values();
-    found.smallest_singular_value = s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
+    configuration.smallest_singular_value =
+        s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
     for (int i = 0; i < of_.size(); ++i) {
       const joint_limits<double>& limits = of_.tree().limits(i);
-      found.within_limits &= limits.lower <= q[i] && q[i] <= limits.upper;
+      configuration.within_limits &= limits.lower <= q[i] && q[i] <= limits.upper;
     }
-    result.positions.push_back(found);
+    result.positions.push_back(configuration);
   }
 
   [[nodiscard]] static bool comes_first(const assembly_configuration& a,
@@ -143,26 +145,26 @@ private:
   const closed_chain_mechanism& of_;
   Eigen::VectorXd at_;
   std::vector<int> free_;
-  periodic_coordinates turns_;
-  std::vector<std::vector<Eigen::Matrix<double, 7, 1>>> places_;
+  periodic_coordinates periodic_;
+  std::vector<std::vector<Eigen::Matrix<double, 7, 1>>> known_poses_;
 };
 
 } // namespace detail
 
 #ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION assembly_search_result
-find_assembly_configurations(const closed_chain_mechanism& mechanism, const std::vector<int>& held,
+find_assembly_configurations(const closed_chain_mechanism& mechanism, const std::vector<int>& fixed,
                              const Eigen::VectorXd& at, const assembly_search_options& options) {
-  detail::require(Eigen::Index(held.size()) == at.size(),
-                  "duet: find_assembly_configurations: ", held.size(),
+  detail::require(Eigen::Index(fixed.size()) == at.size(),
+                  "duet: find_assembly_configurations: ", fixed.size(),
                   " coordinates are held, but ", at.size(), " numbers given");
   detail::require(at.allFinite(), "duet: find_assembly_configurations: coordinates are not finite");
   Eigen::VectorXd q = Eigen::VectorXd::Zero(mechanism.size());
-  static_cast<void>(detail::all_but(mechanism.size(), held));
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    q[held[i]] = at[Eigen::Index(i)];
+  static_cast<void>(detail::all_but(mechanism.size(), fixed));
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    q[fixed[i]] = at[Eigen::Index(i)];
   }
-  return detail::assembly_search(mechanism, q, held).run(options);
+  return detail::assembly_search(mechanism, q, fixed).run(options);
 }
 #endif
 

@@ -24,8 +24,8 @@ namespace duet::detail {
 struct branch_point_data {
   Eigen::VectorXd x; ///< coordinates as in `curve_point`
   /// Unit tangents: straight on, those of other branches in pairs of opposites, back.
-  std::vector<Eigen::VectorXd> ways;
-  std::vector<curve_point> beside; ///< a point of the curve along each tangent
+  std::vector<Eigen::VectorXd> tangents;
+  std::vector<curve_point> points; ///< a point of the curve along each tangent
 };
 
 class branch_finder {
@@ -42,27 +42,27 @@ public:
       return std::nullopt;
     }
     const std::vector<Eigen::VectorXd> lines = tangents(*x);
-    const Eigen::VectorXd came = (from.x - *x).normalized();
+    const Eigen::VectorXd incoming = (from.x - *x).normalized();
     const auto nearest = std::max_element(lines.begin(), lines.end(), [&](auto& p, auto& q) {
-      return std::abs(p.dot(came)) < std::abs(q.dot(came));
+      return std::abs(p.dot(incoming)) < std::abs(q.dot(incoming));
     });
-    if (nearest == lines.end() || std::abs(nearest->dot(came)) < .95) {
+    if (nearest == lines.end() || std::abs(nearest->dot(incoming)) < .95) {
       return std::nullopt;
     }
-    const Eigen::VectorXd back = nearest->dot(came) < 0 ? -*nearest : *nearest;
-    std::vector<Eigen::VectorXd> ways = {-back};
+    const Eigen::VectorXd back = nearest->dot(incoming) < 0 ? -*nearest : *nearest;
+    std::vector<Eigen::VectorXd> directions = {-back};
     for (auto line = lines.begin(); line != lines.end(); ++line) {
       if (line != nearest) {
-        ways.insert(ways.end(), {*line, -*line});
+        directions.insert(directions.end(), {*line, -*line});
       }
     }
-    ways.push_back(back);
+    directions.push_back(back);
     branch_point_data result{*x, {}, {}};
-    for (const Eigen::VectorXd& way : ways) {
-      if (const auto point = beside(*x, way)) {
-        result.ways.push_back(way);
-        result.beside.push_back(*point);
-      } else if (&way == &ways.front() || &way == &ways.back()) {
+    for (const Eigen::VectorXd& direction : directions) {
+      if (const auto point = point_along(*x, direction)) {
+        result.tangents.push_back(direction);
+        result.points.push_back(*point);
+      } else if (&direction == &directions.front() || &direction == &directions.back()) {
         return std::nullopt;
       }
     }
@@ -138,24 +138,24 @@ private:
     const rank_revealing_svd a(curve_.matrix(x));
     const Eigen::MatrixXd kernel = a.kernel();
     const std::vector<Eigen::MatrixXd> forms = curve_.forms(x, a.cokernel(), kernel);
-    std::vector<Eigen::VectorXd> found;
+    std::vector<Eigen::VectorXd> zeros;
     if (kernel.cols() == 2) {
       for (const double angle : zeros_in_plane(forms)) {
-        found.push_back(Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+        zeros.push_back(Eigen::Vector2d(std::cos(angle), std::sin(angle)));
       }
     }
     random_source random(1);
     for (int start = 0; kernel.cols() > 2 && start < 100 * kernel.cols(); ++start) {
       const auto v = common_zero(forms, random_direction(random, kernel.cols()), 1e-12);
-      const bool is_new = v && std::none_of(found.begin(), found.end(), [&](const auto& other) {
+      const bool is_new = v && std::none_of(zeros.begin(), zeros.end(), [&](const auto& other) {
                             return std::abs(other.dot(*v)) > 1 - 1e-9;
                           });
       if (is_new) {
-        found.push_back(*v);
+        zeros.push_back(*v);
       }
     }
     std::vector<Eigen::VectorXd> result;
-    for (const Eigen::VectorXd& v : found) {
+    for (const Eigen::VectorXd& v : zeros) {
       const Eigen::VectorXd line = kernel * v;
       result.push_back(first_that_moves(curve_.rates(line)) < 0 ? -line : line);
     }
@@ -189,11 +189,11 @@ private:
     if (!(std::abs(cosine) < 1)) {
       return {};
     }
-    const double middle = std::atan2(form[2], form[1]), apart = std::acos(cosine);
+    const double centre = std::atan2(form[2], form[1]), half_width = std::acos(cosine);
     std::vector<double> result;
-    for (const double twice : {middle + apart, middle - apart}) {
+    for (const double twice : {centre + half_width, centre - half_width}) {
       const Eigen::VectorXd rest = parts * Eigen::Vector3d(1, std::cos(twice), std::sin(twice));
-      if (rest.norm() < rank_revealing_svd::least * svd.singular_values()[0]) {
+      if (rest.norm() < rank_revealing_svd::rank_tolerance * svd.singular_values()[0]) {
         result.push_back(twice / 2);
       }
     }
@@ -201,10 +201,10 @@ private:
   }
 
   /// A point of the curve that leaves x along a tangent.
-  [[nodiscard]] std::optional<curve_point> beside(const Eigen::VectorXd& x,
-                                                  const Eigen::VectorXd& tangent) const {
+  [[nodiscard]] std::optional<curve_point> point_along(const Eigen::VectorXd& x,
+                                                       const Eigen::VectorXd& tangent) const {
     for (double step = 1e-3; step > 1e-5; step /= 2) {
-      const auto point = curve_.beside(x + step * tangent, tangent, step / 4);
+      const auto point = curve_.nearest_point(x + step * tangent, tangent, step / 4);
       if (point && point->tangent.dot(tangent) > .99) {
         return point;
       }

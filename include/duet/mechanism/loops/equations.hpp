@@ -24,24 +24,24 @@ namespace duet::detail {
 /// opposite direction.
 [[nodiscard]] inline std::span<const int> vanishing_components(constraint_kind kind) {
   static constexpr std::array all{0, 1, 2, 3, 4, 5};
-  static constexpr std::array slides{0, 1, 3, 4, 5};
+  static constexpr std::array along_axis{0, 1, 3, 4, 5};
   static constexpr std::array on_axis{0, 1, 3, 4};
   static constexpr std::array in_plane{2, 3, 4};
-  const std::span<const int> whole(all);
+  const std::span<const int> pose_components(all);
   switch (kind) {
   case constraint_kind::fixed:
-    return whole;
+    return pose_components;
   case constraint_kind::revolute:
-    return whole.first(5);
+    return pose_components.first(5);
   case constraint_kind::prismatic:
-    return slides;
+    return along_axis;
   case constraint_kind::cylindrical:
     return on_axis;
   case constraint_kind::planar:
     return in_plane;
   case constraint_kind::universal:
   case constraint_kind::spherical:
-    return whole.first(3);
+    return pose_components.first(3);
   default:
     return {};
   }
@@ -91,10 +91,10 @@ struct loop_equations {
     for (Eigen::Index c = 0; c < j.cols(); ++c) {
       const vector3<S> velocity = j.col(c).template head<3>();
       const vector3<S> omega = j.col(c).template tail<3>();
-      const vector3<S> turning = r.w() * omega + omega.cross(vector);
+      const vector3<S> vector_rate = r.w() * omega + omega.cross(vector);
       Eigen::Index i = 0;
       for (const int k : vanishing_components(kind)) {
-        out(i++, c) = k < 3 ? S(velocity[k % 3] / unit) : turning[k % 3];
+        out(i++, c) = k < 3 ? S(velocity[k % 3] / unit) : vector_rate[k % 3];
       }
       if (kind == constraint_kind::universal) {
         out(i, c) = omega[1] * y_axis[2] - omega[2] * y_axis[1];

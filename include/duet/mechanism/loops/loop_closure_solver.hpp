@@ -73,9 +73,9 @@ class loop_closure_solver {
 public:
   /// \param free  numbers of the coordinates that may move
   loop_closure_solver(const Mechanism& of, const Eigen::VectorXd& guess,
-                      const std::vector<int>& free, int most_steps = 200)
+                      const std::vector<int>& free, int max_steps = 200)
       : of_(of), free_(free), q_(guess), f_(of.residuals(guess)), norm_(f_.norm()) {
-    for (int i = 0; i < most_steps && norm_ > 0 && step(); ++i) {
+    for (int i = 0; i < max_steps && norm_ > 0 && step(); ++i) {
     }
   }
 
@@ -96,7 +96,7 @@ private:
       if (!(length > 1e-16)) {
         return false;
       }
-      dx *= std::min(1.0, longest / length);
+      dx *= std::min(1.0, max_norm / length);
       Eigen::VectorXd next = q_;
       for (Eigen::Index k = 0; k < dx.size(); ++k) {
         next[free_[std::size_t(k)]] += dx[k] * of_.units()[free_[std::size_t(k)]];
@@ -121,7 +121,7 @@ private:
     return false;
   }
 
-  static constexpr double longest = 1; ///< maximum norm of a step
+  static constexpr double max_norm = 1; ///< maximum norm of a step
   const Mechanism& of_;
   std::vector<int> free_;
   Eigen::VectorXd q_, f_;

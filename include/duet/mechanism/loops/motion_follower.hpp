@@ -88,15 +88,17 @@ DUET_COMPILED_FUNCTION void driven_motion::require_accelerations() const {
     q[drive] = T::variable(start_[drive]);
     q[drive] = start_[drive] + mechanism_.units()[drive] * (q[drive] - start_[drive]);
     add_infinitesimals(q, solve_);
-    double left = 0;
+    double residual = 0;
     for (const T& f : mechanism_.residuals(q)) {
-      left = std::max(left, std::abs(f.derivative(2)));
+      residual = std::max(residual, std::abs(f.derivative(2)));
     }
-    double largest = 1;
+    double max_derivative = 1;
     for (const T& x : q) {
-      largest = std::max({largest, std::abs(x.derivative(1)), std::abs(x.derivative(2))});
+      max_derivative =
+          std::max({max_derivative, std::abs(x.derivative(1)), std::abs(x.derivative(2))});
     }
-    detail::require(left <= 1e-7 * largest * largest, "duet: driven_motion: a rate of ",
+    detail::require(residual <= 1e-7 * max_derivative * max_derivative,
+                    "duet: driven_motion: a rate of ",
                     mechanism_.tree().coordinate_names()[std::size_t(drive)],
                     " fulfils the equations, but has no acceleration: it does not move so");
   }
@@ -132,41 +134,41 @@ DUET_COMPILED_FUNCTION Eigen::VectorXd
 driven_motion::followed(const Eigen::VectorXd& target) const {
   detail::require(target.allFinite(), "duet: driven_motion: drives are not finite");
   const Eigen::VectorXd units = mechanism_.units();
-  const Eigen::VectorXd way =
+  const Eigen::VectorXd displacement =
       (target - detail::entries(start_, drives_)).cwiseQuotient(detail::entries(units, drives_));
-  const double length = way.norm();
+  const double length = displacement.norm();
   if (length == 0) {
     return start_;
   }
-  const detail::solution_curve curve(mechanism_, start_, drives_, way);
-  constexpr double least = 1e-7; // minimum step
-  auto here = *curve.start(1);   // its tangent is defined: drives determine all rates
+  const detail::solution_curve curve(mechanism_, start_, drives_, displacement);
+  constexpr double min_step = 1e-7;
+  auto current = *curve.start(1); // its tangent is defined: drives determine all rates
   const auto require_step = [&](double step) {
-    if (step < least) {
+    if (step < min_step) {
       fail("no step leads on, branches touch or coordinates are singular",
-           curve.coordinates(here.x), target);
+           curve.coordinates(current.x), target);
     }
   };
   for (double step = options_.largest_step;;) {
-    const auto next = curve.advance(here, step);
+    const auto next = curve.advance(current, step);
     if (!next) {
       step /= 2;
-      if (const auto met = detail::branch_finder(curve).ahead(here, step)) {
-        const Eigen::VectorXd& along = met->ways[0];
+      if (const auto met = detail::branch_finder(curve).ahead(current, step)) {
+        const Eigen::VectorXd& along = met->tangents[0];
         const double s = met->x[met->x.size() - 1], rate = along[along.size() - 1];
-        here = met->beside[0];
-        step = (here.x - met->x).norm();
-        if (here.s() >= length) {
-          detail::curve_point near_by = here;
-          near_by.x = met->x + (length - s) / rate * along;
-          const auto there = curve.at(length, near_by, step);
-          if (there || curve.residuals(near_by.x).norm() <= 1e-12) {
-            Eigen::VectorXd q = curve.coordinates(there ? there->x : near_by.x);
+        current = met->points[0];
+        step = (current.x - met->x).norm();
+        if (current.s() >= length) {
+          detail::curve_point guess = current;
+          guess.x = met->x + (length - s) / rate * along;
+          const auto reached = curve.at(length, guess, step);
+          if (reached || curve.residuals(guess.x).norm() <= 1e-12) {
+            Eigen::VectorXd q = curve.coordinates(reached ? reached->x : guess.x);
             detail::put(target, drives_, q);
             return q;
           }
         }
-        if (here.s() >= length || here.s_rate() <= 0) {
+        if (current.s() >= length || current.s_rate() <= 0) {
           fail("a dead point where branches meet", curve.coordinates(met->x), target);
         }
         continue;
@@ -176,18 +178,18 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
     }
     detail::solution_curve::curve_interval to{*next, step};
     if (next->s_rate() <= 0) {
-      to = curve.zero(here, *next, step, [](const auto& at) { return at.s_rate(); });
+      to = curve.zero(current, *next, step, [](const auto& at) { return at.s_rate(); });
     }
     if (to.end.s() >= length) { // between both points it reaches the target
-      const double part = (length - here.s()) / (to.end.s() - here.s());
-      const auto guess = curve.advance(here, part * to.step);
-      if (const auto there = curve.at(length, guess ? *guess : to.end, step)) {
-        Eigen::VectorXd q = curve.coordinates(there->x);
+      const double part = (length - current.s()) / (to.end.s() - current.s());
+      const auto guess = curve.advance(current, part * to.step);
+      if (const auto reached = curve.at(length, guess ? *guess : to.end, step)) {
+        Eigen::VectorXd q = curve.coordinates(reached->x);
         detail::put(target, drives_, q);
         return q;
       }
     }
-    if (next->s_rate() <= 0 && (to.end.s() < length || step < least)) {
+    if (next->s_rate() <= 0 && (to.end.s() < length || step < min_step)) {
       fail("a dead point, " + detail::moving_coordinates(mechanism_, curve.rates(to.end.tangent)) +
                " move on",
            curve.coordinates(to.end.x), target);
@@ -197,7 +199,7 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
       require_step(step);
       continue;
     }
-    here = to.end;
+    current = to.end;
     step = std::min(options_.largest_step, 2 * step);
   }
 }

@@ -47,12 +47,12 @@ public:
   /// A configuration at about the distance `far_away`, along a random direction of the kernel.
   [[nodiscard]] std::optional<Eigen::VectorXd>
   position(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel, double far_away) {
-    const Eigen::VectorXd way = kernel * direction(kernel.cols());
-    const loop_closure_solver found(of_, q + far_away * way.cwiseProduct(of_.units()),
-                                    all_but(of_.size(), {}));
-    const double moved = (found.coordinates() - q).cwiseQuotient(of_.units()).norm();
-    if (found.has_closed() && moved > far_away / 3 && moved < 3 * far_away) {
-      return found.coordinates();
+    const Eigen::VectorXd displacement = kernel * direction(kernel.cols());
+    const loop_closure_solver solver(of_, q + far_away * displacement.cwiseProduct(of_.units()),
+                                     all_but(of_.size(), {}));
+    const double moved = (solver.coordinates() - q).cwiseQuotient(of_.units()).norm();
+    if (solver.has_closed() && moved > far_away / 3 && moved < 3 * far_away) {
+      return solver.coordinates();
     }
     return std::nullopt;
   }
@@ -62,18 +62,18 @@ public:
   [[nodiscard]] int dimension(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel) {
     constexpr double step = .02;
     const Eigen::Index count = 2 * kernel.cols() + 2;
-    Eigen::MatrixXd ways(q.size(), count);
+    Eigen::MatrixXd displacements(q.size(), count);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Eigen::VectorXd way = kernel * direction(kernel.cols());
-      const loop_closure_solver found(of_, q + step * way.cwiseProduct(of_.units()),
-                                      all_but(of_.size(), {}));
-      ways.col(k) = (found.coordinates() - q).cwiseQuotient(of_.units()) / step;
-      if (!found.has_closed()) {
-        ways.col(k).setZero();
+      const Eigen::VectorXd displacement = kernel * direction(kernel.cols());
+      const loop_closure_solver solver(of_, q + step * displacement.cwiseProduct(of_.units()),
+                                       all_but(of_.size(), {}));
+      displacements.col(k) = (solver.coordinates() - q).cwiseQuotient(of_.units()) / step;
+      if (!solver.has_closed()) {
+        displacements.col(k).setZero();
       }
     }
     const Eigen::VectorXd spans =
-        rank_revealing_svd(kernel.transpose().lazyProduct(ways)).singular_values();
+        rank_revealing_svd(kernel.transpose().lazyProduct(displacements)).singular_values();
     return int((spans.array() > .1).count());
   }
 
@@ -92,13 +92,13 @@ DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& me
   const double residual = mechanism.residuals(q).norm();
   detail::require(residual <= 1e-9, "duet: mobility: the loops are not closed: residual ",
                   residual);
-  const detail::rank_revealing_svd here = detail::linearised(mechanism, q);
+  const detail::rank_revealing_svd at_start = detail::linearised(mechanism, q);
   const int n = mechanism.size();
   mobility_result result;
   result.counted = n - mechanism.equations();
-  result.first_order = n - int(here.rank());
+  result.first_order = n - int(at_start.rank());
   result.mobility = result.nearby = result.first_order;
-  if (here.rank() == mechanism.equations()) {
+  if (at_start.rank() == mechanism.equations()) {
     return result;
   }
   if (result.first_order == 0) {
@@ -107,18 +107,18 @@ DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& me
   }
   detail::neighbourhood around(mechanism);
   result.mobility = 0;
-  if (!around.has_acceleration(q, here)) {
+  if (!around.has_acceleration(q, at_start)) {
     result.evidence = mobility_evidence::no_acceleration;
     return result;
   }
   result.evidence = mobility_evidence::nearby_positions;
   for (int attempt = 0; attempt < 8; ++attempt) {
-    if (const auto other = around.position(q, here.kernel(), .05)) {
-      const detail::rank_revealing_svd there = detail::linearised(mechanism, *other);
-      const int dimension = around.dimension(*other, there.kernel());
+    if (const auto other = around.position(q, at_start.kernel(), .05)) {
+      const detail::rank_revealing_svd at_other = detail::linearised(mechanism, *other);
+      const int dimension = around.dimension(*other, at_other.kernel());
       if (dimension > result.mobility) {
         result.mobility = dimension;
-        result.nearby = n - int(there.rank());
+        result.nearby = n - int(at_other.rank());
       }
     }
   }

@@ -26,7 +26,7 @@ public:
       v_ = svd.matrixV();
       s_ = svd.singularValues();
     }
-    while (rank_ < s_.size() && s_[rank_] > least * s_[0]) {
+    while (rank_ < s_.size() && s_[rank_] > rank_tolerance * s_[0]) {
       ++rank_;
     }
   }
@@ -34,7 +34,7 @@ public:
   /// Relative tolerance of the rank: singular values below this fraction of the largest one count
   /// as zero. Near a singular configuration they are as far from zero as q is from it, and q is
   /// known to half the digits where equations are singular.
-  static constexpr double least = 1e-6;
+  static constexpr double rank_tolerance = 1e-6;
 
   [[nodiscard]] Eigen::Index rank() const { return rank_; }
   [[nodiscard]] const Eigen::VectorXd& singular_values() const { return s_; }

@@ -31,10 +31,10 @@ using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
                                                                   const Eigen::MatrixXd& columns) {
   const Eigen::Index n = columns.cols();
   std::vector<Eigen::MatrixXd> result(std::size_t(w.cols()), Eigen::MatrixXd(n, n));
-  const auto second = [&](const Eigen::VectorXd& way) {
+  const auto second = [&](const Eigen::VectorXd& direction) {
     Eigen::Matrix<along_line, Eigen::Dynamic, 1> x(q.size());
     for (Eigen::Index i = 0; i < q.size(); ++i) {
-      x[i] = q[i] + of.units()[i] * way[i] * along_line::variable(0);
+      x[i] = q[i] + of.units()[i] * direction[i] * along_line::variable(0);
     }
     const auto f = of.residuals(x);
     Eigen::VectorXd all(f.size());
@@ -76,8 +76,8 @@ using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
 }
 
 /// Derivatives of all forms with respect to v, in rows.
-[[nodiscard]] inline Eigen::MatrixXd slopes(const std::vector<Eigen::MatrixXd>& forms,
-                                            const Eigen::VectorXd& v) {
+[[nodiscard]] inline Eigen::MatrixXd form_gradients(const std::vector<Eigen::MatrixXd>& forms,
+                                                    const Eigen::VectorXd& v) {
   Eigen::MatrixXd result(Eigen::Index(forms.size()), v.size());
   for (std::size_t k = 0; k < forms.size(); ++k) {
     result.row(Eigen::Index(k)) = 2 * (forms[k] * v).transpose();
@@ -93,7 +93,7 @@ common_zero(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd v, double
   Eigen::VectorXd f(count + 1);
   Eigen::MatrixXd j(count + 1, v.size());
   for (int i = 0; i < 40; ++i) {
-    j << slopes(forms, v), v.transpose();
+    j << form_gradients(forms, v), v.transpose();
     f << j.topRows(count) * v / 2, (v.squaredNorm() - 1) / 2;
     if (f.norm() < rounding) {
       return v;

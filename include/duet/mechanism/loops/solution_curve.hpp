@@ -25,10 +25,10 @@ namespace duet::detail {
 /// A configuration on the curve, x = (dependent coordinates per unit, s), with its derivatives.
 struct curve_point {
   Eigen::VectorXd x;
-  Eigen::VectorXd tangent; ///< unit tangent dx per unit of arc length
-  Eigen::MatrixXd matrix;  ///< the matrix A of `solution_curve`
-  Eigen::MatrixXd image;   ///< orthonormal columns that span the image of A
-  double least;            ///< smallest nonzero singular value of A
+  Eigen::VectorXd tangent;   ///< unit tangent dx per unit of arc length
+  Eigen::MatrixXd matrix;    ///< the matrix A of `solution_curve`
+  Eigen::MatrixXd image;     ///< orthonormal columns that span the image of A
+  double min_singular_value; ///< smallest nonzero singular value of A
 
   [[nodiscard]] double s() const { return x[x.size() - 1]; }
   [[nodiscard]] double s_rate() const { return tangent[tangent.size() - 1]; }
@@ -39,11 +39,12 @@ struct curve_point {
 /// reverses: the kernel of A = (∂F/∂q_dependent, ∂F/∂u w) is its tangent.
 class solution_curve {
 public:
-  /// \param way  direction of the driven coordinates, each per unit; of any length except for 0
+  /// \param direction  direction of the driven coordinates, each per unit; of any length except for
+  /// 0
   solution_curve(const closed_chain_mechanism& of, const Eigen::VectorXd& q0,
-                 std::vector<int> drives, const Eigen::VectorXd& way)
+                 std::vector<int> drives, const Eigen::VectorXd& direction)
       : of_(of), q0_(q0), drives_(std::move(drives)), dependent_(all_but(of.size(), drives_)),
-        way_(way.normalized()) {}
+        direction_(direction.normalized()) {}
 
   /// The first point; empty if the curve has no tangent there.
   [[nodiscard]] std::optional<curve_point> start(double direction) const {
@@ -56,14 +57,14 @@ public:
   [[nodiscard]] Eigen::VectorXd coordinates(const Eigen::VectorXd& x) const {
     Eigen::VectorXd q = q0_.cwiseQuotient(of_.units());
     put(x.head(x.size() - 1), dependent_, q);
-    put(entries(q, drives_) + x[x.size() - 1] * way_, drives_, q);
+    put(entries(q, drives_) + x[x.size() - 1] * direction_, drives_, q);
     return q.cwiseProduct(of_.units());
   }
   /// Rates of all coordinates along a tangent.
   [[nodiscard]] Eigen::VectorXd rates(const Eigen::VectorXd& tangent) const {
     Eigen::VectorXd v(of_.size());
     put(tangent.head(tangent.size() - 1), dependent_, v);
-    put(tangent[tangent.size() - 1] * way_, drives_, v);
+    put(tangent[tangent.size() - 1] * direction_, drives_, v);
     return v.cwiseProduct(of_.units());
   }
 
@@ -74,7 +75,8 @@ public:
   /// sign: near such points half the step is checked.)
   [[nodiscard]] std::optional<curve_point> advance(const curve_point& from, double step) const {
     const auto to = reached(from, step);
-    if (to && from.least + to->least < 2 * step && !reached(from, step / 2)) {
+    if (to && from.min_singular_value + to->min_singular_value < 2 * step &&
+        !reached(from, step / 2)) {
       return std::nullopt;
     }
     return to;
@@ -83,18 +85,18 @@ public:
   /// The point near x that is reached by minimum-norm steps.
   ///
   /// \param before  the tangent to orient the new one by
-  /// \param most    maximum norm of the first step
-  [[nodiscard]] std::optional<curve_point> beside(Eigen::VectorXd x, const Eigen::VectorXd& before,
-                                                  double most) const {
-    return correct(x, false, most) ? point(x, before) : std::nullopt;
+  /// \param max_norm    maximum norm of the first step
+  [[nodiscard]] std::optional<curve_point>
+  nearest_point(Eigen::VectorXd x, const Eigen::VectorXd& before, double max_norm) const {
+    return correct(x, false, max_norm) ? point(x, before) : std::nullopt;
   }
 
   /// The point at s, from a point near it.
-  [[nodiscard]] std::optional<curve_point> at(double s, const curve_point& near_by,
-                                              double how_near) const {
-    Eigen::VectorXd x = near_by.x;
+  [[nodiscard]] std::optional<curve_point> at(double s, const curve_point& guess,
+                                              double max_norm) const {
+    Eigen::VectorXd x = guess.x;
     x[x.size() - 1] = s;
-    return correct(x, true, how_near) ? point(x, near_by.tangent) : std::nullopt;
+    return correct(x, true, max_norm) ? point(x, guess.tangent) : std::nullopt;
   }
 
   /// A step along the tangent from one point and the point of the curve that it leads to.
@@ -139,23 +141,23 @@ public:
   [[nodiscard]] Eigen::MatrixXd matrix(const Eigen::VectorXd& x) const {
     const Eigen::MatrixXd j = unit_jacobian(of_, coordinates(x));
     Eigen::MatrixXd a(j.rows(), x.size());
-    a << columns(j, dependent_), columns(j, drives_) * way_;
+    a << columns(j, dependent_), columns(j, drives_) * direction_;
     return a;
   }
 
   /// The quadratic forms wᵀ ∂²F(K v, K v) in v, for each column w.
   [[nodiscard]] std::vector<Eigen::MatrixXd>
   forms(const Eigen::VectorXd& x, const Eigen::MatrixXd& w, const Eigen::MatrixXd& k) const {
-    Eigen::MatrixXd ways(of_.size(), k.cols());
+    Eigen::MatrixXd unit_rates(of_.size(), k.cols());
     for (Eigen::Index i = 0; i < k.cols(); ++i) {
-      ways.col(i) = rates(k.col(i)).cwiseQuotient(of_.units());
+      unit_rates.col(i) = rates(k.col(i)).cwiseQuotient(of_.units());
     }
-    return quadratic_forms(of_, coordinates(x), w, ways);
+    return quadratic_forms(of_, coordinates(x), w, unit_rates);
   }
 
 private:
   [[nodiscard]] std::optional<curve_point> reached(const curve_point& from, double step) const {
-    const auto to = beside(from.x + step * from.tangent, from.tangent, step / 4);
+    const auto to = nearest_point(from.x + step * from.tangent, from.tangent, step / 4);
     if (!to || to->tangent.dot(from.tangent) < .95) {
       return std::nullopt;
     }
@@ -173,7 +175,7 @@ private:
     result.tangent = svd.kernel();
     result.tangent *= result.tangent.dot(before) < 0 ? -1 : 1;
     result.image = svd.image();
-    result.least = svd.rank() > 0 ? svd.singular_values()[svd.rank() - 1] : 1;
+    result.min_singular_value = svd.rank() > 0 ? svd.singular_values()[svd.rank() - 1] : 1;
     return result;
   }
 
@@ -183,10 +185,11 @@ private:
     return m.fullPivLu().determinant();
   }
 
-  /// Corrector: Newton's method with minimum-norm steps, of which the first must not exceed `most`.
-  [[nodiscard]] bool correct(Eigen::VectorXd& x, bool s_is_held, double most) const {
-    const Eigen::Index n = x.size() - (s_is_held ? 1 : 0);
-    double before = most;
+  /// Corrector: Newton's method with minimum-norm steps, of which the first must not exceed
+  /// `max_norm`.
+  [[nodiscard]] bool correct(Eigen::VectorXd& x, bool s_is_fixed, double max_norm) const {
+    const Eigen::Index n = x.size() - (s_is_fixed ? 1 : 0);
+    double before = max_norm;
     for (int i = 0; i < 12; ++i) {
       const Eigen::VectorXd f = residuals(x);
       const rank_revealing_svd svd(matrix(x).leftCols(n));
@@ -195,7 +198,7 @@ private:
       }
       const Eigen::VectorXd dx = -svd.solve(f, x.size() - 1);
       const double length = dx.norm();
-      if (!(length <= most)) {
+      if (!(length <= max_norm)) {
         return false;
       }
       const double rounding = 1e-14 * std::max(1.0, x.norm());
@@ -214,7 +217,7 @@ private:
   const closed_chain_mechanism& of_;
   Eigen::VectorXd q0_;
   std::vector<int> drives_, dependent_;
-  Eigen::VectorXd way_;
+  Eigen::VectorXd direction_;
 };
 
 } // namespace duet::detail

@@ -38,16 +38,16 @@ public:
 
   /// True if the start is between both points.
   [[nodiscard]] bool is_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
-    const Eigen::VectorXd way = (to - from).cwiseQuotient(units_);
-    const Eigen::VectorXd before = apart(from), after = before + way;
-    const double step = way.norm();
+    const Eigen::VectorXd displacement = (to - from).cwiseQuotient(units_);
+    const Eigen::VectorXd before = difference(from), after = before + displacement;
+    const double step = displacement.norm();
     return before.norm() < 2 * step && after.norm() < 2 * step && before.dot(rates_) < 0 &&
            after.dot(rates_) >= 0;
   }
 
 private:
   /// Difference of q from the start, except for full turns.
-  [[nodiscard]] Eigen::VectorXd apart(const Eigen::VectorXd& q) const {
+  [[nodiscard]] Eigen::VectorXd difference(const Eigen::VectorXd& q) const {
     Eigen::VectorXd result = (q - q_).cwiseQuotient(units_);
     for (Eigen::Index i = 0; i < q.size(); ++i) {
       if (angles_[std::size_t(i)]) {
@@ -74,9 +74,9 @@ public:
     result_.positions = follow(1);
     result_.positions.insert(result_.positions.begin(), curve_.coordinates(curve_.start(1)->x));
     if (!result_.is_closed) {
-      std::vector<Eigen::VectorXd> other_way = follow(-1);
-      std::reverse(other_way.begin(), other_way.end());
-      result_.positions.insert(result_.positions.begin(), other_way.begin(), other_way.end());
+      std::vector<Eigen::VectorXd> backwards = follow(-1);
+      std::reverse(backwards.begin(), backwards.end());
+      result_.positions.insert(result_.positions.begin(), backwards.begin(), backwards.end());
     }
     return result_;
   }
@@ -84,32 +84,32 @@ public:
 private:
   [[nodiscard]] std::vector<Eigen::VectorXd> follow(double direction) {
     std::vector<Eigen::VectorXd> positions;
-    curve_point here = *curve_.start(direction);
-    closure_test back(of_, curve_, here);
+    curve_point current = *curve_.start(direction);
+    closure_test closure(of_, curve_, current);
     double done = 0;
     for (double step = options_.largest_step; step > 1e-7 && done < options_.longest;) {
-      auto next = curve_.advance(here, step);
-      bool turns_off = false;
+      auto next = curve_.advance(current, step);
+      bool changes_branch = false;
       if (next) {
-        add_dead_points(here, *next, step);
+        add_dead_points(current, *next, step);
       } else {
         step /= 2;
-        next = past_branch_point(here, step);
+        next = past_branch_point(current, step);
         if (!next) {
           continue;
         }
-        step = (next->x - here.x).norm();
-        turns_off = result_.branch_points.back().chosen != 0;
+        step = (next->x - current.x).norm();
+        changes_branch = result_.branch_points.back().chosen != 0;
       }
       const Eigen::VectorXd to = curve_.coordinates(next->x);
-      if (turns_off) {
-        back = closure_test(of_, curve_, *next);
-      } else if (done > 0 && back.is_between(curve_.coordinates(here.x), to)) {
+      if (changes_branch) {
+        closure = closure_test(of_, curve_, *next);
+      } else if (done > 0 && closure.is_between(curve_.coordinates(current.x), to)) {
         result_.is_closed = true;
         return positions;
       }
       positions.push_back(to);
-      here = *next;
+      current = *next;
       done += step;
       step = std::min(options_.largest_step, 2 * step);
     }
@@ -120,7 +120,7 @@ private:
   void add_dead_points(const curve_point& from, const curve_point& to, double step) {
     const Eigen::VectorXd before = curve_.rates(from.tangent), after = curve_.rates(to.tangent);
     for (int i = 0; i < of_.size(); ++i) {
-      if (turns(before[i], after[i], i)) {
+      if (changes_sign(before[i], after[i], i)) {
         const auto dead = curve_.zero(from, to, step, [&](const curve_point& at) {
           return curve_.rates(at.tangent)[i] / of_.units()[i];
         });
@@ -128,7 +128,7 @@ private:
       }
     }
   }
-  [[nodiscard]] bool turns(double before, double after, int i) const {
+  [[nodiscard]] bool changes_sign(double before, double after, int i) const {
     return (before < 0) != (after < 0) && std::abs(after - before) > 1e-9 * of_.units()[i];
   }
   void add_dead_point(int i, const Eigen::VectorXd& x, const Eigen::VectorXd& tangent) {
@@ -139,25 +139,25 @@ private:
 
   /// A point behind a branch point, if steps became so small that one may be near.
   [[nodiscard]] std::optional<curve_point> past_branch_point(const curve_point& from, double step) {
-    const auto found = branch_finder(curve_).ahead(from, step);
-    if (!found) {
+    const auto crossing = branch_finder(curve_).ahead(from, step);
+    if (!crossing) {
       return std::nullopt;
     }
-    branch_point at{curve_.coordinates(found->x), {}, 0};
-    for (const Eigen::VectorXd& way : found->ways) {
-      at.tangents.push_back(curve_.rates(way));
+    branch_point at{curve_.coordinates(crossing->x), {}, 0};
+    for (const Eigen::VectorXd& tangent : crossing->tangents) {
+      at.tangents.push_back(curve_.rates(tangent));
     }
     const std::size_t met = result_.branch_points.size();
     at.chosen = met < options_.branches.size() ? options_.branches[met] : 0;
     require(at.chosen < at.tangents.size(), "duet: trace: no branch ", at.chosen, " of ",
             at.tangents.size(), " from branch point ", met);
     result_.branch_points.push_back(at);
-    const curve_point& to = found->beside[at.chosen];
+    const curve_point& to = crossing->points[at.chosen];
     const Eigen::VectorXd before = curve_.rates(from.tangent), after = curve_.rates(to.tangent);
     for (int i = 0; i < of_.size(); ++i) {
       const bool rests = std::abs(at.tangents[0][i]) < 1e-9 * of_.units()[i];
-      if (at.chosen == 0 && rests && turns(before[i], after[i], i)) {
-        add_dead_point(i, found->x, found->ways[0]);
+      if (at.chosen == 0 && rests && changes_sign(before[i], after[i], i)) {
+        add_dead_point(i, crossing->x, crossing->tangents[0]);
       }
     }
     return to;

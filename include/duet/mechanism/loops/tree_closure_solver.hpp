@@ -31,18 +31,18 @@ namespace duet {
 
 #ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION closed_chain_mechanism::closed_chain_mechanism(kinematic_tree tree,
-                                                                      loop_constraints given)
-    : tree_(std::move(tree)), given_(std::move(given)) {
+                                                                      loop_constraints constraints)
+    : tree_(std::move(tree)), constraints_(std::move(constraints)) {
   measure();
-  for (std::size_t i = 0; i < given_.loops.size(); ++i) {
-    const loop_constraint& loop = given_.loops[i];
+  for (std::size_t i = 0; i < constraints_.loops.size(); ++i) {
+    const loop_constraint& loop = constraints_.loops[i];
     equations_.push_back({loop.kind, {frame(i, loop.second), frame(i, loop.first)}, loop.length});
     if (equations_.back().frames.frame.link == equations_.back().frames.observer.link) {
-      detail::bad_loop(given_, i, "both frames are on the link \"" + loop.first.link + "\"");
+      detail::bad_loop(constraints_, i, "both frames are on the link \"" + loop.first.link + "\"");
     }
     if (loop.kind == constraint_kind::distance &&
         !(loop.length > 0 && std::isfinite(loop.length))) {
-      detail::bad_loop(given_, i, "its length is " + to_text(loop.length));
+      detail::bad_loop(constraints_, i, "its length is " + to_text(loop.length));
     }
     rows_ += equations_.back().size();
   }
@@ -58,16 +58,16 @@ closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
 }
 
 DUET_COMPILED_FUNCTION Eigen::VectorXd
-closed_chain_mechanism::closed(const Eigen::VectorXd& guess, const std::vector<int>& held) const {
+closed_chain_mechanism::closed(const Eigen::VectorXd& guess, const std::vector<int>& fixed) const {
   detail::require(guess.allFinite(), "duet: closed_chain_mechanism: the guess is not finite");
-  const detail::loop_closure_solver found(*this, guess, detail::all_but(size(), held));
-  if (!found.has_closed()) {
+  const detail::loop_closure_solver solver(*this, guess, detail::all_but(size(), fixed));
+  if (!solver.has_closed()) {
     detail::raise(
         loop_closure_failure("duet: closed_chain_mechanism: no position near the guess: residual " +
-                                 to_text(found.residual()),
+                                 to_text(solver.residual()),
                              {guess.begin(), guess.end()}));
   }
-  return found.coordinates();
+  return solver.coordinates();
 }
 
 DUET_COMPILED_FUNCTION std::vector<int>
@@ -90,36 +90,36 @@ closed_chain_mechanism::independent_coordinates(const Eigen::VectorXd& q) const 
 DUET_COMPILED_FUNCTION attached_frame<double>
 closed_chain_mechanism::frame(std::size_t i, const constraint_frame& at) const {
   const auto& links = tree_.table().link_numbers;
-  const auto found = links.find(at.link);
-  if (found == links.end()) {
+  const auto link = links.find(at.link);
+  if (link == links.end()) {
     std::vector<std::string> names;
     for (const tree_link& each : tree_.links()) {
       names.push_back(each.name);
     }
-    detail::bad_loop(given_, i,
+    detail::bad_loop(constraints_, i,
                      "no link \"" + at.link + "\": " + detail::closest_names(at.link, names));
   }
   const auto& [r, t] = at.offset;
   if (!std::isfinite(t[0] + t[1] + t[2]) || !std::isfinite(squared_norm(r))) {
-    detail::bad_loop(given_, i, "its frame on \"" + at.link + "\" is not finite");
+    detail::bad_loop(constraints_, i, "its frame on \"" + at.link + "\" is not finite");
   }
-  return {found->second, at.offset};
+  return {link->second, at.offset};
 }
 
 DUET_COMPILED_FUNCTION void closed_chain_mechanism::measure() {
-  const auto longest = [&](const placement<double>& at) {
+  const auto include_length = [&](const placement<double>& at) {
     const auto& t = at.translation;
     length_ = std::max(length_, std::hypot(t[0], t[1], t[2]));
   };
-  for (const loop_constraint& loop : given_.loops) {
-    longest(loop.first.offset);
-    longest(loop.second.offset);
+  for (const loop_constraint& loop : constraints_.loops) {
+    include_length(loop.first.offset);
+    include_length(loop.second.offset);
     length_ = std::max(length_, loop.length);
   }
   units_ = Eigen::VectorXd::Ones(size());
   Eigen::Index i = 0;
   for (const tree_joint& each : tree_.joints()) {
-    longest(each.motion.origin);
+    include_length(each.motion.origin);
   }
   length_ = length_ > 0 && std::isfinite(length_) ? length_ : 1;
   for (const tree_joint& each : tree_.joints()) {

@@ -23,16 +23,16 @@ DUET_COMPILED_FUNCTION triangle_mesh read_mesh(const std::string& path) {
   std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return 'A' <= c && c <= 'Z' ? char(c + ('a' - 'A')) : c; });
-  constexpr std::size_t most_megabytes = 256;
+  constexpr std::size_t max_megabytes = 256;
   triangle_mesh result;
   if (ending == ".dae") {
     const detail::collada_document document(
-        path, detail::xml_parser(path, most_megabytes, detail::xml_text::kept).root());
-    result.corners = detail::collada_scene(document).triangles();
+        path, detail::xml_parser(path, max_megabytes, detail::xml_text::kept).root());
+    result.vertices = detail::collada_scene(document).triangles();
   } else {
-    result.corners = detail::triangle_file(path, most_megabytes).read(ending);
+    result.vertices = detail::triangle_file(path, max_megabytes).read(ending);
   }
-  if (result.corners.empty()) {
+  if (result.vertices.empty()) {
     detail::raise(file_error(path, "has no triangles"));
   }
   return result;

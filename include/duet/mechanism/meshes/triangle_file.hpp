@@ -25,8 +25,8 @@ namespace duet::detail {
 /// Reads one file, strictly.
 class triangle_file {
 public:
-  triangle_file(std::string path, std::size_t most_megabytes)
-      : path_(std::move(path)), text_(whole_content(path_, most_megabytes)) {}
+  triangle_file(std::string path, std::size_t max_megabytes)
+      : path_(std::move(path)), text_(whole_content(path_, max_megabytes)) {}
 
   /// Corners of triangles, three of each.
   /// \param ending  of the file's name, in small letters
@@ -41,7 +41,7 @@ public:
     } else {
       read_text_stl();
     }
-    return std::move(corners_);
+    return std::move(triangles_);
   }
 
 private:
@@ -50,8 +50,9 @@ private:
 
   [[noreturn]] void fail(const std::string& what) const { raise(file_error(path_, what)); }
   /// A fault in what stands at a place in the text.
-  [[noreturn]] void fail_at(std::string_view there, const std::string& what) const {
-    const auto before = std::string_view(text_).substr(0, std::size_t(there.data() - text_.data()));
+  [[noreturn]] void fail_at(std::string_view location, const std::string& what) const {
+    const auto before =
+        std::string_view(text_).substr(0, std::size_t(location.data() - text_.data()));
     const auto lines = std::count(before.begin(), before.end(), '\n');
     raise(file_error(path_, std::size_t(lines) + 1, what));
   }
@@ -92,16 +93,16 @@ private:
   }
   void read_binary_stl() {
     for (std::size_t at = head; at < end_of_triangles(); at += bytes_of_triangle) {
-      for (std::size_t corner = 0; corner < 3; ++corner) {
+      for (std::size_t vertex = 0; vertex < 3; ++vertex) {
         point x;
         for (std::size_t i = 0; i < 3; ++i) {
-          x[i] = double(bit_cast<float>(word(at + 12 * (corner + 1) + 4 * i)));
+          x[i] = double(bit_cast<float>(word(at + 12 * (vertex + 1) + 4 * i)));
           if (!std::isfinite(x[i])) {
             fail("triangle " + std::to_string((at - head) / bytes_of_triangle) +
                  " has a corner that is not finite");
           }
         }
-        corners_.push_back(x);
+        triangles_.push_back(x);
       }
     }
   }
@@ -122,9 +123,9 @@ private:
         static_cast<void>(number(words_[i]));
       }
       require_next("outer loop");
-      for (int corner = 0; corner < 3; ++corner) {
+      for (int vertex = 0; vertex < 3; ++vertex) {
         require_next("vertex x y z");
-        corners_.push_back(point_of_line());
+        triangles_.push_back(point_of_line());
       }
       require_next("endloop");
       require_next("endfacet");
@@ -173,7 +174,7 @@ private:
           face.push_back(vertices[vertex_number(words_[i], vertices.size())]);
         }
         for (std::size_t i = 2; i < face.size(); ++i) {
-          corners_.insert(corners_.end(), {face[0], face[i - 1], face[i]});
+          triangles_.insert(triangles_.end(), {face[0], face[i - 1], face[i]});
         }
       } else if (words_[0][0] != '#' &&
                  std::find(skipped.begin(), skipped.end(), words_[0]) == skipped.end()) {
@@ -183,12 +184,12 @@ private:
   }
   /// `7`, `7/1`, `7//3`, `7/1/3`, from 1 on; negative from the last one back.
   [[nodiscard]] std::size_t vertex_number(std::string_view text, std::size_t count) const {
-    const auto whole = [](std::string_view part) { // 0 where it is none
+    const auto integer = [](std::string_view part) { // 0 where it is none
       const double k = parse_number(part).value_or(0);
       return std::isfinite(k) && k == std::floor(k) ? k : 0;
     };
     const std::size_t slash = std::min(text.find('/'), text.size());
-    const double n = double(count), k = whole(text.substr(0, slash));
+    const double n = double(count), k = integer(text.substr(0, slash));
     if (!(k != 0 && -n <= k && k <= n)) {
       fail_at(text,
               quoted(text) + " is no corner of the " + std::to_string(count) + " vertices before");
@@ -197,7 +198,7 @@ private:
     for (std::size_t at = slash, end; at < text.size(); at = end) {
       end = std::min(text.find('/', at + 1), text.size());
       const std::string_view other = text.substr(at + 1, end - at - 1);
-      if (++others > 2 || (!other.empty() && whole(other) == 0)) {
+      if (++others > 2 || (!other.empty() && integer(other) == 0)) {
         fail_at(text, quoted(text) + " is none of k, k/t, k//n and k/t/n");
       }
     }
@@ -257,8 +258,8 @@ private:
   }
 
   std::string path_, text_;
-  std::vector<point> corners_; ///< of triangles, three of each
-  std::size_t at_ = 0;         ///< where the next line begins
+  std::vector<point> triangles_; ///< of triangles, three of each
+  std::size_t at_ = 0;           ///< where the next line begins
   std::vector<std::string_view> words_;
 };
 
