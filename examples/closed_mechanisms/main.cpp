@@ -86,7 +86,7 @@ std::string names(const duet::closed_chain_mechanism& mechanism,
 
 void print(const duet::assembly_search_result& found) {
   std::printf("%zu ways to close from %d starts, of which %d closed; chance of more %.2g:\n",
-              found.positions.size(), found.starts, found.closed, found.missing_probability());
+              found.positions.size(), found.starts, found.converged, found.missing_probability());
   for (const duet::assembly_configuration& each : found.positions) {
     for (const double x : each.coordinates) {
       std::printf(" %9.5f", std::abs(x) < 5e-6 ? 0 : x);
@@ -134,9 +134,9 @@ void follow(const options& given, const mechanism& known, duet::driven_motion mo
 /// The whole motion by one drive, and where joints are dead.
 void print(const duet::closed_chain_mechanism& mechanism, const duet::motion_trace& whole) {
   std::printf("the whole motion: %zu positions, %s\n", whole.positions.size(),
-              whole.is_closed        ? "comes back"
-              : whole.meets_branches ? "ends where branches touch"
-                                     : "goes on");
+              whole.is_closed       ? "comes back"
+              : whole.stopped_early ? "ends where branches touch"
+                                    : "goes on");
   for (const duet::branch_point& each : whole.branch_points) {
     std::printf("  %zu ways leave from", each.tangents.size());
     for (const double x : each.coordinates) {
@@ -172,14 +172,14 @@ void run(const options& given) {
     drives.push_back(mechanism.tree().coordinate(name));
   }
   std::printf("%s: %d coordinates, %d equations\n", known->name.c_str(), mechanism.size(),
-              mechanism.equations());
+              mechanism.equation_count());
   const auto found = duet::find_assembly_configurations(mechanism, drives, known->from,
                                                         {.random_starts = given.starts});
   if (found.positions.empty()) {
     throw std::runtime_error("no position found: more --starts");
   }
   const VectorXd q =
-      drives.empty() ? found.positions[0].coordinates : mechanism.closed(known->guess, drives);
+      drives.empty() ? found.positions[0].coordinates : mechanism.assemble(known->guess, drives);
   std::printf("%s\n", to_text(duet::mobility(mechanism, q)).c_str());
   const auto independent = mechanism.independent_coordinates(q);
   std::printf("drives:%s; by condition:%s\n", names(mechanism, drives).c_str(),

@@ -39,7 +39,7 @@ endfunction()
 foreach(case IN ITEMS
     "zero:duet: normalized: the quaternion is zero"
     "row:duet: spline evaluated at 9, outside its domain [^\n]*"
-    "joints:duet: a chain of 7 moving joints, but 2 coordinates"
+    "joints:duet: serial_chain: 2 coordinates [(]expected 7[)]"
     "file:duet: without_exceptions.urdf:2: mismatched tag, in <link> of line 1")
   string(REGEX MATCH "^([a-z]+):(.*)$" case "${case}")
   set(error ${CMAKE_MATCH_1})

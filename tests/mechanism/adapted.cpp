@@ -63,7 +63,7 @@ urdf_chain<16> from_file() {
 
 } // namespace
 
-TEST_CASE("tools and bases: poses, links and Jacobians") {
+TEST_CASE("with_tool, with_base: poses, link frames and Jacobians equal the products") {
   duet_test::for_each_arm([](const auto& arm) {
     const auto equipped = with_tool(arm, tool);
     const auto standing = with_base(arm, base);
@@ -92,7 +92,8 @@ TEST_CASE("tools and bases: poses, links and Jacobians") {
   });
 }
 
-TEST_CASE("locked joints: what is left moves as before") {
+TEST_CASE(
+    "with_locked_joint: the remaining joints give the poses and Jacobians of the full chain") {
   duet_test::for_each_arm([](const auto& arm) {
     constexpr int n = std::decay_t<decltype(arm)>::joints;
     for (const auto& theta : duet_test::configurations(arm, 5)) {
@@ -125,7 +126,8 @@ TEST_CASE("locked joints: what is left moves as before") {
   });
 }
 
-TEST_CASE("chains that the compiler knows: what is made of them it knows, too") {
+TEST_CASE(
+    "with_tool, with_base, with_locked_joint: results of static chains are constant expressions") {
   constexpr auto arm = robots::panda();
   constexpr auto six =
       with_locked_joint(with_tool(arm, {quaternion<double>(1), {0, 0, .1}}), 2, .5);
@@ -153,7 +155,8 @@ TEST_CASE("chains that the compiler knows: what is made of them it knows, too") 
   CHECK(max_abs_difference(translation(six.pose(result.joints)), translation(expected)) < 1e-6);
 }
 
-TEST_CASE("to fifty digits") {
+TEST_CASE(
+    "with_locked_joint: poses agree with the full chain to 47 digits in 50-digit arithmetic") {
   using real = duet_test::real_50;
   duet_test::for_each_arm([](const auto& arm_in_double) {
     constexpr int n = std::decay_t<decltype(arm_in_double)>::joints;
@@ -182,7 +185,8 @@ TEST_CASE("to fifty digits") {
   });
 }
 
-TEST_CASE("a chain from a file keeps names, and its links are where they were") {
+TEST_CASE("with_tool, with_base, with_locked_joint: a chain from a file keeps its names and link "
+          "frames") {
   const auto chain = from_file();
   REQUIRE(chain.size() == 3);
   const std::vector<double> theta{.3, -.6, .8};
@@ -214,48 +218,53 @@ TEST_CASE("a chain from a file keeps names, and its links are where they were") 
   CHECK(with_limits(chain, "elbow", {-.1, .2}).limits(2).upper == .2);
 }
 
-TEST_CASE("what is wrong is said with the joint and the value") {
+TEST_CASE("with_locked_joint, with_limits, with_tool: errors name the joint and the value") {
   const auto arm = robots::ur5e();
   const auto chain = from_file();
   const auto message = [](const auto& f) { return duet_test::message_of(f); };
   CHECK(message([&] { (void)with_locked_joint(arm, 2, 4); }) ==
-        "duet: with_locked_joint: joint 2: 4 is not within its limits, -3.14159 to 3.14159");
+        "duet: with_locked_joint: joint 2: the coordinate 4 is outside the limits -3.14159 to "
+        "3.14159");
   CHECK(message([&] { (void)with_locked_joint(arm, 2, std::nan("")); }) ==
-        "duet: with_locked_joint: joint 2: nan is not within its limits, -3.14159 to 3.14159");
+        "duet: with_locked_joint: joint 2: the coordinate nan is outside the limits -3.14159 to "
+        "3.14159");
   CHECK(message([&] {
           (void)with_locked_joint(serial_chain<2>(std::array<joint<>, 2>{}), 1,
                                   std::numeric_limits<double>::infinity());
-        }) == "duet: with_locked_joint: joint 1: inf is not within its limits, -inf to inf");
-  CHECK(message([&] { (void)with_locked_joint(chain, "elbow", 4); }) ==
-        "duet: with_locked_joint: joint 2 \"elbow\": 4 is not within its limits, -1 to 2");
-  CHECK(message([&] { (void)with_locked_joint(chain, 2, 4); }) ==
-        "duet: with_locked_joint: joint 2 \"elbow\": 4 is not within its limits, -1 to 2");
+        }) ==
+        "duet: with_locked_joint: joint 1: the coordinate inf is outside the limits -inf to inf");
+  CHECK(
+      message([&] { (void)with_locked_joint(chain, "elbow", 4); }) ==
+      "duet: with_locked_joint: joint 2 \"elbow\": the coordinate 4 is outside the limits -1 to 2");
+  CHECK(
+      message([&] { (void)with_locked_joint(chain, 2, 4); }) ==
+      "duet: with_locked_joint: joint 2 \"elbow\": the coordinate 4 is outside the limits -1 to 2");
   CHECK(message([&] { (void)with_locked_joint(chain, "elbw", 0); }) ==
         "duet: with_locked_joint: no joint \"elbw\": there are \"elbow\", \"slide\", \"shoulder\"");
   for (const int none : {-1, 6}) {
     CHECK(message([&] { (void)with_locked_joint(arm, none, 0); }) ==
-          "duet: with_locked_joint: no joint " + std::to_string(none) +
-              " in a chain of 6 moving joints");
+          "duet: with_locked_joint: joint " + std::to_string(none) +
+              " does not exist, the chain has 6 moving joints");
   }
   CHECK(message([&] {
           (void)with_limits(chain, "slide", {2, 1});
-        }) == "duet: with_limits: joint 0 \"slide\": no motion is within its limits, 2 to 1");
+        }) == "duet: with_limits: joint 0 \"slide\": the limits 2 to 1 contain no coordinate");
   CHECK(message([&] {
           (void)with_limits(chain, "\x1b", {0, 1});
         }) ==
         "duet: with_limits: no joint \"\\x1b\": there are \"slide\", \"elbow\", \"shoulder\"");
   CHECK(message([&] {
           (void)with_limits(chain, std::vector<double>{0, 3, 0}, std::vector<double>{1, 2, 1});
-        }) == "duet: with_limits: joint 1 \"shoulder\": no motion is within its limits, 3 to 2");
+        }) == "duet: with_limits: joint 1 \"shoulder\": the limits 3 to 2 contain no coordinate");
   CHECK(message([&] {
           (void)with_tool(arm, {quaternion<double>(1), {0, std::nan(""), 0}});
-        }) == "duet: with_tool: its translation is (0, nan, 0)");
+        }) == "duet: with_tool: the translation (0, nan, 0) is not finite");
   CHECK(message([&] {
           (void)with_base(arm, {quaternion<double>(1), {HUGE_VAL, 0, 0}});
-        }) == "duet: with_base: its translation is (inf, 0, 0)");
+        }) == "duet: with_base: the translation (inf, 0, 0) is not finite");
   CHECK(message([&] {
           (void)with_tool(arm, {quaternion<double>(1, 1, 0, 0), {0, 0, 0}});
-        }).find("no unit quaternion") != std::string::npos);
+        }).find("not a unit quaternion") != std::string::npos);
 }
 
 } // namespace test_mechanism_adapted

@@ -18,7 +18,7 @@ namespace test_mechanism_allocation {
 
 using namespace duet;
 
-TEST_CASE("evaluation allocates nothing") {
+TEST_CASE("chains: evaluation allocates no memory") {
   const auto known = robots::panda();
   const bounded_chain<16> chain = robots::panda().table();
   const auto theta = duet_test::configurations(known.table(), 3).back();
@@ -35,7 +35,7 @@ TEST_CASE("evaluation allocates nothing") {
   CHECK(duet_test::allocations > start);
 }
 
-TEST_CASE("sweeps on one core allocate nothing") {
+TEST_CASE("poses, jacobians: sweeps on one core allocate no memory") {
   const bounded_chain<16> chain = robots::panda().table();
   const auto theta = duet_test::configurations(robots::panda().table(), 9);
   std::vector<dual_quaternion<double>> tips(theta.size());
@@ -48,7 +48,7 @@ TEST_CASE("sweeps on one core allocate nothing") {
   CHECK(columns.back().norm() > 1);
 }
 
-TEST_CASE("poses and Jacobians of a tree allocate no more than what they return") {
+TEST_CASE("kinematic_tree: poses and Jacobians allocate only their results") {
   robot_description robot{.links = {{"0"}}};
   for (int i = 1; i <= 30; ++i) {
     const std::string name = std::to_string(i);
@@ -69,7 +69,7 @@ TEST_CASE("poses and Jacobians of a tree allocate no more than what they return"
   CHECK(duet_test::allocations - before == 2);
 }
 
-TEST_CASE("memory and time of descriptions grow with their length, not its square") {
+TEST_CASE("read_urdf: the number of allocations is proportional to the number of links") {
   const std::string path = "test_mechanism_allocation.urdf";
   const auto allocations_of = [&](int count) {
     std::string text = "<robot name=\"r\"><link name=\"l0\"/>";

@@ -53,7 +53,8 @@ void check_sequences(const Chain& arm, int count) {
 
 } // namespace
 
-TEST_CASE("N20, N21: ∂γ/∂θ against dual numbers, and J2 of it is the spatial Jacobian") {
+TEST_CASE("pose_coordinates_jacobian: equals dual numbers, and J2 times it is the spatial Jacobian "
+          "(N20, N21)") {
   duet_test::for_each_arm([](const auto& arm) {
     const auto point = arm.link(4).at_point({.3, -.2, .5});
     for (const auto& theta : duet_test::configurations(arm, 20)) {
@@ -73,7 +74,7 @@ TEST_CASE("N20, N21: ∂γ/∂θ against dual numbers, and J2 of it is the spati
   });
 }
 
-TEST_CASE("rates of Euler angles in all twelve sequences against dual numbers") {
+TEST_CASE("euler_jacobian: equals dual numbers for all twelve sequences") {
   check_sequences(duet_test::every_joint(), 8);
 }
 

@@ -74,7 +74,8 @@ std::string message(const F& f) {
 
 } // namespace
 
-TEST_CASE("a crank-rocker, twice around, in both ways it can be assembled") {
+TEST_CASE("constrained_mechanism: a crank-rocker agrees with the closed form over two turns in "
+          "both assembly modes") {
   const four_bar bars{.2, .5, .4, .55};
   for (const double open : {-1.0, 1.0}) {
     CAPTURE(open);
@@ -96,7 +97,7 @@ TEST_CASE("a crank-rocker, twice around, in both ways it can be assembled") {
   }
 }
 
-TEST_CASE("up to dead points and not beyond") {
+TEST_CASE("constrained_mechanism: a dead point is approached and reported, not passed") {
   const four_bar bars{.3, .25, .2, .4}; // a + d > b + c: the crank cannot go around
   const double dead = std::acos((.3 * .3 + .4 * .4 - .45 * .45) / (2 * .3 * .4));
   for (const double open : {-1.0, 1.0}) {
@@ -117,7 +118,7 @@ TEST_CASE("up to dead points and not beyond") {
   }
 }
 
-TEST_CASE("beyond a gap the same assembly mode goes on, and is not reached") {
+TEST_CASE("constrained_mechanism: an assembly mode beyond a gap is not reached") {
   const four_bar bars{.975, .741, 1.076, .694};
   for (const double open : {-1.0, 1.0}) {
     const constrained_mechanism loop(bars, bars.position(1.5, open), 1.5, {.largest_step = 10});
@@ -127,24 +128,24 @@ TEST_CASE("beyond a gap the same assembly mode goes on, and is not reached") {
   }
 }
 
-TEST_CASE("what cannot be is said with the parameter") {
+TEST_CASE("constrained_mechanism: errors contain the parameter") {
   const four_bar too_short{.1, .2, .2, 1};
   CHECK(message([&] { constrained_mechanism(too_short, Eigen::Vector2d(0, 0), .5); }) ==
-        "duet: constrained_mechanism: no position near the given one at u = 0.5");
+        "duet: constrained_mechanism: no position near the initial guess at u = 0.5");
   // A slider on a crank: x² = 1 − u².
   const auto circle = [](const auto& x, const auto& u) { return x * x + u * u - 1; };
   const constrained_mechanism slider(circle, 1.0, 0);
   CHECK(message([&] {
           (void)slider(2.0);
-        }).find("duet: constrained_mechanism: cannot close beyond u = 0.99999") == 0);
-  CHECK(message([&] { (void)slider(2.0); }).find(" on the way from 0 to 2") != std::string::npos);
+        }).find("duet: constrained_mechanism: the loops do not close beyond u = 0.99999") == 0);
+  CHECK(message([&] { (void)slider(2.0); }).find(" on the line from 0 to 2") != std::string::npos);
   CHECK_THROWS_WITH_AS((void)slider(std::nan("")),
                        "duet: constrained_mechanism: u = nan is not finite", invalid_input);
   CHECK_THROWS_AS(constrained_mechanism(circle, 0.0, 1.0),
                   loop_closure_failure); // in the dead point itself
 }
 
-TEST_CASE("small steps, and a loop that stands still") {
+TEST_CASE("constrained_mechanism: tiny steps and a constant position have exact derivatives") {
   const auto circle = [](const auto& x, const auto& u) { return x * x + u * u - 1; };
   const constrained_mechanism slider(circle, -.7, 0.0); // the other side
   CHECK(slider.position() == -1);
@@ -159,7 +160,7 @@ TEST_CASE("small steps, and a loop that stands still") {
   CHECK(still(5.0) == doctest::Approx(std::sqrt(2.0)).epsilon(1e-15));
 }
 
-TEST_CASE("two driving parameters: a five-bar") {
+TEST_CASE("constrained_mechanism: a five-bar with two parameters agrees with the closed form") {
   // Two cranks of length 1, their feet at ±½, two couplers of length 1.2 that meet in x.
   const auto five_bar = [](const auto& x, const auto& u) {
     using std::cos;
@@ -190,7 +191,7 @@ TEST_CASE("two driving parameters: a five-bar") {
   }
   CHECK(message([&] {
           (void)loop(Eigen::Vector2d(3, 0));
-        }).find("duet: constrained_mechanism: cannot close beyond u = (2.") == 0);
+        }).find("duet: constrained_mechanism: the loops do not close beyond u = (2.") == 0);
 }
 
 } // namespace test_mechanism_closed_loop

@@ -68,20 +68,21 @@ dual_quaternion<double> seen(const closed_chain_mechanism& mechanism, const Vect
 
 } // namespace
 
-TEST_CASE("what loops of every kind leave: equations, and frames that they hold") {
+TEST_CASE("closed_chain_mechanism: every constraint type has its number of equations and aligns "
+          "its frames") {
   const std::array<int, kinds> equations{6, 5, 5, 4, 4, 3, 3, 1};
   duet_test::random_source random(5);
   for (int k = 0; k < kinds; ++k) {
     const auto kind = constraint_kind(k);
     CAPTURE(std::string(to_text(kind)));
     const closed_chain_mechanism mechanism = constrained_body(kind);
-    CHECK(mechanism.equations() == equations[std::size_t(k)]);
+    CHECK(mechanism.equation_count() == equations[std::size_t(k)]);
     for (int i = 0; i < 5; ++i) {
       VectorXd guess(6);
       for (double& x : guess) {
         x = random.uniform(-2, 2);
       }
-      const VectorXd q = mechanism.closed(guess);
+      const VectorXd q = mechanism.assemble(guess);
       const auto a = seen(mechanism, q);
       const Eigen::Matrix3d r = rotation_matrix(rotation(a));
       const Vector3d t = translation(a);
@@ -130,7 +131,7 @@ TEST_CASE("what loops of every kind leave: equations, and frames that they hold"
   }
 }
 
-TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, against dual numbers") {
+TEST_CASE("constraint_jacobian: equals dual numbers for all constraint and joint types") {
   const kinematic_tree tree(all_joints());
   loop_constraints loops;
   const std::array links{"finger", "cart", "flange", "screw", "tool", "thumb", "body", "hand"};
@@ -151,7 +152,7 @@ TEST_CASE("the Jacobian of every kind of loop between all kinds of joints, again
   }
 }
 
-TEST_CASE("nothing depends on the unit of length") {
+TEST_CASE("closed_chain_mechanism: results do not depend on the unit of length") {
   const double mm = 1000;
   for (int k = 0; k < kinds; ++k) {
     const closed_chain_mechanism in_m = constrained_body(constraint_kind(k)),
@@ -161,15 +162,15 @@ TEST_CASE("nothing depends on the unit of length") {
     scaled.head<3>() *= mm;
     CHECK(in_mm.length() == doctest::Approx(mm * in_m.length()).epsilon(1e-15));
     CHECK(max_abs_difference(in_m.residuals(guess), in_mm.residuals(scaled)) < 1e-13);
-    VectorXd closed = in_mm.closed(scaled);
-    CHECK(in_m.independent_coordinates(in_m.closed(guess)) ==
+    VectorXd closed = in_mm.assemble(scaled);
+    CHECK(in_m.independent_coordinates(in_m.assemble(guess)) ==
           in_mm.independent_coordinates(closed));
     closed.head<3>() /= mm;
-    CHECK(max_abs_difference(in_m.closed(guess), closed) < 1e-10);
+    CHECK(max_abs_difference(in_m.assemble(guess), closed) < 1e-10);
   }
 }
 
-TEST_CASE("all positions of a four-bar are those of Freudenstein's equation") {
+TEST_CASE("find_assembly_configurations: a four-bar has the solutions of Freudenstein's equation") {
   const double a = .2, b = .5, c = .4, d = .55;
   const closed_chain_mechanism mechanism = four_bar(a, b, c, d);
   for (const double theta : {-2.5, 0., .4, 2., 3.1}) {
@@ -193,12 +194,15 @@ TEST_CASE("all positions of a four-bar are those of Freudenstein's equation") {
   CHECK(
       find_assembly_configurations(four_bar(.2, .5, .4, 3), {0}, vector({0}), {.random_starts = 10})
           .positions.empty());
-  CHECK(duet_test::message_of<loop_closure_failure>([] {
-          (void)four_bar(.2, .5, .4, 3).closed(vector({0, 0, 0}));
-        }).starts_with("duet: closed_chain_mechanism: no position near the guess: residual "));
+  CHECK(
+      duet_test::message_of<loop_closure_failure>([] {
+        (void)four_bar(.2, .5, .4, 3).closed(vector({0, 0, 0}));
+      })
+          .starts_with(
+              "duet: closed_chain_mechanism: no configuration near the initial guess, residual "));
 }
 
-TEST_CASE("limits of joints bound where positions are looked for, and are reported") {
+TEST_CASE("find_assembly_configurations: joint limits bound the guesses and are reported") {
   robot_description robot = four_bar(.2, .5, .4, .55).tree().description();
   robot.joints[2].motion.kind = joint_kind::revolute;
   robot.joints[2].motion.limits = {0, 3};
@@ -215,20 +219,20 @@ TEST_CASE("limits of joints bound where positions are looked for, and are report
   CHECK(within == 1);
 }
 
-TEST_CASE("held coordinates stay, and the way to the position is short") {
+TEST_CASE("closed: fixed coordinates keep their values, and the step is the shortest") {
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  const VectorXd q = mechanism.closed(vector({2, -1.6, 2}), {0});
+  const VectorXd q = mechanism.assemble(vector({2, -1.6, 2}), {0});
   CHECK(q[0] == 2);
   CHECK(std::abs(q[2] - 2.002371114722) < 1e-12);
-  const VectorXd again = mechanism.closed(q);
+  const VectorXd again = mechanism.assemble(q);
   CHECK(max_abs_difference(q, again) < 1e-14);
   // From a little beside the curve of positions straight back to it: across its tangent.
   const VectorXd tangent = detail::linearised(mechanism, q).kernel();
   const VectorXd nearby = q + 1e-4 * vector({.3, .5, -.2});
-  CHECK(std::abs((mechanism.closed(nearby) - nearby).dot(tangent)) < 1e-8);
+  CHECK(std::abs((mechanism.assemble(nearby) - nearby).dot(tangent)) < 1e-8);
 }
 
-TEST_CASE("what is wrong with loops") {
+TEST_CASE("closed_chain_mechanism: errors name the constraint, the frame and the value") {
   using duet_test::message_of;
   const kinematic_tree tree = four_bar(.2, .5, .4, .55).tree();
   const auto message = [&](const loop_constraint& loop, const std::string& file = {}) {
@@ -244,31 +248,31 @@ TEST_CASE("what is wrong with loops") {
   CHECK(message({constraint_kind::spherical, coupler, coupler}) ==
         "duet: closed_chain_mechanism: loop 0, spherical: both frames are on the link \"coupler\"");
   CHECK(message({constraint_kind::distance, coupler, rocker}) ==
-        "duet: closed_chain_mechanism: loop 0, distance: its length is 0");
+        "duet: closed_chain_mechanism: loop 0, distance: the length is 0 (expected > 0)");
   CHECK(message({constraint_kind::distance, coupler, rocker, std::nan("")}) ==
-        "duet: closed_chain_mechanism: loop 0, distance: its length is nan");
+        "duet: closed_chain_mechanism: loop 0, distance: the length is nan (expected > 0)");
   constraint_frame infinite = coupler;
   infinite.offset.translation[1] = std::numeric_limits<double>::infinity();
   CHECK(message({constraint_kind::spherical, infinite, rocker}) ==
-        "duet: closed_chain_mechanism: loop 0, spherical: its frame on \"coupler\" is not finite");
+        "duet: closed_chain_mechanism: loop 0, spherical: the frame on \"coupler\" is not finite");
   CHECK(message_of([] {
           (void)frame_with_z_axis({0, 0, 0}, {0, 0, 0});
-        }) == "duet: frame_with_z_axis: (0, 0, 0) is no direction");
+        }) == "duet: frame_with_z_axis: the direction (0, 0, 0) is zero or not finite");
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   CHECK(message_of([&] {
-          (void)mechanism.closed(vector({0, 0, 0}), {3});
-        }) == "duet: closed_chain_mechanism: no coordinate 3 of 3");
+          (void)mechanism.assemble(vector({0, 0, 0}), {3});
+        }) == "duet: closed_chain_mechanism: coordinate 3 does not exist, the mechanism has 3");
   CHECK(message_of([&] {
-          (void)mechanism.closed(vector({0, 0, std::nan("")}));
-        }) == "duet: closed_chain_mechanism: the guess is not finite");
+          (void)mechanism.assemble(vector({0, 0, std::nan("")}));
+        }) == "duet: closed_chain_mechanism: the initial guess is not finite");
   CHECK(message_of([&] {
-          (void)mechanism.closed(vector({0, 0}));
-        }) == "duet: a tree of 3 coordinates, but 2 are given");
+          (void)mechanism.assemble(vector({0, 0}));
+        }) == "duet: kinematic_tree: 2 coordinates (expected 3)");
   CHECK(message_of([&] { (void)find_assembly_configurations(mechanism, {0}, VectorXd()); }) ==
-        "duet: find_assembly_configurations: 1 coordinates are held, but 0 numbers given");
+        "duet: find_assembly_configurations: 0 values for 1 fixed coordinates");
 }
 
-TEST_CASE("an axis in any direction") {
+TEST_CASE("frame_with_z_axis: the z axis has any direction, also at extreme magnitudes") {
   for (const Vector3d& n :
        {Vector3d(0, 0, 1), Vector3d(0, 0, -1), Vector3d(1, 2, -.3), Vector3d(0, -1e-9, -1),
         Vector3d(3, 0, 0), Vector3d(0, 1e308, 1e308), Vector3d(5e-324, 5e-324, 0)}) {
@@ -279,7 +283,8 @@ TEST_CASE("an axis in any direction") {
   }
 }
 
-TEST_CASE("positions are looked for until another one is improbable, or guesses run out") {
+TEST_CASE("find_assembly_configurations: stops at the missing probability or at the maximum number "
+          "of guesses") {
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   const auto search = [&](const std::vector<int>& fixed, const assembly_search_options& options) {
     return find_assembly_configurations(mechanism, fixed,
@@ -289,7 +294,7 @@ TEST_CASE("positions are looked for until another one is improbable, or guesses 
   const assembly_search_result until =
       search({0}, {.random_starts = 1, .missing_probability = .02});
   CHECK(until.positions.size() == 2);
-  CHECK(until.closed == 50); // 1 / 50 is no more than the chance
+  CHECK(until.converged == 50); // 1 / 50 is no more than the chance
   CHECK(until.missing_probability() == 0);
   CHECK(search({0}, {.random_starts = 70, .missing_probability = .02}).starts == 70);
   CHECK(search({0}, {.random_starts = 1, .missing_probability = 0, .max_starts = 60}).starts == 60);
@@ -299,7 +304,7 @@ TEST_CASE("positions are looked for until another one is improbable, or guesses 
   const assembly_search_result curve =
       search({}, {.random_starts = 1, .missing_probability = .5, .max_starts = 90});
   CHECK(curve.starts == 90);
-  CHECK(int(curve.positions.size()) == curve.closed);
+  CHECK(int(curve.positions.size()) == curve.converged);
 }
 
 } // namespace test_mechanism_closed_tree

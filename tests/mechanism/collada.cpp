@@ -95,7 +95,7 @@ std::string changed(std::string text, const std::string& from, const std::string
 
 } // namespace
 
-TEST_CASE("faces of every kind") {
+TEST_CASE("COLLADA: all types of faces are split into triangles") {
   check_vertices(read(of_mesh(sources + triangle)), {p[0], p[1], p[2]});
   check_vertices(read(of_mesh(sources + "<lines count=\"1\">" + input + "<p>0 1</p></lines>" +
                               "<polylist count=\"2\">" + input +
@@ -121,7 +121,7 @@ TEST_CASE("faces of every kind") {
                  {p[0], p[1], p[2]});
 }
 
-TEST_CASE("positions by offset, stride and names of parameters") {
+TEST_CASE("COLLADA: positions are read by offset, stride and parameter names") {
   const std::string interleaved =
       "<source id=\"s\"><float_array id=\"a\" count=\"12\">7 8 1 2 3 9 9 4 5 6 9 9"
       "</float_array><technique_common><accessor source=\"#a\" count=\"2\" "
@@ -146,7 +146,7 @@ TEST_CASE("positions by offset, stride and names of parameters") {
         "3: <accessor>: no <param name=\"Y\"> for positions");
 }
 
-TEST_CASE("nodes place what is in them, and units are metres") {
+TEST_CASE("COLLADA: nodes transform their geometry, and lengths are metres") {
   // Outermost first, and before what is placed: 2 (T R S x), R a quarter turn about z.
   const auto moved = [](const point& x) {
     return point{2 * (1 - 5 * x[1]), 2 * (2 + 3 * x[0]), 2 * (3 + 7 * x[2])};
@@ -182,7 +182,7 @@ TEST_CASE("nodes place what is in them, and units are metres") {
   check_vertices(read(with_asset("<unit meter=\"1e-2\"/>")), {p[0], {.01, 0, 0}, {.01, .01, 0}});
 }
 
-TEST_CASE("what is mirrored has its outside outside") {
+TEST_CASE("COLLADA: mirrored triangles keep their outward orientation") {
   const std::string faces = sources + "<triangles count=\"4\">" + input +
                             "<p>0 3 1 0 1 4 0 4 3 1 3 4</p></triangles>"; // a corner of a cube
   CHECK(six_volumes(read(document(faces, "<node>" + shown + "</node>"))) == doctest::Approx(1));
@@ -192,10 +192,10 @@ TEST_CASE("what is mirrored has its outside outside") {
                                              shown + shown + "</node>"))) == doctest::Approx(4));
 }
 
-TEST_CASE("a scene that is not shown, cameras, lights and lines") {
+TEST_CASE("COLLADA: hidden scenes, cameras, lights and lines are skipped") {
   CHECK(error_of(changed(of_mesh(sources + triangle), shown,
                          "<instance_light url=\"#l\"/><instance_camera url=\"#c\"/>")) ==
-        " has no triangles");
+        " the file contains no triangles");
   const std::string two = changed(of_mesh(sources + triangle), "<visual_scene id=\"w\">",
                                   "<visual_scene id=\"other\"><node>" + shown + shown +
                                       "</node></visual_scene><visual_scene id=\"w\">");
@@ -204,7 +204,7 @@ TEST_CASE("a scene that is not shown, cameras, lights and lines") {
         "2: <COLLADA>: no element <scene>");
 }
 
-TEST_CASE("what is wrong with faces: where, and what") {
+TEST_CASE("COLLADA: errors of faces name line, element and value") {
   const auto of_faces = [](const std::string& faces) { return error_of(of_mesh(sources + faces)); };
   const auto of_triangle = [&](const std::string& from, const std::string& to) {
     return of_faces(changed(triangle, from, to));
@@ -247,7 +247,7 @@ TEST_CASE("what is wrong with faces: where, and what") {
         "8: <ph>: polygons with holes are not supported");
 }
 
-TEST_CASE("what is wrong with numbers and what names them") {
+TEST_CASE("COLLADA: errors of numbers and references name line, element and value") {
   const std::string good = of_mesh(sources + triangle);
   const auto with = [&](const std::string& from, const std::string& to) {
     return error_of(changed(good, from, to));
@@ -278,7 +278,7 @@ TEST_CASE("what is wrong with numbers and what names them") {
   CHECK(error_of("") == "1: no element found");
 }
 
-TEST_CASE("what is wrong with nodes, units and directions") {
+TEST_CASE("COLLADA: errors of nodes, units and directions name line, element and value") {
   CHECK(error_of(of_node("<matrix>1 0 0 0 0 1 0 0 0 0 1 0 0 0 0</matrix>")) ==
         "11: <matrix>: has 15 numbers in place of 16");
   CHECK(error_of(of_node("<matrix>1 0 0 0 0 1 0 0 0 0 1 0 1 0 0 1</matrix>")) ==
@@ -308,7 +308,7 @@ TEST_CASE("what is wrong with nodes, units and directions") {
         "2: <up_axis>: \"Z\" is none of X_UP, Y_UP and Z_UP");
 }
 
-TEST_CASE("instances in a circle, and too many of them") {
+TEST_CASE("COLLADA: cyclic and excessive instances are rejected") {
   const std::string own = "<node id=\"n\"><instance_node url=\"#n\"/></node>";
   CHECK(error_of(document(sources + triangle, own)) ==
         "11: <node id=\"n\">: nodes are nested more than 100 deep, or in a circle");
@@ -320,7 +320,7 @@ TEST_CASE("instances in a circle, and too many of them") {
   CHECK(error_of(document(sources + triangle, nodes))
             .ends_with("<instance_node>: the scene has more than 5 million triangles"));
   // Without triangles there is nothing to place.
-  CHECK(error_of(document(sources, nodes)) == " has no triangles");
+  CHECK(error_of(document(sources, nodes)) == " the file contains no triangles");
 }
 
 } // namespace test_mechanism_collada

@@ -46,7 +46,8 @@ Eigen::Matrix<T, 4, 1> along(const Eigen::Vector4d& y, const Eigen::Vector4d& v,
 
 } // namespace
 
-TEST_CASE("a function of four numbers moves all joints: against dual numbers through all") {
+TEST_CASE("coupled_tree: Jacobians, rates and Hessians equal dual numbers through a coupling of "
+          "all joints") {
   const coupled_tree tree(kinematic_tree(all_joints()), waves);
   const auto hand = tree.tree().link("hand").at_point({.1, .2, .3});
   const relative_frame relative{hand, tree.tree().link("screw")};
@@ -105,7 +106,7 @@ TEST_CASE("a function of four numbers moves all joints: against dual numbers thr
   }
 }
 
-TEST_CASE("a linear coupling is what mimic is") {
+TEST_CASE("coupled_tree: a linear coupling equals mimic joints") {
   auto robot = all_joints();
   const kinematic_tree follows(robot);
   for (tree_joint& joint : robot.joints) {
@@ -136,7 +137,7 @@ TEST_CASE("a linear coupling is what mimic is") {
   CHECK(
       duet_test::message_of([&] {
         (void)coupled_tree(follows, [](const auto& y) { return y; }).pose(Eigen::Vector2d(1, 2), 0);
-      }) == "duet: a tree of 15 coordinates, but 2 are given");
+      }) == "duet: kinematic_tree: 2 coordinates (expected 15)");
 }
 
 } // namespace test_mechanism_coupled_tree

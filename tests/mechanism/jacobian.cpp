@@ -20,7 +20,7 @@ using duet_test::max_abs_difference;
 
 } // namespace
 
-TEST_CASE("N18, N20: Jacobians of the tip, of links and of points against dual numbers") {
+TEST_CASE("jacobian: tip, links and points equal dual numbers (N18, N20)") {
   duet_test::for_each_arm([](const auto& arm) {
     const auto point = arm.link(arm.size() - 2).at_point({.3, -.2, .5});
     for (const auto& theta : duet_test::configurations(arm, 20)) {
@@ -47,7 +47,7 @@ TEST_CASE("N18, N20: Jacobians of the tip, of links and of points against dual n
   });
 }
 
-TEST_CASE("the upper rows of the hybrid Jacobian are those of a point's coordinates") {
+TEST_CASE("jacobian: the upper rows of the hybrid one are the derivatives of the position") {
   const auto arm = robots::iiwa14().table();
   const auto point = arm.tip().at_point({.1, .2, .3});
   for (const auto& theta : duet_test::configurations(arm, 5)) {
@@ -59,7 +59,7 @@ TEST_CASE("the upper rows of the hybrid Jacobian are those of a point's coordina
   }
 }
 
-TEST_CASE("frames: V^s = Ad(A) V^b, and the pose comes with the Jacobian") {
+TEST_CASE("pose_and_jacobian: V^s = Ad(A) V^b, and the pose equals that of pose()") {
   duet_test::for_each_known_arm([](const auto& arm) {
     for (const auto& theta : duet_test::configurations(arm, 10)) {
       const auto [a, body] = pose_and_jacobian(arm, theta, frame::body);
@@ -70,7 +70,7 @@ TEST_CASE("frames: V^s = Ad(A) V^b, and the pose comes with the Jacobian") {
   });
 }
 
-TEST_CASE("an arm known to the compiler has the Jacobians of its table") {
+TEST_CASE("jacobian: a static chain equals its table") {
   duet_test::for_each_known_arm([](const auto& arm) {
     for (const auto& theta : duet_test::configurations(arm, 10)) {
       for_each_frame([&](auto frame) {
@@ -83,7 +83,7 @@ TEST_CASE("an arm known to the compiler has the Jacobians of its table") {
   });
 }
 
-TEST_CASE("as many joints as there turn out to be") {
+TEST_CASE("jacobian: a bounded_chain equals the serial_chain of the same joints") {
   std::vector<joint<>> joints(3);
   joints[1].axis = {0, 1, 0};
   joints[1].origin.translation = {.4, 0, 0};
@@ -99,7 +99,7 @@ TEST_CASE("as many joints as there turn out to be") {
   CHECK(max_abs_difference(m, jacobian(chain, std::vector{.3, -1.2, .7}, frame::body)) == 0);
 }
 
-TEST_CASE("wrenches: τ = Jᵀ F is the same in every frame, and has the same power") {
+TEST_CASE("joint_efforts: τ = Jᵀ F agrees in all frames and has the power of the wrench") {
   const auto arm = duet_test::every_joint();
   duet_test::random_source random(3);
   for (const auto& theta : duet_test::configurations(arm, 10)) {

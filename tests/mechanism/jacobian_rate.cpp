@@ -26,7 +26,7 @@ coordinates<N> rates(duet_test::random_source& random) {
 
 } // namespace
 
-TEST_CASE("Jacobian rates and Hessians against derivatives of the Jacobian") {
+TEST_CASE("jacobian_with_rate, kinematic_hessian: equal derivatives of the Jacobian") {
   duet_test::random_source random(5);
   duet_test::for_each_arm([&](const auto& arm) {
     constexpr int n = std::decay_t<decltype(arm)>::joints;
@@ -61,7 +61,7 @@ TEST_CASE("Jacobian rates and Hessians against derivatives of the Jacobian") {
   });
 }
 
-TEST_CASE("every matrix of the Hessian, by dual numbers through the pose alone") {
+TEST_CASE("kinematic_hessian: every matrix equals second derivatives of the pose") {
   const auto arm = duet_test::every_joint();
   for (const auto& theta : duet_test::configurations(arm, 3)) {
     const auto h = kinematic_hessian(arm, theta, frame::hybrid);
@@ -86,7 +86,8 @@ TEST_CASE("every matrix of the Hessian, by dual numbers through the pose alone")
   }
 }
 
-TEST_CASE("acceleration: p̈ is the hybrid one; the spatial and the body's differ as they must") {
+TEST_CASE("jacobian_rate: the hybrid acceleration is p̈, the spatial and body ones have their known "
+          "differences") {
   duet_test::random_source random(8);
   const auto arm = robots::panda().table();
   for (const auto& theta : duet_test::configurations(arm, 10)) {

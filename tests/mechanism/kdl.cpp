@@ -172,7 +172,7 @@ std::optional<std::filesystem::path> robot_files() {
 
 } // namespace
 
-TEST_CASE("poses, Jacobians and their rates of every link are Orocos KDL's") {
+TEST_CASE("poses, Jacobians and Jacobian rates of every link agree with Orocos KDL") {
   const auto data = robot_files();
   if (!data) {
     return;
@@ -217,7 +217,7 @@ TEST_CASE("poses, Jacobians and their rates of every link are Orocos KDL's") {
   CHECK(moving["double_pendulum"] == 2);
 }
 
-TEST_CASE("trees of every robot file are Orocos KDL's, the joints that follow others too") {
+TEST_CASE("trees of every robot file agree with Orocos KDL, including mimic joints") {
   const auto data = robot_files();
   if (!data) {
     return;
@@ -298,7 +298,7 @@ TEST_CASE("trees of every robot file are Orocos KDL's, the joints that follow ot
 
 #include <doctest/doctest.h>
 
-TEST_CASE("poses, Jacobians and their rates of every link are Orocos KDL's") {
+TEST_CASE("poses, Jacobians and Jacobian rates of every link agree with Orocos KDL") {
   duet_test::skip("Orocos KDL (liborocos-kdl-dev) is not installed");
 }
 

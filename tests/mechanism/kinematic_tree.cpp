@@ -68,7 +68,7 @@ auto along(const VectorXd& q, const VectorXd& v, const T& t) {
 
 } // namespace
 
-TEST_CASE("coordinates: their names, order and limits") {
+TEST_CASE("kinematic_tree: coordinates have the names, order and limits of the joints") {
   const kinematic_tree tree(all_joints());
   CHECK(tree.size() == 1 + 6 + 3 + 1 + 1 + 3);
   CHECK(tree.coordinate_names() ==
@@ -85,13 +85,13 @@ TEST_CASE("coordinates: their names, order and limits") {
           (void)tree.link("word");
         }).starts_with("duet: kinematic_tree: no link \"word\": there are \"world\", "));
   CHECK(duet_test::message_of([&] { (void)tree.link(11); }) ==
-        "duet: kinematic_tree: no link 11 of 11");
+        "duet: kinematic_tree: link 11 does not exist, the tree has 11 links");
   CHECK(duet_test::message_of([&] { (void)tree.pose(VectorXd::Zero(14), 0); }) ==
-        "duet: a tree of 15 coordinates, but 14 are given");
+        "duet: kinematic_tree: 14 coordinates (expected 15)");
   CHECK(tree.limits(0).lower == -INFINITY);
 }
 
-TEST_CASE("poses are products of what the joints say") {
+TEST_CASE("kinematic_tree: poses are the products of the joint displacements") {
   const auto robot = all_joints();
   const kinematic_tree tree(robot);
   for (const VectorXd& q : coordinates_of(tree, 20)) {
@@ -143,7 +143,7 @@ TEST_CASE("poses are products of what the joints say") {
   }
 }
 
-TEST_CASE("the plane of a planar joint, also where its axis is near -z") {
+TEST_CASE("kinematic_tree: a planar joint moves in its plane, also for axes near -z") {
   for (const double small : {0., 1e-3, 1e-9, 1e-13, 1e-17}) {
     robot_description robot{{{"a"}, {"b"}}, {{"p", "a", "b", {joint_kind::planar}}}};
     const double z = -std::sqrt(1 - small * small);
@@ -161,7 +161,7 @@ TEST_CASE("the plane of a planar joint, also where its axis is near -z") {
   }
 }
 
-TEST_CASE("Jacobians of frames, points and relative poses against dual numbers") {
+TEST_CASE("kinematic_tree: Jacobians of frames, points and relative poses equal dual numbers") {
   const kinematic_tree tree(all_joints());
   for (const VectorXd& q : coordinates_of(tree, 5)) {
     for_each_frame_of_interest(tree, [&](const auto& at) {
@@ -182,7 +182,7 @@ TEST_CASE("Jacobians of frames, points and relative poses against dual numbers")
   CHECK(m.rightCols(3).isZero(0));
 }
 
-TEST_CASE("rates and Hessians against derivatives of the Jacobian") {
+TEST_CASE("kinematic_tree: Jacobian rates and Hessians equal derivatives of the Jacobian") {
   const kinematic_tree tree(all_joints());
   duet_test::random_source random(5);
   for (const VectorXd& q : coordinates_of(tree, 2)) {
@@ -216,7 +216,7 @@ TEST_CASE("rates and Hessians against derivatives of the Jacobian") {
   }
 }
 
-TEST_CASE("the centre of mass, its Jacobian, rate and Hessian") {
+TEST_CASE("centre_of_mass: value, Jacobian, rate and Hessian equal sums and dual numbers") {
   const auto robot = all_joints();
   const kinematic_tree tree(robot);
   duet_test::random_source random(6);
@@ -255,13 +255,13 @@ TEST_CASE("the centre of mass, its Jacobian, rate and Hessian") {
   }
   const kinematic_tree massless(light);
   CHECK(duet_test::message_of([&] { (void)centre_of_mass(massless, VectorXd::Zero(15)); }) ==
-        "duet: centre_of_mass: no link has a mass");
+        "duet: centre_of_mass: the mass of all links is 0 (expected > 0)");
   light.links[3].inertia = link_inertia{-1};
   CHECK(duet_test::message_of([&] { (void)kinematic_tree(light); }) ==
-        "duet: kinematic_tree: <link name=\"shoulder\">: its mass is -1");
+        "duet: kinematic_tree: <link name=\"shoulder\">: the mass is -1 (expected >= 0)");
 }
 
-TEST_CASE("50 digits, also near full turns of a floating base") {
+TEST_CASE("kinematic_tree: double agrees with 50 digits, also near full turns of a floating base") {
   using digits = duet_test::real_50;
   const kinematic_tree tree(all_joints());
   const auto at = tree.link("tool").at_point({.1, .2, .3});
@@ -290,7 +290,7 @@ TEST_CASE("50 digits, also near full turns of a floating base") {
   }
 }
 
-TEST_CASE("one body alone; a fixed one beside it") {
+TEST_CASE("kinematic_tree: a single link has no coordinates and empty Jacobians") {
   const kinematic_tree alone(
       {.links = {{"a", link_inertia{2, duet_test::placement_at(0, 0, 0, 1, 2, 3)}}}});
   const VectorXd none(0);
@@ -304,7 +304,7 @@ TEST_CASE("one body alone; a fixed one beside it") {
   CHECK(centre_of_mass_jacobian(alone, none).cols() == 0);
 }
 
-TEST_CASE("no depth is too much") {
+TEST_CASE("kinematic_tree: a chain of 20000 links has accurate poses and Jacobians") {
   constexpr int count = 20000;
   robot_description robot;
   robot.links.push_back({"0"});
@@ -334,7 +334,8 @@ TEST_CASE("no depth is too much") {
   CHECK(jacobian_rate(tree, q, q, frame::body, count).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST_CASE("paths of all lengths, with balls anywhere on them, are walked alike") {
+TEST_CASE(
+    "kinematic_tree: paths of 1 to 41 joints with spherical ones have exact poses and Jacobians") {
   duet_test::random_source random(21);
   robot_description robot{.links = {{"0"}}};
   for (int i = 1; i <= 41; ++i) {
@@ -375,7 +376,7 @@ TEST_CASE("paths of all lengths, with balls anywhere on them, are walked alike")
   }
 }
 
-TEST_CASE("other limits of coordinates") {
+TEST_CASE("with_limits: replaces the limits of coordinates of a tree") {
   robot_description robot = all_joints();
   const kinematic_tree tree(robot);
   const int bend = tree.coordinate("bend");
@@ -400,7 +401,7 @@ TEST_CASE("other limits of coordinates") {
         }).rfind("duet: kinematic_tree: no coordinate \"bent\": ", 0) == 0);
   CHECK(duet_test::message_of([&] {
           (void)with_limits(tree, 99, {});
-        }).rfind("duet: with_limits: no coordinate 99 of ", 0) == 0);
+        }).rfind("duet: with_limits: coordinate 99 does not exist, the tree has ", 0) == 0);
   CHECK(duet_test::message_of([&] {
           (void)with_limits(tree, "free.x", {.lower = 1, .upper = 0});
         }).rfind("duet: with_limits: joint ", 0) == 0);
@@ -409,7 +410,7 @@ TEST_CASE("other limits of coordinates") {
         }).rfind("duet: with_limits: 2 lower and ", 0) == 0);
 }
 
-TEST_CASE("joints that follow narrow the limits of what they follow") {
+TEST_CASE("kinematic_tree: mimic joints narrow the limits of the mimicked joint") {
   robot_description robot{{{"a"}, {"b"}, {"c"}, {"d"}},
                           {{"p", "a", "b", {joint_kind::revolute, {}, {0, 0, 1}, {-1, 2, 3}}},
                            {"q", "b", "c", {joint_kind::revolute, {}, {0, 0, 1}, {-3, .5, 3}}},
@@ -429,22 +430,21 @@ TEST_CASE("joints that follow narrow the limits of what they follow") {
   const auto error_of = [&] { return duet_test::message_of([&] { (void)kinematic_tree(robot); }); };
   robot.joints[1].motion.limits = {2.2, 3};
   CHECK(error_of() ==
-        "duet: kinematic_tree: <joint name=\"q\">: no motion of \"p\" is within its limits, "
+        "duet: kinematic_tree: <joint name=\"q\">: no coordinate of \"p\" satisfies its limits "
         "2.2 to 3");
   robot.joints[1].motion.limits = {-3, 3};
   robot.joints[1].mimic->multiplier = 0;
   CHECK(kinematic_tree(robot).limits(0).upper == 2);
   robot.joints[1].mimic->offset = 4;
   CHECK(error_of() ==
-        "duet: kinematic_tree: <joint name=\"q\">: no motion of \"p\" is within its limits, "
+        "duet: kinematic_tree: <joint name=\"q\">: no coordinate of \"p\" satisfies its limits "
         "-3 to 3");
   robot.joints[1].mimic->offset = NAN;
-  CHECK(error_of() ==
-        "duet: kinematic_tree: <joint name=\"q\">: the multiplier or the offset by which it "
-        "follows is not finite");
+  CHECK(error_of() == "duet: kinematic_tree: <joint name=\"q\">: the multiplier or the offset of "
+                      "its mimic is not finite");
 }
 
-TEST_CASE("what is no tree") {
+TEST_CASE("kinematic_tree: invalid descriptions are rejected with link, joint and value") {
   const auto error_of = [](const robot_description& robot) {
     return duet_test::message_of([&] { (void)kinematic_tree(robot); });
   };
@@ -452,24 +452,24 @@ TEST_CASE("what is no tree") {
   const std::string p = begin + "<joint name=\"p\">: ";
   const std::vector<tree_link> links = {{"a"}, {"b"}, {"c"}};
   const joint<double> revolute;
-  CHECK(error_of({}) == begin + "there are no links");
+  CHECK(error_of({}) == begin + "the description has no links");
   CHECK(error_of({{{"a"}, {"a"}}}) == begin + "<link name=\"a\">: another link has this name");
   CHECK(error_of({links, {{"p", "a", "b", revolute}}}) ==
-        begin +
-            "<link name=\"c\">: no joint is above it, and none above \"a\": a tree has one root");
+        begin + "<link name=\"c\">: it is a second root, the first is \"a\"");
   CHECK(error_of({links, {{"p", "a", "d", revolute}}}) ==
         p + "no link \"d\": there are \"a\", \"b\", \"c\"");
   CHECK(error_of({links, {{"p", "a", "b", revolute}, {"p", "a", "c", revolute}}}) ==
         p + "another joint has this name");
   CHECK(error_of({links, {{"q", "a", "b", revolute}, {"p", "c", "b", revolute}}}) ==
-        p + "the link \"b\" has a joint above it already, \"q\"");
+        p + "the link \"b\" already has the parent joint \"q\"");
   CHECK(error_of({links, {{"p", "c", "b", revolute}, {"q", "b", "c", revolute}}}) ==
-        p + "closes a cycle at the link \"b\"");
-  CHECK(error_of({{{"b"}}, {{"p", "b", "b", revolute}}}) == p + "closes a cycle at the link \"b\"");
+        p + "it closes a cycle at the link \"b\"");
+  CHECK(error_of({{{"b"}}, {{"p", "b", "b", revolute}}}) ==
+        p + "it closes a cycle at the link \"b\"");
   joint<double> bad;
   bad.axis = {0, 0, 2};
   CHECK(error_of({links, {{"p", "a", "b", bad}}}) ==
-        begin + "joint 0 \"p\": the axis (0, 0, 2) is no unit vector");
+        begin + "joint 0 \"p\": the axis (0, 0, 2) is not a unit vector");
   const auto follows = [&](const std::string& leader, joint_kind kind, joint_kind of_leader) {
     robot_description robot{links, {{"q", "a", "b", {of_leader}}, {"p", "b", "c", {kind}}}};
     robot.joints[1].mimic = joint_mimic{leader};
@@ -477,21 +477,21 @@ TEST_CASE("what is no tree") {
   };
   CHECK(follows("q", joint_kind::revolute, joint_kind::prismatic).empty());
   CHECK(follows("x", joint_kind::revolute, joint_kind::prismatic) ==
-        p + "it follows no joint \"x\": there are \"q\", \"p\"");
-  CHECK(follows("p", joint_kind::revolute, joint_kind::prismatic) == p + "follows itself");
+        p + "it mimics no joint \"x\": there are \"q\", \"p\"");
+  CHECK(follows("p", joint_kind::revolute, joint_kind::prismatic) == p + "it mimics itself");
   CHECK(follows("q", joint_kind::planar, joint_kind::revolute) ==
-        p + "follows \"q\", but \"p\" has 3 coordinates, not one");
+        p + "it mimics \"q\", but \"p\" has 3 coordinates (expected 1)");
   CHECK(follows("q", joint_kind::revolute, joint_kind::floating) ==
-        p + "follows \"q\", but \"q\" has 6 coordinates, not one");
+        p + "it mimics \"q\", but \"q\" has 6 coordinates (expected 1)");
   CHECK(follows("q", joint_kind::revolute, joint_kind::fixed) ==
-        p + "follows \"q\", but \"q\" has 0 coordinates, not one");
+        p + "it mimics \"q\", but \"q\" has 0 coordinates (expected 1)");
   robot_description circle{links, {{"p", "a", "b", revolute}, {"q", "b", "c", revolute}}};
   circle.joints[0].mimic = joint_mimic{"q"};
   circle.joints[1].mimic = joint_mimic{"p"};
-  CHECK(error_of(circle) == p + "follows itself");
+  CHECK(error_of(circle) == p + "it mimics itself");
 }
 
-TEST_CASE("chains between links, up and down") {
+TEST_CASE("kinematic_tree::chain: chains up and down the tree have its relative poses") {
   robot_description robot = all_joints();
   for (tree_joint& joint : robot.joints) {
     joint.mimic.reset();
@@ -536,13 +536,9 @@ TEST_CASE("chains between links, up and down") {
         }).starts_with("duet: kinematic_tree: no link \"worlt\": there are \"world\", "));
   const kinematic_tree complete(all_joints());
   CHECK(duet_test::message_of([&] { (void)complete.chain("world", "tool"); }) ==
-        "duet: kinematic_tree: <joint name=\"free\">: has 6 coordinates: that takes a "
-        "kinematic_tree, "
-        "not a chain");
+        "duet: kinematic_tree: <joint name=\"free\">: it has 6 coordinates (use a kinematic_tree)");
   CHECK(duet_test::message_of([&] { (void)complete.chain("hand", "thumb"); }) ==
-        "duet: kinematic_tree: <joint name=\"oppose\">: follows \"grip\": that takes a "
-        "kinematic_tree, "
-        "not a chain");
+        "duet: kinematic_tree: <joint name=\"oppose\">: it mimics \"grip\" (use a kinematic_tree)");
   CHECK(complete.chain("elbow", "tool").size() == 1);
 }
 

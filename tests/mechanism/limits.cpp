@@ -42,7 +42,7 @@ urdf_chain<16> from_file() {
 
 } // namespace
 
-TEST_CASE("limits change, and nothing else") {
+TEST_CASE("with_limits: changes the limits, but no pose and no velocity limit") {
   duet_test::for_each_arm([](const auto& arm) {
     const auto before = arm;
     auto lower = lower_limits(arm);
@@ -71,7 +71,7 @@ TEST_CASE("limits change, and nothing else") {
   });
 }
 
-TEST_CASE("one joint alone; chains that the compiler knows") {
+TEST_CASE("with_limits: a single joint of a static chain, respected by inverse_kinematics") {
   constexpr auto arm = robots::panda();
   constexpr auto narrow = with_limits(arm, 3, {.lower = -2, .upper = -1});
   static_assert(std::is_same_v<decltype(narrow), const serial_chain<7>>);
@@ -99,7 +99,7 @@ TEST_CASE("one joint alone; chains that the compiler knows") {
   CHECK(result.joints[3] >= -2);
 }
 
-TEST_CASE("a chain from a file keeps its names") {
+TEST_CASE("with_limits: a chain from a file keeps its names") {
   const auto chain = from_file();
   const auto locked = with_limits(chain, 1, {0, 0});
   static_assert(std::is_same_v<decltype(locked), const urdf_chain<16>>);
@@ -115,27 +115,28 @@ TEST_CASE("a chain from a file keeps its names") {
   CHECK(with_limits(chain, 0, {0, 1}).kind(0) == joint_kind::prismatic);
 }
 
-TEST_CASE("what is wrong with limits is said with the joint and the value") {
+TEST_CASE("with_limits: errors name the joint and the value") {
   const auto arm = robots::ur5e();
   const auto message = [&](int i, const joint_limits<>& limits) {
     return duet_test::message_of<invalid_input>([&] { (void)with_limits(arm, i, limits); });
   };
   CHECK(message(2, {1, -1}) ==
-        "duet: with_limits: joint 2: no motion is within its limits, 1 to -1");
+        "duet: with_limits: joint 2: the limits 1 to -1 contain no coordinate");
   CHECK(message(2, {std::nan(""), 1}) ==
-        "duet: with_limits: joint 2: no motion is within its limits, nan to 1");
+        "duet: with_limits: joint 2: the limits nan to 1 contain no coordinate");
   CHECK(message(2, {0, std::nan("")}) ==
-        "duet: with_limits: joint 2: no motion is within its limits, 0 to nan");
+        "duet: with_limits: joint 2: the limits 0 to nan contain no coordinate");
   CHECK(message(2, {infinity, infinity}) ==
-        "duet: with_limits: joint 2: no motion is within its limits, inf to inf");
+        "duet: with_limits: joint 2: the limits inf to inf contain no coordinate");
   CHECK(message(2, {-infinity, -infinity}) ==
-        "duet: with_limits: joint 2: no motion is within its limits, -inf to -inf");
-  CHECK(message(0, {.velocity = -1}) == "duet: with_limits: joint 0: its limit of velocity is -1");
+        "duet: with_limits: joint 2: the limits -inf to -inf contain no coordinate");
+  CHECK(message(0, {.velocity = -1}) ==
+        "duet: with_limits: joint 0: the velocity limit is -1 (expected >= 0)");
   CHECK(message(0, {.velocity = std::nan("")}) ==
-        "duet: with_limits: joint 0: its limit of velocity is nan");
+        "duet: with_limits: joint 0: the velocity limit is nan (expected >= 0)");
   for (const int none : {-1, 6}) {
-    CHECK(message(none, {}) ==
-          "duet: with_limits: no joint " + std::to_string(none) + " in a chain of 6 moving joints");
+    CHECK(message(none, {}) == "duet: with_limits: joint " + std::to_string(none) +
+                                   " does not exist, the chain has 6 moving joints");
   }
   const Eigen::VectorXd five = Eigen::VectorXd::Constant(5, -1);
   Eigen::VectorXd six = Eigen::VectorXd::Constant(6, 1);
@@ -146,7 +147,7 @@ TEST_CASE("what is wrong with limits is said with the joint and the value") {
   six[4] = 2;
   CHECK(duet_test::message_of([&] {
           (void)with_limits(arm, six, Eigen::VectorXd::Ones(6).eval());
-        }) == "duet: with_limits: joint 4: no motion is within its limits, 2 to 1");
+        }) == "duet: with_limits: joint 4: the limits 2 to 1 contain no coordinate");
 }
 
 } // namespace test_mechanism_limits

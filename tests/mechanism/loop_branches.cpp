@@ -93,12 +93,12 @@ VectorXd some_position(const closed_chain_mechanism& mechanism, duet::random_sou
 
 } // namespace
 
-TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram") {
+TEST_CASE("trace: a flat parallelogram continues as parallelogram or antiparallelogram") {
   const std::array bar{.3, .8, .3, .8};
   const driven_motion motion(bars(bar), Vector3d(1, -1, 1), {0});
   const motion_trace straight = trace(motion);
   CHECK(straight.is_closed);
-  CHECK(!straight.meets_branches);
+  CHECK(!straight.stopped_early);
   CHECK(straight.dead_points.empty());
   REQUIRE(straight.branch_points.size() == 2);
   for (const VectorXd& q : straight.positions) {
@@ -136,10 +136,10 @@ TEST_CASE("a parallelogram that is flat: on as one, or as an antiparallelogram")
   CHECK(back.branch_points[0].chosen == 3);
   CHECK(std::abs(back.positions.back()[0] - back.positions.back()[2]) < 1e-12);
   CHECK(message_of([&] { (void)trace(motion, 0, {.branches = {4}}); }) ==
-        "duet: trace: no branch 4 of 4 from branch point 0");
+        "duet: trace: branch 4 does not exist, branch point 0 has 4");
 }
 
-TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways against 100 digits") {
+TEST_CASE("trace: tangents at branch points of random foldable four-bars agree with 100 digits") {
   duet::random_source random(7);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
@@ -158,7 +158,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
     const driven_motion motion(mechanism, some_position(mechanism, random), {0});
     const motion_trace complete = trace(motion);
     CHECK(complete.is_closed);
-    CHECK(!complete.meets_branches);
+    CHECK(!complete.stopped_early);
     REQUIRE(complete.branch_points.size() == 2); // once on each branch
     for (const branch_point& at : complete.branch_points) {
       check_crossing(bar, at);
@@ -166,7 +166,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
     for (const std::size_t tangent : {1, 2, 3}) {
       const motion_trace other = trace(motion, 0, {.branches = {tangent}});
       CHECK(other.is_closed);
-      CHECK(!other.meets_branches);
+      CHECK(!other.stopped_early);
       for (const VectorXd& q : other.positions) {
         CHECK(mechanism.residuals(q).norm() < 1e-11);
       }
@@ -208,7 +208,7 @@ TEST_CASE("ten random four-bars that can be flat, anywhere in space, and ways ag
   }
 }
 
-TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
+TEST_CASE("trace: a kite and a five-bar have their branch points") {
   const std::array bar{.8, .5, .5, .8};
   const driven_motion motion(bars(bar), Vector3d(1, 2, 2), {0});
   const motion_trace complete = trace(motion);
@@ -249,7 +249,7 @@ TEST_CASE("a kite, where it is folded and where crank and rocker meet") {
   CHECK(cranks_meet == int(five.branch_points.size()));
 }
 
-TEST_CASE("four-bars that are nearly flat have one branch, and are told from those that are") {
+TEST_CASE("trace: nearly foldable four-bars have no branch point") {
   duet::random_source random(11);
   for (int k = 0; k < 12; ++k) {
     const std::array<double, 4> flat = change_point(random);
@@ -262,7 +262,7 @@ TEST_CASE("four-bars that are nearly flat have one branch, and are told from tho
           trace(driven_motion(mechanism, some_position(mechanism, random), {0}));
       CHECK(complete.branch_points.empty());
       CHECK(complete.is_closed);
-      CHECK(!complete.meets_branches);
+      CHECK(!complete.stopped_early);
       for (const dead_point& each : complete.dead_points) {
         if (each.coordinate == 0) { // coupler and rocker in a row
           const double theta = std::abs(std::remainder(each.coordinates[0], 2 * pi));
@@ -277,7 +277,7 @@ TEST_CASE("four-bars that are nearly flat have one branch, and are told from tho
   }
 }
 
-TEST_CASE("two parallelograms that are flat together: four lines in a kernel of three") {
+TEST_CASE("trace: two coupled parallelograms have four branches in a kernel of dimension three") {
   robot_description robot;
   robot.links = {{"ground"}, {"crank"}, {"c1"}, {"r1"}, {"c2"}, {"r2"}};
   robot.joints = {revolute_joint("crank", "ground", {}),
@@ -331,7 +331,7 @@ TEST_CASE("two parallelograms that are flat together: four lines in a kernel of 
   }
 }
 
-TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere") {
+TEST_CASE("trace: branch points of slider-cranks in both units and of a spherical four-bar") {
   for (const double mm : {1., 1000.}) {
     // Crank and coupler of one length: x = 2 r cos θ, β = −2 θ, or folded with the slide at rest.
     const double r = .3 * mm;
@@ -385,7 +385,7 @@ TEST_CASE("slides and hinges, in metres and millimetres; and a loop on a sphere"
   }
 }
 
-TEST_CASE("of ways that fill a plane none is returned") {
+TEST_CASE("trace: tangents that are not isolated are omitted") {
   // Two cranks with couplers of their length move one slide. With that at rest both turn freely.
   robot_description robot;
   robot.links = {{"ground"}, {"a"}, {"b"}, {"c"}, {"d"}, {"slide"}};
@@ -415,7 +415,7 @@ TEST_CASE("of ways that fill a plane none is returned") {
   }
 }
 
-TEST_CASE("traces that start beside a crossing, and with large steps") {
+TEST_CASE("trace: starts near a branch point and large steps find both branch points") {
   const closed_chain_mechanism mechanism = bars({.3, .8, .3, .8});
   for (const double start : {1e-2, 2e-3, 1e-3, 5e-4, 1e-4, 1e-5}) {
     const motion_trace complete =
@@ -431,7 +431,7 @@ TEST_CASE("traces that start beside a crossing, and with large steps") {
   }
 }
 
-TEST_CASE("a motion by drives goes straight on where branches meet") {
+TEST_CASE("driven_motion: continues straight through branch points") {
   const driven_motion flat(bars({.3, .8, .3, .8}), Vector3d(1, -1, 1), {0});
   for (const double u : {.5, 1e-3, 1e-5, 1e-7, 1e-10, 0., -1e-12, -1e-9, -1e-7, -1e-4, -1., -4.}) {
     CHECK((flat(u) - u * Vector3d(1, -1, 1)).norm() < 1e-12);
@@ -440,12 +440,12 @@ TEST_CASE("a motion by drives goes straight on where branches meet") {
   CHECK((q[1] - Vector3d(1, -1, 1)).norm() < 1e-12);
   CHECK(q[2].norm() < 1e-11);
   CHECK(message_of([&] { (void)derivatives<1>(flat, 0.); }) ==
-        "duet: driven_motion: crank does not determine the rates of the other coordinates: a dead "
-        "point");
+        "duet: driven_motion: crank does not determine the rates of the other coordinates (dead "
+        "point)");
   // An antiparallelogram, too.
   const Vector3d crossed(1, 0, -2 * std::atan(std::tan(.5) * 1.1 / .5));
   const closed_chain_mechanism mechanism = bars({.3, .8, .3, .8});
-  const driven_motion anti(mechanism, mechanism.closed(crossed, {0}), {0});
+  const driven_motion anti(mechanism, mechanism.assemble(crossed, {0}), {0});
   for (const double u : {.3, -.3, -2.}) {
     CHECK(std::abs(std::tan(anti(u)[2] / 2) * .5 + std::tan(u / 2) * 1.1) < 1e-12);
   }

@@ -35,7 +35,7 @@ std::string error_of(const std::string& content) {
 
 } // namespace
 
-TEST_CASE("loops of every kind, with points, axes and angles, comments and blank lines") {
+TEST_CASE("read_loops: reads all constraint types, points, axes, angles and comments") {
   const loop_constraints loops = read("\xef\xbb\xbf# closes the frame\n"
                                       "hinge coupler .5 0 0  rocker 0.4 -1e-1 0 # in front\r\n"
                                       "\n"
@@ -78,7 +78,7 @@ TEST_CASE("loops of every kind, with points, axes and angles, comments and blank
   }
 }
 
-TEST_CASE("kinds of loops by the words of joints") {
+TEST_CASE("read_loops: accepts the names of constraint types") {
   const std::array words{"fixed",     "revolute",  "prismatic", "cylindrical",
                          "universal", "spherical", "planar",    "distance"};
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -88,13 +88,13 @@ TEST_CASE("kinds of loops by the words of joints") {
   }
 }
 
-TEST_CASE("what is wrong with a file of loops, and where") {
-  CHECK(error_of(" # nothing\n") == " no loops");
+TEST_CASE("read_loops: errors name line and value") {
+  CHECK(error_of(" # nothing\n") == " the file contains no loop-closure constraints");
   CHECK(error_of("# a\nhing a 0 0 0 b 0 0 0")
-            .starts_with("2: no kind of loop is \"hing\": there are \"hinge\", "));
+            .starts_with("2: unknown type of constraint \"hing\": there are \"hinge\", "));
   CHECK(error_of("distanc a 0 0 0 b 0 0 0")
-            .starts_with("1: no kind of loop is \"distanc\": there are \"distance\", "));
-  CHECK(error_of("hinge") == "1: a link is missing");
+            .starts_with("1: unknown type of constraint \"distanc\": there are \"distance\", "));
+  CHECK(error_of("hinge") == "1: the name of a link is missing");
   CHECK(error_of("hinge a 0 0") == "1: z on \"a\" is missing");
   CHECK(error_of("hinge a 0 0 b 0 0 0") == "1: z on \"a\" is not a number: 'b'");
   CHECK(error_of("hinge a 0 0,5 0 b 0 0 0") ==
@@ -102,17 +102,17 @@ TEST_CASE("what is wrong with a file of loops, and where") {
   CHECK(error_of("hinge a 0 0 0 b 0 inf 0") == "1: y on \"b\" is inf");
   CHECK(error_of("hinge a 0 0 0 b 0 1e999 0") ==
         "1: y on \"b\" is 1e999, beyond the range of a double");
-  CHECK(error_of("hinge a 0 0 0 b 0 0 0 axis 0 0 0") == "1: axis on \"b\" has no direction");
+  CHECK(error_of("hinge a 0 0 0 b 0 0 0 axis 0 0 0") == "1: the axis on \"b\" is zero");
   CHECK(error_of("hinge a 0 0 0 axis 0 0 b 0 0 0") == "1: axis z on \"a\" is not a number: 'b'");
   CHECK(error_of("hinge a 0 0 0 rpy 0 0") == "1: yaw on \"a\" is missing");
   CHECK(error_of("hinge a 0 0 0 rpy 0 1e300 0 b 0 0 0") ==
-        "1: the angle 1e+300 on \"a\" is beyond 1e6 radians");
-  CHECK(error_of("hinge a 0 0 0 b 0 0 0 length 1") == "1: \"length\" is too much");
-  CHECK(error_of("rod a 0 0 0 b 0 0 0") == "1: \"length\" of the rod is missing");
-  CHECK(error_of("rod a 0 0 0 b 0 0 0 1") == "1: \"length\" of the rod expected, not \"1\"");
-  CHECK(error_of("rod a 0 0 0 b 0 0 0 length 0") == "1: length is 0");
-  CHECK(error_of("rod a 0 0 0 b 0 0 0 length -2") == "1: length is -2");
-  CHECK(error_of("rod a 0 0 0 b 0 0 0 length nan") == "1: length is nan");
+        "1: the angle 1e+300 on \"a\" exceeds 1e6 radians");
+  CHECK(error_of("hinge a 0 0 0 b 0 0 0 length 1") == "1: \"length\" is superfluous");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0") == "1: \"length\" is missing");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 1") == "1: \"length\" expected, not \"1\"");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 length 0") == "1: length is 0 (expected > 0)");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 length -2") == "1: length is -2 (expected > 0)");
+  CHECK(error_of("rod a 0 0 0 b 0 0 0 length nan") == "1: length is nan (expected > 0)");
   CHECK(message_of<file_error>([] { (void)read_loops("/nowhere/loops.txt"); }) ==
         "duet: /nowhere/loops.txt: cannot be read");
   std::filesystem::remove(path);

@@ -81,7 +81,8 @@ std::array<T, 2> meeting_point(double foot, double crank, double coupler, const 
 
 } // namespace
 
-TEST_CASE("a four-bar by its crank, all the way round, against Freudenstein's equation") {
+TEST_CASE("driven_motion: a four-bar agrees with Freudenstein's equation over full turns up to "
+          "third derivatives") {
   const driven_motion by_crank(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0});
   for (double theta = -700 * degree; theta < 800 * degree; theta += 33 * degree) {
     const auto x = derivatives<3>(by_crank, theta);
@@ -95,7 +96,7 @@ TEST_CASE("a four-bar by its crank, all the way round, against Freudenstein's eq
   }
 }
 
-TEST_CASE("derivatives up to the third against 50 digits") {
+TEST_CASE("driven_motion: derivatives of a spatial four-bar agree with 100-digit differences") {
   // A spatial four-bar: crank, ball, ball, rocker on a skew axis; a rod is its coupler.
   robot_description robot;
   robot.links = {{"ground"}, {"crank"}, {"rocker"}};
@@ -126,11 +127,11 @@ TEST_CASE("derivatives up to the third against 50 digits") {
   }
 }
 
-TEST_CASE("a five-bar by both cranks: its point, Jacobian and Hessian against the circles'") {
+TEST_CASE("coupled_tree: point, Jacobian and Hessian of a driven five-bar equal the closed form") {
   const double foot = .3, crank = .5, coupler = .7;
   const closed_chain_mechanism mechanism = five_bar(foot, crank, coupler);
   const VectorXd start = vector({2, -1, 1.2, 1});
-  CHECK(mobility(mechanism, mechanism.closed(start)).mobility == 2);
+  CHECK(mobility(mechanism, mechanism.assemble(start)).mobility == 2);
   const driven_motion motion(mechanism, start, {0, 2});
   const coupled_tree driven(mechanism.tree(), motion);
   const auto tip = mechanism.tree().link("left_coupler").at_point({coupler, 0, 0});
@@ -153,7 +154,7 @@ TEST_CASE("a five-bar by both cranks: its point, Jacobian and Hessian against th
   }
 }
 
-TEST_CASE("a mechanism of three rods and a sliding drive: nothing depends on units") {
+TEST_CASE("driven_motion: a prismatic drive gives results independent of the unit of length") {
   for (const double mm : {1., 1000.}) {
     robot_description robot;
     robot.links = {{"ground"}, {"slide"}, {"arm"}};
@@ -176,7 +177,7 @@ TEST_CASE("a mechanism of three rods and a sliding drive: nothing depends on uni
   }
 }
 
-TEST_CASE("dead points: where a motion stops, what moves there, and the way through them") {
+TEST_CASE("driven_motion, trace: dead points are located, reported and passed") {
   // (b + c)² = a² + d² − 2 a d cos θ: coupler and rocker in a row.
   const double a = .3, b = .25, c = .2, d = .4;
   const double dead = std::acos((a * a + d * d - (b + c) * (b + c)) / (2 * a * d));
@@ -188,15 +189,15 @@ TEST_CASE("dead points: where a motion stops, what moves there, and the way thro
   } catch (const loop_closure_failure& error) {
     CHECK(std::abs(error.parameter()[0] - dead) < 1e-12);
     const std::string text = error.what();
-    CHECK(text.starts_with("duet: driven_motion: cannot close beyond crank = 1.3715"));
-    CHECK(text.ends_with(" on the way from 0.5 to 2: a dead point, coupler, rocker move on"));
+    CHECK(text.starts_with("duet: driven_motion: the loops do not close beyond crank = 1.3715"));
+    CHECK(text.ends_with(" on the line from 0.5 to 2: dead point, coupler, rocker still move"));
   }
   CHECK(std::abs(by_crank(dead - 1e-9)[0] - (dead - 1e-9)) == 0);
   CHECK_THROWS_AS((void)by_crank(dead + 1e-9), loop_closure_failure);
 
   const motion_trace complete = trace(by_crank);
   CHECK(complete.is_closed);
-  CHECK(!complete.meets_branches);
+  CHECK(!complete.stopped_early);
   int of_crank = 0, of_rocker = 0;
   for (const dead_point& each : complete.dead_points) {
     CHECK(mechanism.residuals(each.coordinates).norm() < 1e-13);
@@ -226,7 +227,7 @@ TEST_CASE("dead points: where a motion stops, what moves there, and the way thro
   CHECK(round.dead_points.size() >= 2);
 }
 
-TEST_CASE("of 200 random four-bars each motion ends where its coupler and rocker are in a row") {
+TEST_CASE("driven_motion: 200 random four-bars stop at the dead points of the closed form only") {
   duet::random_source random(2);
   int stopped = 0, arrived = 0;
   for (int i = 0; i < 200; ++i) {
@@ -271,7 +272,7 @@ TEST_CASE("of 200 random four-bars each motion ends where its coupler and rocker
   CHECK(arrived > 20);
 }
 
-TEST_CASE("coordinates that are singular, drives that do not drive, and other mistakes") {
+TEST_CASE("driven_motion: singular coordinates and invalid drives are rejected") {
   using duet_test::message_of;
   // A body that turns about z by a rotation vector, which is singular after a whole turn.
   robot_description robot;
@@ -283,32 +284,32 @@ TEST_CASE("coordinates that are singular, drives that do not drive, and other mi
       vector({0, 0, 1}), {2});
   CHECK(max_abs_difference(about_z(6.), vector({0, 0, 6})) < 1e-12);
   const std::string text = message_of<loop_closure_failure>([&] { (void)about_z(7.); });
-  CHECK(text.starts_with("duet: driven_motion: cannot close beyond ball.rz = 6.2831"));
-  CHECK(text.ends_with(": no step leads on, branches touch or coordinates are singular"));
+  CHECK(text.starts_with("duet: driven_motion: the loops do not close beyond ball.rz = 6.2831"));
+  CHECK(text.ends_with(": continuation fails, branches touch or coordinates are singular"));
   const motion_trace complete = trace(about_z);
-  CHECK(complete.meets_branches);
+  CHECK(complete.stopped_early);
   CHECK(complete.branch_points.empty());
 
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});
+  const VectorXd q = mechanism.assemble(vector({2, -1, 1.7}), {0});
   CHECK(message_of([&] {
           driven_motion(mechanism, q, {0, 1});
-        }) == "duet: driven_motion: 2 drives, but the loops leave 1 independent rates");
+        }) == "duet: driven_motion: 2 driven coordinates, but the loops leave 1 independent rates");
   const closed_chain_mechanism two = five_bar(.3, .5, .7);
   CHECK(message_of([&] {
           driven_motion(two, vector({2, -1, 1.2, 1}), {0});
-        }) ==
-        "duet: driven_motion: left does not determine the rates of the other coordinates: a dead "
-        "point");
+        }) == "duet: driven_motion: left does not determine the rates of the other coordinates "
+              "(dead point)");
   CHECK(message_of([&] { driven_motion(mechanism, q, {5}); }) ==
-        "duet: closed_chain_mechanism: no coordinate 5 of 3");
+        "duet: closed_chain_mechanism: coordinate 5 does not exist, the mechanism has 3");
   const driven_motion motion(mechanism, q, {0});
   CHECK(message_of([&] {
           (void)motion(vector({1, 2}));
-        }) == "duet: driven_motion: 1 drives, but 2 numbers are given");
+        }) == "duet: driven_motion: 2 numbers (expected 1)");
   CHECK(message_of([&] { (void)motion(std::nan("")); }) ==
-        "duet: driven_motion: drives are not finite");
-  CHECK(message_of([&] { (void)trace(motion, 1); }) == "duet: trace: no drive 1 of 1");
+        "duet: driven_motion: the driven coordinates are not finite");
+  CHECK(message_of([&] { (void)trace(motion, 1); }) ==
+        "duet: trace: driven coordinate 1 does not exist, the motion has 1");
   const driven_motion moved = motion.warm_started_at(vector({2.5}));
   CHECK(moved.start()[0] == 2.5);
   CHECK(max_abs_difference(moved(3.), motion(3.)) < 1e-13);

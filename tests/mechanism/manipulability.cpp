@@ -47,7 +47,7 @@ auto volume_by_elimination(const M& m) {
 
 } // namespace
 
-TEST_CASE("manipulability is √det(JJᵀ), and its gradient that by dual numbers of 50 digits") {
+TEST_CASE("manipulability: equals √det(JJᵀ), and its gradient 50-digit dual numbers") {
   for (const auto& arm : {robots::panda().table(), robots::baxter_left().table(),
                           robots::iiwa14().table(), duet_test::every_joint()}) {
     const auto all = duet_test::configurations(arm, 10);
@@ -64,7 +64,7 @@ TEST_CASE("manipulability is √det(JJᵀ), and its gradient that by dual number
   }
 }
 
-TEST_CASE("a planar arm of two links: w = a b |sin θ₂|") {
+TEST_CASE("manipulability: a planar two-link arm agrees with the closed form") {
   const double a = .7, b = .4;
   const auto arm = from_dh(std::array<dh_row<>, 2>{{{.a = a}, {.a = b}}});
   const auto upper = [&](const auto& theta) { // its tip's two coordinates alone
@@ -87,7 +87,7 @@ TEST_CASE("a planar arm of two links: w = a b |sin θ₂|") {
   }
 }
 
-TEST_CASE("singular configurations") {
+TEST_CASE("manipulability: vanishes linearly at singularities, where the gradient is rejected") {
   const auto arm = robots::iiwa14().table();
   coordinates<7> theta = coordinates<7>::Zero(); // stretched
   CHECK(manipulability(arm, theta) < 1e-16);
@@ -106,7 +106,7 @@ TEST_CASE("singular configurations") {
   CHECK_THROWS_AS((void)manipulability_gradient(twice, zero), invalid_input);
 }
 
-TEST_CASE("the gradient within rounding of a singularity is as steep as beside it") {
+TEST_CASE("manipulability_gradient: accurate within round-off of a singularity") {
   const auto arm = robots::ur5e().table();
   coordinates<6> theta;
   theta << .3, -1, 1e-6, -.7, .9, .7; // the elbow is all but stretched
@@ -138,7 +138,7 @@ TEST_CASE("the gradient within rounding of a singularity is as steep as beside i
   }
 }
 
-TEST_CASE("as many joints as there turn out to be") {
+TEST_CASE("manipulability: a bounded_chain equals the serial_chain of the same joints") {
   const auto panda = robots::panda().table();
   const bounded_chain<9> chain = panda;
   for (const auto& theta : duet_test::configurations(panda, 3)) {

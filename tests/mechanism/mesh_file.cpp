@@ -64,7 +64,7 @@ const std::string facet =
 
 } // namespace
 
-TEST_CASE("binary STL, also with a header as text has it, and however it is spelt") {
+TEST_CASE("read_mesh: binary STL with a text-like header and padding") {
   for (const char* ending : {".stl", ".STL"}) {
     const auto m = read_mesh(write(ending, binary(3)));
     REQUIRE(m.vertices.size() == 9);
@@ -80,17 +80,17 @@ TEST_CASE("binary STL, also with a header as text has it, and however it is spel
         "1: the file ends before \"endsolid\"");
   std::string bad = binary(2);
   bad.replace(84 + 50 + 12 + 4, 4, bytes(std::numeric_limits<float>::infinity()));
-  CHECK(error_of(".stl", bad) == " triangle 1 has a corner that is not finite");
-  CHECK(error_of(".stl", binary(0)) == " has no triangles");
+  CHECK(error_of(".stl", bad) == " triangle 1 has a vertex that is not finite");
+  CHECK(error_of(".stl", binary(0)) == " the file contains no triangles");
   // One byte is missing: it is no binary file then, and no text either.
   CHECK(error_of(".stl", binary(2).substr(0, 183)) == "1: the file ends before \"endsolid\"");
   CHECK(error_of(".stl", std::string(90, 'x')) ==
-        " is no STL: neither does it begin with \"solid\", nor has it the length of a binary file "
-        "with as many triangles as it says");
-  CHECK(error_of(".stl", "").find("is no STL") != std::string::npos);
+        " the file is not STL: it neither begins with \"solid\" nor has the length of a binary "
+        "file with its number of triangles");
+  CHECK(error_of(".stl", "").find("is not STL") != std::string::npos);
 }
 
-TEST_CASE("STL as text: several solids, blank lines, and each line that is another") {
+TEST_CASE("read_mesh: text STL, and an error for every wrong line") {
   const auto m = read_mesh(write(".stl", "solid one\n\n" + facet + facet +
                                              "endsolid one\r\nsolid\n" + facet + "endsolid"));
   REQUIRE(m.vertices.size() == 9);
@@ -115,9 +115,9 @@ TEST_CASE("STL as text: several solids, blank lines, and each line that is anoth
   CHECK(without("vertex 0 0 0\n", "") == expected("6", "vertex x y z", "endloop"));
   CHECK(without("vertex 0 0 0", "vertex 0 0 0 0") ==
         expected("4", "vertex x y z", "vertex 0 0 0 0"));
-  CHECK(without("vertex 0 0 0", "vertex 0 O 0") == "4: \"O\" is no number");
+  CHECK(without("vertex 0 0 0", "vertex 0 O 0") == "4: \"O\" is not a number");
   CHECK(without("vertex 0 0 0", "vertex 0 nan 0") == "4: \"nan\" is not finite");
-  CHECK(without("facet normal 0 0 1", "facet normal 0 O 1") == "2: \"O\" is no number");
+  CHECK(without("facet normal 0 0 1", "facet normal 0 O 1") == "2: \"O\" is not a number");
   CHECK(without("    endloop\n", "") == expected("7", "endloop", "endfacet"));
   CHECK(without("endloop", "endloop 7") == expected("7", "endloop", "endloop 7"));
   CHECK(without("endfacet\n", "endfacet x\n") == expected("8", "endfacet", "endfacet x"));
@@ -136,7 +136,8 @@ TEST_CASE("STL as text: several solids, blank lines, and each line that is anoth
   }
 }
 
-TEST_CASE("OBJ: triangles, faces of more corners, numbers from the end back") {
+TEST_CASE(
+    "read_mesh: OBJ faces with more vertices and negative indices, and errors of references") {
   const std::string vertices = "# a square\no it\nv 0 0 0\nv 1 0 0 1\nv 1 1 0 .1 .2 .3\nv 0 1 0\n";
   const auto m = read_mesh(
       write(".obj", vertices + "vn 0 0 1\ns off\nf 1//1 2//1 3/4/1 4\n#f 9\nf -1 -2 -3\n"));
@@ -146,28 +147,28 @@ TEST_CASE("OBJ: triangles, faces of more corners, numbers from the end back") {
   CHECK(m.vertices[6] == std::array<double, 3>{0, 1, 0});
   CHECK(m.vertices[8] == std::array<double, 3>{1, 0, 0});
   CHECK(read_mesh(write(".obj", "\xef\xbb\xbf" + vertices + "f 1 2 3")).vertices.size() == 3);
-  CHECK(error_of(".obj", vertices) == " has no triangles");
+  CHECK(error_of(".obj", vertices) == " the file contains no triangles");
   CHECK(error_of(".obj", vertices + "f 1 2\n") ==
-        "7: a face has three corners or more, not \"f 1 2\"");
+        "7: a face of three or more vertices expected, not \"f 1 2\"");
   for (const char* bad : {"0", "5", "-5", "1.5", "x", "", "nan", "1e99"}) {
     const std::string text(bad);
     CHECK(error_of(".obj", vertices + "f 1 2 " + text + "/7\n") ==
-          "7: \"" + text + "/7\" is no corner of the 4 vertices before");
+          "7: \"" + text + "/7\" is not one of the 4 vertices before it");
   }
   for (const char* bad : {"1/x/2", "1/2/y", "1/1/1/1", "1/0", "1/1.5", "1//nan", "1///"}) {
     const std::string text(bad);
     CHECK(error_of(".obj", vertices + "f 1 2\t" + text + "\n") ==
-          "7: \"" + text + "\" is none of k, k/t, k//n and k/t/n");
+          "7: \"" + text + "\" is not a vertex reference (expected k, k/t, k//n or k/t/n)");
   }
   CHECK(read_mesh(write(".obj", vertices + "f 1/ 2// -2/-7/+1")).vertices.size() == 3);
   CHECK(error_of(".obj", "v 1 2\n") == "1: \"v x y z\" expected, not \"v 1 2\"");
   CHECK(error_of(".obj", "v 1 2 inf\n") == "1: \"inf\" is not finite");
-  CHECK(error_of(".obj", "v 1 2 3 O\n") == "1: \"O\" is no number");
-  CHECK(error_of(".obj", "v 1 2 3 .1 .2 red\n") == "1: \"red\" is no number");
+  CHECK(error_of(".obj", "v 1 2 3 O\n") == "1: \"O\" is not a number");
+  CHECK(error_of(".obj", "v 1 2 3 .1 .2 red\n") == "1: \"red\" is not a number");
   CHECK(error_of(".obj", vertices + "face 1 2 3\n") == "7: unknown statement \"face\"");
 }
 
-TEST_CASE("OBJ: lines that a backslash joins, and the numbers of lines then") {
+TEST_CASE("read_mesh: OBJ lines joined by a backslash keep their line numbers in errors") {
   const std::string vertices = "v 0 0 \\\n0\nv \\\r\n1 \\\r\n0 0\nv 1 1 0\n"; // 6 lines
   const auto m =
       read_mesh(write(".obj", vertices + "f 1\\\n 2 \\  \n\\\n3\ng a \\\n b\nf 3 2 1 \\"));
@@ -176,23 +177,23 @@ TEST_CASE("OBJ: lines that a backslash joins, and the numbers of lines then") {
   CHECK(m.vertices[2] == std::array<double, 3>{1, 1, 0});
   CHECK(m.vertices[5] == std::array<double, 3>{0, 0, 0});
   CHECK(error_of(".obj", vertices + "f 1 2 \\\n 3 \\\n 9 \\\n 1\n") ==
-        "9: \"9\" is no corner of the 3 vertices before");
+        "9: \"9\" is not one of the 3 vertices before it");
   CHECK(error_of(".obj", vertices + "\nv 1 \\\n\n2 3\n") ==
         "8: \"v x y z\" expected, not \"v 1\""); // an empty line ends it
   CHECK(error_of(".obj", vertices + "f 1\\\n2\nx\n") ==
-        "7: a face has three corners or more, not \"f 1\\\\n2\"");
+        "7: a face of three or more vertices expected, not \"f 1\\\\n2\"");
   CHECK(error_of(".obj", vertices + "f 1 \\ 2 3\n") ==
-        "7: \"\\\" is no corner of the 3 vertices before");
+        "7: \"\\\" is not one of the 3 vertices before it");
   // A comment ends with its line, so that one with a folder's name takes nothing with it.
   CHECK(read_mesh(write(".obj", "# of C:\\models\\\n" + vertices + "f 1 2 3")).vertices.size() ==
         3);
-  CHECK(error_of(".obj", "\\") == " has no triangles");
+  CHECK(error_of(".obj", "\\") == " the file contains no triangles");
   // Nor has STL such lines.
-  CHECK(error_of(".stl", "solid a\nfacet normal 0 0 \\\n1\n") == "2: \"\\\" is no number");
+  CHECK(error_of(".stl", "solid a\nfacet normal 0 0 \\\n1\n") == "2: \"\\\" is not a number");
 }
 
-TEST_CASE("other files, and none") {
-  CHECK(error_of(".ply", "ply\n") == " is none of .stl, .obj and .dae");
+TEST_CASE("read_mesh: unknown formats and missing files are rejected") {
+  CHECK(error_of(".ply", "ply\n") == " the format is unknown (expected .stl, .obj or .dae)");
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("nowhere.stl"); }) ==
         "duet: nowhere.stl: cannot be read");
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("."); }) ==

@@ -15,7 +15,7 @@ namespace test_mechanism_mixed_arguments {
 
 using namespace test_support::mixed;
 
-TEST_CASE("constants mix with derivatives: arms and equations") {
+TEST_CASE("arms and equations: constant and differentiated arguments can be mixed") {
   const auto arm = robots::panda();
   using joints = Eigen::Matrix<double, 7, 1>;
   const joints theta = joints::LinSpaced(-0.5, 0.9), rates = joints::LinSpaced(0.7, -0.3);

@@ -33,25 +33,25 @@ std::array<double, 2> with_twist(double length, double ratio) {
 
 } // namespace
 
-TEST_CASE("a planar four-bar has three equations too many") {
+TEST_CASE("mobility: a planar four-bar moves despite three redundant equations") {
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  const VectorXd q = mechanism.closed(vector({2, -1, 1.7}), {0});
+  const VectorXd q = mechanism.assemble(vector({2, -1, 1.7}), {0});
   const mobility_result m = mobility(mechanism, q);
   CHECK(m.mobility == 1);
-  CHECK(m.counted == -2);
-  CHECK(m.first_order == 1);
-  CHECK(m.nearby == 1);
-  CHECK(m.is_miscounted());
+  CHECK(m.kutzbach == -2);
+  CHECK(m.instantaneous == 1);
+  CHECK(m.local == 1);
+  CHECK(m.count_is_wrong());
   CHECK(!m.is_singular());
   CHECK(to_text(m) == "mobility 1: counted -2, first order 1 here, 1 nearby");
   CHECK_THROWS_AS((void)mobility(mechanism, vector({2, -1, 1.7})), invalid_input);
   const closed_chain_mechanism by_ball = four_bar(.2, .5, .4, .55, constraint_kind::spherical);
-  CHECK(mobility(by_ball, q).counted == 0);
+  CHECK(mobility(by_ball, q).kutzbach == 0);
   CHECK(mobility(by_ball, q).mobility == 1);
 }
 
-TEST_CASE(
-    "Bennett's and Goldberg's linkages move, a general ring of four or five joints does not") {
+TEST_CASE("mobility: Bennett's and Goldberg's linkages have mobility 1, a general ring has no "
+          "configuration") {
   const auto a = with_twist(.6, .9), b = with_twist(.9, .9), c = with_twist(.45, .9);
   const closed_chain_mechanism bennett = ring({a, b, a, b});
   const auto assemblies =
@@ -60,8 +60,8 @@ TEST_CASE(
   const VectorXd& q = assemblies.positions[0].coordinates;
   const mobility_result m = mobility(bennett, q);
   CHECK(m.mobility == 1);
-  CHECK(m.counted == -2);
-  CHECK(m.evidence == mobility_evidence::nearby_positions);
+  CHECK(m.kutzbach == -2);
+  CHECK(m.evidence == mobility_evidence::sampled);
   // tan(θ1/2) tan(θ2/2) = ± sin((β + α)/2) / sin((β − α)/2), the same all the way.
   const driven_motion by_first(bennett, q, {0});
   const double constant = std::sin((b[1] + a[1]) / 2) / std::sin((b[1] - a[1]) / 2);
@@ -77,7 +77,7 @@ TEST_CASE(
   int moving = 0;
   for (const assembly_configuration& each : of_five.positions) {
     const mobility_result n = mobility(goldberg, each.coordinates);
-    CHECK(n.counted == -1);
+    CHECK(n.kutzbach == -1);
     moving += n.mobility == 1 ? 1 : 0;
   }
   CHECK(moving > 0);
@@ -88,7 +88,7 @@ TEST_CASE(
             .positions.empty());
 }
 
-TEST_CASE("a stretched frame has rates, but does not move") {
+TEST_CASE("mobility: a stretched frame is first-order flexible and rigid") {
   // Two links in a row between pins as far apart as both are long.
   robot_description robot;
   robot.links = {{"ground"}, {"first"}, {"second"}};
@@ -99,12 +99,12 @@ TEST_CASE("a stretched frame has rates, but does not move") {
       {{{constraint_kind::revolute, {"second", at_point(.5, 0)}, {"ground", at_point(1.2, 0)}}}});
   const mobility_result m = mobility(shaky, vector({0, 0}));
   CHECK(m.mobility == 0);
-  CHECK(m.first_order == 1);
-  CHECK(m.evidence == mobility_evidence::no_acceleration);
+  CHECK(m.instantaneous == 1);
+  CHECK(m.evidence == mobility_evidence::second_order_rigid);
   CHECK(m.is_singular());
   CHECK_THROWS_WITH_AS(driven_motion(shaky, vector({0, 0}), {0}),
-                       "duet: driven_motion: a rate of first fulfils the equations, but has no "
-                       "acceleration: it does not move so",
+                       "duet: driven_motion: a rate of first satisfies the equations to first "
+                       "order only: the mechanism does not move",
                        invalid_input);
 
   // Pins nearer to each other: rigid to first order.
@@ -116,18 +116,19 @@ TEST_CASE("a stretched frame has rates, but does not move") {
   CHECK(assemblies.positions.size() == 2);
   for (const assembly_configuration& each : assemblies.positions) {
     CHECK(mobility(rigid, each.coordinates).mobility == 0);
-    CHECK(mobility(rigid, each.coordinates).evidence == mobility_evidence::no_rates);
+    CHECK(mobility(rigid, each.coordinates).evidence == mobility_evidence::first_order_rigid);
   }
 }
 
-TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carries a shaky frame") {
+TEST_CASE("mobility: a parallelogram has two rates if flat, or if it carries a first-order "
+          "flexible frame") {
   const closed_chain_mechanism flat = four_bar(.3, .8, .3, .8);
   const mobility_result m = mobility(flat, vector({0, 0, 0}));
   CHECK(m.mobility == 1);
-  CHECK(m.first_order == 2);
-  CHECK(m.nearby == 1);
+  CHECK(m.instantaneous == 2);
+  CHECK(m.local == 1);
   CHECK(m.is_singular());
-  CHECK(mobility(flat, vector({1, -1, 1})).first_order == 1);
+  CHECK(mobility(flat, vector({1, -1, 1})).instantaneous == 1);
 
   robot_description robot = flat.tree().description();
   robot.links.insert(robot.links.end(), {{"first"}, {"second"}});
@@ -139,17 +140,18 @@ TEST_CASE("a parallelogram: one motion, two where it is flat; and one that carri
         {constraint_kind::revolute, {"second", at_point(.3, 0)}, {"coupler", at_point(.6, .1)}}}});
   const mobility_result n = mobility(both, vector({1, -1, 1, 0, 0}));
   CHECK(n.mobility == 1);
-  CHECK(n.first_order == 2);
-  CHECK(n.nearby == 2); // shaky everywhere
+  CHECK(n.instantaneous == 2);
+  CHECK(n.local == 2); // shaky everywhere
 }
 
-TEST_CASE("a tree without loops moves by all coordinates, and nothing moves without coordinates") {
+TEST_CASE(
+    "mobility: an open tree moves by all coordinates, a mechanism without coordinates not at all") {
   const kinematic_tree tree(duet_test::revolute_chain({{}, at_point(1, 0)}));
   const closed_chain_mechanism open(tree, {});
-  CHECK(open.equations() == 0);
+  CHECK(open.equation_count() == 0);
   CHECK(mobility(open, vector({1, 2})).mobility == 2);
   CHECK(open.independent_coordinates(vector({1, 2})) == std::vector<int>{0, 1});
-  CHECK(open.closed(vector({1, 2})) == vector({1, 2}));
+  CHECK(open.assemble(vector({1, 2})) == vector({1, 2}));
   CHECK(driven_motion(open, vector({1, 2}), {0, 1})(vector({3, 4})) == vector({3, 4}));
   CHECK_THROWS_AS(driven_motion(open, vector({1, 2}), {0}), invalid_input);
   robot_description robot;
@@ -163,7 +165,7 @@ TEST_CASE("a tree without loops moves by all coordinates, and nothing moves with
   CHECK(assemblies.positions.size() == 1);
 }
 
-TEST_CASE("equations that do not depend on each other are counted") {
+TEST_CASE("mobility: independent equations give the Grübler–Kutzbach count") {
   // A plate on three rods between the base and itself moves in three ways.
   robot_description robot;
   robot.links = {{"base"}, {"plate"}};
@@ -175,10 +177,10 @@ TEST_CASE("equations that do not depend on each other are counted") {
         {constraint_kind::distance, {"base", at_point(x, y)}, {"plate", at_point(y, x, .1)}, 1.5});
   }
   const closed_chain_mechanism mechanism(kinematic_tree(robot), rods);
-  const VectorXd q = mechanism.closed(vector({.1, .2, 1.4, .1, .2, .3}));
+  const VectorXd q = mechanism.assemble(vector({.1, .2, 1.4, .1, .2, .3}));
   const mobility_result m = mobility(mechanism, q);
   CHECK(m.mobility == 3);
-  CHECK(m.counted == 3);
+  CHECK(m.kutzbach == 3);
   CHECK(m.evidence == mobility_evidence::full_rank);
   CHECK(mechanism.independent_coordinates(q).size() == 3);
 }

@@ -54,7 +54,7 @@ static_assert(robots::panda().limits(3).upper == -.0698);
 static_assert(robots::iiwa14().tip().link == 7);
 static_assert(std::is_empty_v<decltype(robots::panda())>);
 
-TEST_CASE("the four robots stand where their makers' drawings say") {
+TEST_CASE("robots: tips are at the positions of the manufacturers' drawings") {
   coordinates<7> theta = coordinates<7>::Zero();
   CHECK(max_abs_difference(translation(robots::iiwa14().pose(theta)),
                            Eigen::Vector3d(0, 0, 1.306)) < 4e-15);
@@ -69,7 +69,7 @@ TEST_CASE("the four robots stand where their makers' drawings say") {
                            Eigen::Vector3d(-.8172, -.2329, .0628)) < 1e-15);
 }
 
-TEST_CASE("both conventions of Denavit and Hartenberg against products of matrices") {
+TEST_CASE("from_dh, from_modified_dh: poses equal products of matrices") {
   const std::array<dh_row<>, 3> rows{
       {{.a = .3, .d = .1, .alpha = .4, .theta = .2},
        {.a = -.2, .d = .5, .alpha = -1.1, .kind = joint_kind::prismatic},
@@ -96,7 +96,7 @@ TEST_CASE("both conventions of Denavit and Hartenberg against products of matric
   }
 }
 
-TEST_CASE("a chain is a product of exponentials of its screws") {
+TEST_CASE("from_screws: poses equal the product of exponentials") {
   // Screws at zero configuration: the spatial twists of the links, by the poses' own derivatives.
   const auto arm = duet_test::every_joint();
   const coordinates<7> zero = coordinates<7>::Zero();
@@ -138,7 +138,7 @@ TEST_CASE("a chain is a product of exponentials of its screws") {
   }
 }
 
-TEST_CASE("an arm known to the compiler is the arm of its table") {
+TEST_CASE("static_chain: poses equal those of its table") {
   duet_test::for_each_known_arm([](const auto& arm) {
     // What is fused with what differs: a rounding a joint, on the scale of where it leads.
     const auto close = [&](const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
@@ -154,7 +154,7 @@ TEST_CASE("an arm known to the compiler is the arm of its table") {
   });
 }
 
-TEST_CASE("poses in double precision against 50 digits, and unit") {
+TEST_CASE("serial_chain: poses agree with 50 digits and are unit") {
   using wide = real_50;
   duet_test::for_each_arm([](const auto& arm) {
     constexpr int n = std::decay_t<decltype(arm)>::joints;
@@ -169,7 +169,7 @@ TEST_CASE("poses in double precision against 50 digits, and unit") {
   });
 }
 
-TEST_CASE("a table in 50 digits has exact right angles") {
+TEST_CASE("from_dh: a table in 50 digits has exact right angles") {
   using wide = real_50;
   const wide quarter = constant::pi<wide>() / 2;
   const std::array<dh_row<wide>, 2> rows{
@@ -181,7 +181,7 @@ TEST_CASE("a table in 50 digits has exact right angles") {
   CHECK(abs(m(1, 1) + 1) < 1e-49);
 }
 
-TEST_CASE("frames on links and points of them") {
+TEST_CASE("serial_chain: at_point displaces the frame of a link") {
   const auto arm = robots::panda().table();
   for (const auto& theta : duet_test::configurations(arm, 5)) {
     const auto at = arm.link(4).at_point({.1, -.2, .3});
@@ -192,7 +192,7 @@ TEST_CASE("frames on links and points of them") {
   }
 }
 
-TEST_CASE("fixed joints are merged; the number of joints may be known at run time") {
+TEST_CASE("bounded_chain: fixed joints are merged") {
   using wide_chain = bounded_chain<4>;
   std::vector<joint<>> joints(3);
   joints[0].origin.translation = {1, 0, 0};
@@ -207,7 +207,7 @@ TEST_CASE("fixed joints are merged; the number of joints may be known at run tim
   CHECK(max_abs_difference(translation(chain.pose(quarter)), Eigen::Vector3d(-1, 0, 3)) < 1e-15);
 }
 
-TEST_CASE("a chain whose number of joints is no more in its type is the same chain") {
+TEST_CASE("bounded_chain: conversion from serial_chain keeps poses, limits and types") {
   const auto table = robots::baxter_left().table(); // its link frames are not those of its joints
   const bounded_chain<16> chain = table;
   static_assert(!std::is_convertible_v<serial_chain<7>, bounded_chain<6>>);
@@ -219,53 +219,52 @@ TEST_CASE("a chain whose number of joints is no more in its type is the same cha
   CHECK(chain.kind(6) == joint_kind::revolute);
 }
 
-TEST_CASE("what is wrong with a chain is said in one line") {
+TEST_CASE("serial_chain: errors name the joint and the value") {
   const auto message = [](const auto& make) { return duet_test::message_of(make); };
   std::array<joint<>, 2> joints;
   joints[1].axis = {0, 0, 2};
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain: joint 1: the axis (0, 0, 2) is no unit vector");
+        "duet: serial_chain: joint 1: the axis (0, 0, 2) is not a unit vector");
   joints[1].axis = {0, 0, std::nan("")};
   CHECK(message([&] { serial_chain chain(joints); }).find("joint 1: the axis") !=
         std::string::npos);
   joints[1] = {};
   joints[0].limits = {1, -1};
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain: joint 0: no motion is within its limits, 1 to -1");
+        "duet: serial_chain: joint 0: the limits 1 to -1 contain no coordinate");
   joints[0].limits = {.velocity = -1};
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain: joint 0: its limit of velocity is -1");
+        "duet: serial_chain: joint 0: the velocity limit is -1 (expected >= 0)");
   joints[0] = {};
   joints[1].kind = joint_kind::fixed;
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain<2>: only 1 joints move");
+        "duet: serial_chain<2>: 1 moving joints (expected 2)");
   joints[1] = {};
   CHECK(message([&] { bounded_chain<1> chain(joints); }) ==
-        "duet: serial_chain: joint 1: the chain has room for 1");
+        "duet: serial_chain: joint 1: the chain has capacity for 1 moving joints");
   joints[1].origin.translation[2] = INFINITY;
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain: joint 1: its origin is not finite");
+        "duet: serial_chain: joint 1: the origin is not finite");
   joints[1].origin = {};
   joints[1].origin.rotation = quaternion<double>(2);
   CHECK(message([&] { serial_chain chain(joints); }) ==
-        "duet: serial_chain: joint 1: the rotation (2, 0, 0, 0) of its origin is no unit "
+        "duet: serial_chain: joint 1: the rotation (2, 0, 0, 0) of the origin is not a unit "
         "quaternion: normalized(q)");
   const auto arm = robots::panda();
   CHECK(message([&] { (void)arm.pose(Eigen::VectorXd::Zero(6).eval()); }) ==
-        "duet: a chain of 7 moving joints, but 6 coordinates");
+        "duet: serial_chain: 6 coordinates (expected 7)");
   CHECK(message([&] { (void)arm.pose(coordinates<7>(coordinates<7>::Zero()), 8); }) ==
-        "duet: serial_chain: no link 8 in a chain of 7 joints");
+        "duet: serial_chain: link 8 does not exist, the chain has 7 joints");
   CHECK(message([&] { (void)from_dh(std::array<dh_row<>, 1>{{{.d = std::nan("")}}}); }) ==
-        "duet: serial_chain: joint 0: its row of parameters has a number beyond 1e6, or none");
+        "duet: serial_chain: joint 0: the parameter nan is not a number up to 1e6");
   CHECK(message([&] { (void)from_dh(std::array<dh_row<>, 1>{{{.alpha = 90}}}); }) ==
-        "duet: serial_chain: joint 0: its row turns by more than a whole turn: angles are in "
-        "radians");
+        "duet: serial_chain: joint 0: the angle 90 exceeds a full turn (expected radians)");
   CHECK(message([] {
           placement<>(quaternion<double>(1, 1, 0, 0), {0, 0, 0});
-        }) == "duet: placement: its rotation (1, 1, 0, 0) is no unit quaternion: normalized(q)");
+        }) == "duet: placement: the rotation (1, 1, 0, 0) is not a unit quaternion: normalized(q)");
 }
 
-TEST_CASE("a tool and fixed joints whose rotations have few digits move nothing farther") {
+TEST_CASE("serial_chain: rotations with few digits are normalised") {
   joint<> fixed{.kind = joint_kind::fixed, .origin = {{.707, .707, 0, 0}, {0, 0, 0}}};
   joint<> revolute{.origin = {quaternion<double>(1), {0, 1, 0}}};
   const serial_chain<1> chain(std::array{fixed, revolute}, {{.707, 0, .707, 0}, {1, 0, 0}});
@@ -274,7 +273,7 @@ TEST_CASE("a tool and fixed joints whose rotations have few digits move nothing 
   CHECK(max_abs_difference(translation(a), Eigen::Vector3d(1, 0, 1)) < 1e-15);
 }
 
-TEST_CASE("sines of all joints at once: as one after the other, under derivatives of any kind") {
+TEST_CASE("serial_chain: vectorised sines give the derivatives of long double") {
   const auto arm = duet_test::every_joint();
   const bounded_chain<9> unsized = arm;
   // Joint 3 is beyond the vector sine; all coordinates are the same in both precisions.

@@ -47,7 +47,7 @@ std::vector<angles> configurations(std::size_t count) {
 
 } // namespace
 
-TEST_CASE("a range gives what each configuration gives, on any number of cores") {
+TEST_CASE("poses, jacobians: a sweep equals single evaluations for any number of threads") {
   const auto known = robots::panda();
   const auto table = known.table();
   const bounded_chain<9> unsized = table;
@@ -75,7 +75,7 @@ TEST_CASE("a range gives what each configuration gives, on any number of cores")
   }
 }
 
-TEST_CASE("a sweep tells how far it is, and is cancelled with what is done known") {
+TEST_CASE("poses: a cancelled sweep reports the completed results") {
   const auto arm = robots::panda();
   const auto theta = configurations(1000);
   for (const unsigned threads : {1U, 3U}) {
@@ -99,7 +99,7 @@ TEST_CASE("a sweep tells how far it is, and is cancelled with what is done known
   }
 }
 
-TEST_CASE("other frames, and matrices of dynamic size") {
+TEST_CASE("poses, jacobians: sweeps of other frames resize dynamic matrices") {
   const auto chain = robots::panda();
   const auto theta = configurations(6);
   std::vector<dual_quaternion<double>> a(6);
@@ -124,7 +124,7 @@ TEST_CASE("other frames, and matrices of dynamic size") {
   }
 }
 
-TEST_CASE("bad sizes are named") {
+TEST_CASE("poses, jacobians: errors name index and size") {
   const auto chain = robots::panda();
   auto theta = configurations(5);
   std::vector<dual_quaternion<double>> a(4);
@@ -145,10 +145,10 @@ TEST_CASE("bad sizes are named") {
   std::vector<Eigen::VectorXd> wrong(4, Eigen::VectorXd::Zero(7));
   wrong[2].resize(5);
   CHECK(message_of([&] { poses(chain, wrong, a); }) ==
-        "duet: poses: configuration 2 has 5 coordinates, but 7 joints move");
+        "duet: poses: configuration 2 has 5 coordinates (expected 7)");
 }
 
-TEST_CASE("rates and derivatives over batches are those of the lanes") {
+TEST_CASE("jacobian_rate, pose: batches equal their lanes") {
   const auto chain = robots::panda();
   const auto table = chain.table();
   std::vector<angles> theta = configurations(6), velocity = configurations(6);
@@ -166,7 +166,7 @@ TEST_CASE("rates and derivatives over batches are those of the lanes") {
   duet_test::check_lanes<4>([&](const auto& x) { return table.pose(x); }, 4 * limit, moving);
 }
 
-TEST_CASE("what else there is of a chain, over batches") {
+TEST_CASE("Hessians, efforts, analytical Jacobians and manipulability: batches equal their lanes") {
   const auto chain = robots::panda();
   const auto theta = configurations(7);
   std::vector<vector6<double>> wrenches;

@@ -43,13 +43,13 @@ void check_in_threads(std::size_t count, const F& f) {
 
 } // namespace
 
-TEST_CASE("one chain, several threads, identical results") {
+TEST_CASE("serial_chain: several threads give identical results") {
   const bounded_chain<16> chain = robots::panda().table();
   const auto all = duet_test::configurations(robots::panda().table(), 60);
   check_in_threads(all.size(), [&](std::size_t i) { return duet_test::everything(chain, all[i]); });
 }
 
-TEST_CASE("one closed loop, several threads, identical results") {
+TEST_CASE("constrained_mechanism: several threads give identical results") {
   const constrained_mechanism slider([](const auto& x, const auto& u) { return x * x + u * u - 1; },
                                      1.0, 0);
   check_in_threads(60, [&](std::size_t i) { return slider(std::sin(double(i))); });

@@ -43,7 +43,7 @@ std::string joint_to_c(const std::string& inside, const std::string& type = "con
 
 } // namespace
 
-TEST_CASE("origins, axes and limits as the format says") {
+TEST_CASE("read_urdf: origins, axes and limits follow the format") {
   write(links + first +
         joint_to_c("<origin xyz=\" .1 2e-1\t+0.3 \" rpy=\"0.1 0.2 0.3\"/><axis xyz=\"0 1 0\"/>"));
   const auto chain = read_urdf(path, "a", "c");
@@ -64,7 +64,7 @@ TEST_CASE("origins, axes and limits as the format says") {
   CHECK(max_abs_difference(translation(chain.pose(theta, chain.link("b"))),
                            Eigen::Vector3d(0, 0, .5)) == 0);
   CHECK_THROWS_WITH_AS((void)chain.link("x"),
-                       "duet: no link \"x\" in the chain: there are \"a\", \"b\", \"c\"",
+                       "duet: urdf_chain: no link \"x\": there are \"a\", \"b\", \"c\"",
                        invalid_input);
   // Where nothing is said the axis is x.
   write(links + first + joint_to_c(""));
@@ -75,7 +75,7 @@ TEST_CASE("origins, axes and limits as the format says") {
   CHECK(read_urdf(path, "c", "c").size() == 0);
 }
 
-TEST_CASE("what is wrong is said with file, line and element") {
+TEST_CASE("read_urdf: errors name file, line and element") {
   const std::string file = "duet: " + path + ":";
   const std::string q = file + "5: <joint name=\"q\">";
   const auto check_error = [&](const std::string& joint, const std::string& expected) {
@@ -83,32 +83,31 @@ TEST_CASE("what is wrong is said with file, line and element") {
     CHECK(message() == expected);
   };
   const std::string origins = ": there are \"a\", \"b\", \"c\"";
-  check_error(joint_to_c("<mimic joint=\"p\"/>"),
-              q + ": follows \"p\": that takes a kinematic_tree, not a chain");
-  check_error(joint_to_c("<axis xyz=\"0 0 2\"/>"), q + " <axis>: length 2, not 1");
-  check_error(joint_to_c("<axis xyz=\"0 0 0\"/>"), q + " <axis>: length 0, not 1");
+  check_error(joint_to_c("<mimic joint=\"p\"/>"), q + ": it mimics \"p\" (use a kinematic_tree)");
+  check_error(joint_to_c("<axis xyz=\"0 0 2\"/>"),
+              q + " <axis>: the axis has length 2 (expected 1)");
+  check_error(joint_to_c("<axis xyz=\"0 0 0\"/>"),
+              q + " <axis>: the axis has length 0 (expected 1)");
   check_error(joint_to_c("\n<axis xyz=\"0 0 x\"/>"),
-              file + "6: <joint name=\"q\"> <axis>: xyz=\"x\" is no number up to 1e6");
+              file + "6: <joint name=\"q\"> <axis>: xyz=\"x\" is not a number up to 1e6");
   check_error(joint_to_c("<axis xyz=\"0 0\"/>"), q + " <axis>: xyz=\"0 0\" is not three numbers");
   check_error(joint_to_c("<origin xyz=\"1 2 3 4\"/>"),
               q + " <origin>: xyz=\"1 2 3 4\" is not three numbers");
   check_error(joint_to_c("<origin rpy=\"nan 0 0\"/>"),
-              q + " <origin>: rpy=\"nan\" is no number up to 1e6");
+              q + " <origin>: rpy=\"nan\" is not a number up to 1e6");
   check_error(joint_to_c("<origin xyz=\"0 0 1e16\"/>"),
-              q + " <origin>: xyz=\"1e16\" is no number up to 1e6");
+              q + " <origin>: xyz=\"1e16\" is not a number up to 1e6");
   check_error(joint_to_c("", "revolute"),
-              q + ": no element <limit>, which a revolute joint must have");
+              q + ": no element <limit> (required for a revolute joint)");
   check_error(joint_to_c("<limit lower=\"2\" upper=\"1\"/>", "revolute"),
               q + " <limit>: lower 2 is above upper 1");
   check_error(joint_to_c("<limit velocity=\"-1\"/>", "revolute"),
               q + " <limit>: velocity=\"-1\" is negative");
   check_error(joint_to_c("<limit upper=\"1,5\"/>", "revolute"),
-              q + " <limit>: upper=\"1,5\" is no number up to 1e6");
-  check_error(joint_to_c("", "floating"),
-              q + ": has 6 coordinates: that takes a kinematic_tree, not a chain");
-  check_error(joint_to_c("", "spherical"),
-              q + ": type \"spherical\" is none of revolute, continuous, "
-                  "prismatic, fixed, planar and floating");
+              q + " <limit>: upper=\"1,5\" is not a number up to 1e6");
+  check_error(joint_to_c("", "floating"), q + ": it has 6 coordinates (use a kinematic_tree)");
+  check_error(joint_to_c("", "spherical"), q + ": unknown type \"spherical\" (expected revolute, "
+                                               "continuous, prismatic, fixed, planar or floating)");
   check_error("<joint name=\"q\" type=\"fixed\"><child link=\"c\"/></joint>",
               q + ": no element <parent>");
   check_error("<joint name=\"q\" type=\"fixed\"><parent link=\"b\"/><child/></joint>",
@@ -117,7 +116,7 @@ TEST_CASE("what is wrong is said with file, line and element") {
   check_error("<joint name=\"q\"><parent link=\"b\"/><child link=\"c\"/></joint>",
               q + ": no attribute \"type\"");
   check_error("", "duet: " + path +
-                      ": no joints connect the links \"a\" and \"c\": above \"c\" there is none");
+                      ": no joints connect the links \"a\" and \"c\": \"c\" has no parent joint");
   check_error("<joint name=\"q\" type=\"fixed\"><parent link=\"z\"/><child link=\"c\"/></joint>",
               q + " <parent>: no link \"z\"" + origins);
   // Where it is in nobody's way it does no harm.
@@ -142,7 +141,7 @@ TEST_CASE("what is wrong is said with file, line and element") {
       invalid_input);
 }
 
-TEST_CASE("what URDF has not: attributes are mistakes, elements are listed") {
+TEST_CASE("read_urdf: unknown attributes are rejected, unknown elements are listed") {
   const std::string file = "duet: " + path + ":";
   const auto check_error = [&](const std::string& joint, const std::string& expected) {
     write(links + first + joint);
@@ -158,9 +157,9 @@ TEST_CASE("what URDF has not: attributes are mistakes, elements are listed") {
               q + " <axis>" + unknown + "\"xzy\": there are \"xyz\"");
   check_error(joint_to_c("<origin xyz=\"1 0 0\" rpY=\"0 0 0\"/>"),
               q + " <origin>" + unknown + "\"rpY\": there are \"rpy\", \"xyz\"");
-  check_error(joint_to_c("<parent link=\"b\"/>"), q + " <parent>: is there twice, first in line 5");
+  check_error(joint_to_c("<parent link=\"b\"/>"), q + " <parent>: it is repeated, first in line 5");
   check_error(joint_to_c("<axis/>\n<limit/><axis/>"),
-              file + "6: <joint name=\"q\"> <axis>: is there twice, first in line 5");
+              file + "6: <joint name=\"q\"> <axis>: it is repeated, first in line 5");
   check_error(joint_to_c("<safety_controller soft_lower=\"1\"/>"),
               q + " <safety_controller>" + unknown +
                   "\"soft_lower\": there are \"soft_lower_limit\", \"soft_upper_limit\", "
@@ -170,14 +169,14 @@ TEST_CASE("what URDF has not: attributes are mistakes, elements are listed") {
   check_error("<link nam=\"q\"/>",
               file + "5: <link>" + unknown + "\"nam\": there are \"name\", \"type\"");
   // One name for two.
-  check_error("<link name=\"b\"/>", file + "5: <link name=\"b\">: is there twice, first in line 3");
+  check_error("<link name=\"b\"/>", file + "5: <link name=\"b\">: it is repeated, first in line 3");
   check_error(joint_to_c("") + "<link name=\"d\"/>\n<joint name=\"q\" type=\"fixed\"><parent "
                                "link=\"a\"/><child link=\"d\"/></joint>",
-              file + "7: <joint name=\"q\">: is there twice, first in line 5");
+              file + "7: <joint name=\"q\">: it is repeated, first in line 5");
   check_error(
       joint_to_c("") +
           "<joint name=\"r\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>",
-      file + "6: <joint name=\"r\">: the link \"c\" has a joint above it already, \"q\" of line 5");
+      file + "6: <joint name=\"r\">: the link \"c\" already has the parent joint \"q\" of line 5");
   // What is other programs'.
   check_error(joint_to_c("<axis xyz=\"0 0 1\" rpy=\"0 0 0\"/><limit command_effort=\"1\"/>"), "");
   check_error(joint_to_c("<dynamics D=\"1\" mu_coulomb=\"0\"/><calibration rising=\"0\"/>"), "");
@@ -200,7 +199,7 @@ TEST_CASE("what URDF has not: attributes are mistakes, elements are listed") {
   CHECK(read_urdf(path, "a", "c").unknown()[0].name == "orgin");
 }
 
-TEST_CASE("limits: soft ones narrow, and numbers beyond a million are none") {
+TEST_CASE("read_urdf: soft limits narrow, and bounds beyond 1e6 are infinite") {
   const auto limits_of = [&](const std::string& inside, const std::string& type = "revolute") {
     write(links + first + joint_to_c(inside, type));
     return read_urdf(path, "b", "c").limits(0);
@@ -237,30 +236,31 @@ TEST_CASE("limits: soft ones narrow, and numbers beyond a million are none") {
     return message();
   };
   CHECK(error_of("<limit lower=\"1e16\" upper=\"1e17\"/>") ==
-        q + " <limit>: lower=\"1e16\" is no number up to 1e6");
+        q + " <limit>: lower=\"1e16\" is not a number up to 1e6");
   CHECK(error_of("<limit lower=\"-2\" upper=\"-1e16\"/>") ==
-        q + " <limit>: upper=\"-1e16\" is no number up to 1e6");
-  CHECK(error_of("<limit lower=\"nan\"/>") == q + " <limit>: lower=\"nan\" is no number up to 1e6");
+        q + " <limit>: upper=\"-1e16\" is not a number up to 1e6");
+  CHECK(error_of("<limit lower=\"nan\"/>") ==
+        q + " <limit>: lower=\"nan\" is not a number up to 1e6");
   CHECK(error_of(hard + "<safety_controller soft_lower_limit=\"4\"/>") ==
-        q + " <safety_controller>: no motion is within its limits and those of <limit>");
+        q + " <safety_controller>: the soft limits contain no coordinate within those of <limit>");
   std::filesystem::remove(path);
 }
 
-TEST_CASE("cycles, broken and missing files") {
+TEST_CASE("read_urdf: cycles, broken and missing files are rejected") {
   const std::string file = "duet: " + path + ":";
   write(links + "<joint name=\"q\" type=\"fixed\"><parent link=\"b\"/><child link=\"c\"/></joint>\n"
                 "<joint name=\"r\" type=\"fixed\"><parent link=\"c\"/><child link=\"b\"/></joint>");
-  CHECK(message() == file + "5: <joint name=\"r\">: closes a cycle at the link \"c\"");
-  CHECK(message("c", "a") == file + "5: <joint name=\"r\">: closes a cycle at the link \"c\"");
+  CHECK(message() == file + "5: <joint name=\"r\">: it closes a cycle at the link \"c\"");
+  CHECK(message("c", "a") == file + "5: <joint name=\"r\">: it closes a cycle at the link \"c\"");
   std::ofstream(path) << "<robot>\n<link name=\"a\">\n</robot>\n";
   CHECK(message() == file + "3: mismatched tag, in <link> of line 2");
   std::ofstream(path) << "<?xml version=\"1.0\"?>\n<sdf/>\n";
-  CHECK(message() == file + "2: the root is <sdf>, not <robot>");
+  CHECK(message() == file + "2: the root is <sdf> (expected <robot>)");
   std::filesystem::remove(path);
   CHECK(message() == "duet: " + path + ": cannot be read");
 }
 
-TEST_CASE("what is no XML") {
+TEST_CASE("read_urdf: malformed XML is rejected with line and element") {
   const std::string file = "duet: " + path + ":";
   const auto error_of = [&](const std::string& text) {
     std::ofstream(path, std::ios::binary) << text;
@@ -329,7 +329,7 @@ TEST_CASE("what is no XML") {
   std::filesystem::remove(path);
 }
 
-TEST_CASE("links that are fixed to one another do not count as joints") {
+TEST_CASE("read_urdf: fixed joints do not count towards the capacity") {
   constexpr int count = 300;
   std::string inside = "<link name=\"l0\"/>";
   for (int i = 1; i <= count; ++i) {
@@ -343,7 +343,7 @@ TEST_CASE("links that are fixed to one another do not count as joints") {
   std::filesystem::remove(path);
 }
 
-TEST_CASE("links by name and frame; the Jacobian by duals of joints of run-time number") {
+TEST_CASE("read_urdf: link frames and Jacobians of a chain with joints counted at run time") {
   write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
   const auto arm = read_urdf(path, "a", "c");
   REQUIRE(arm.links().size() == 3);
@@ -366,7 +366,7 @@ TEST_CASE("links by name and frame; the Jacobian by duals of joints of run-time 
   std::filesystem::remove(path);
 }
 
-TEST_CASE("names of links and joints, and those that are like one that is not there") {
+TEST_CASE("read_urdf_summary: lists names, and an unknown link suggests similar ones") {
   write(links + first + joint_to_c("<axis xyz=\"0 0 1\"/>"));
   const auto names = duet::read_urdf_summary(path);
   CHECK(names.links == std::vector<std::string>{"a", "b", "c"});
@@ -387,7 +387,7 @@ TEST_CASE("names of links and joints, and those that are like one that is not th
   std::filesystem::remove(path);
 }
 
-TEST_CASE("what a terminal would obey is not repeated") {
+TEST_CASE("read_urdf: control characters in names are escaped in errors") {
   write("<link name=\"a\"/><link name=\"\xc2\x9b"
         "2J\"/>"
         "<joint name=\"\xc2\x9b\"><parent link=\"a\"/><child link=\"\xc2\x9b"
@@ -404,7 +404,7 @@ TEST_CASE("what a terminal would obey is not repeated") {
   std::filesystem::remove(path);
 }
 
-TEST_CASE("real robots") {
+TEST_CASE("read_urdf: files of real robots agree with the built-in arms") {
   const auto data = duet_test::outside_data("urdf");
   if (!data) {
     return;

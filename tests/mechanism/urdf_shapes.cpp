@@ -55,7 +55,7 @@ std::string error_of_srdf(const std::string& inside) {
 
 } // namespace
 
-TEST_CASE("shapes of links, in a tree and in both kinds of chains") {
+TEST_CASE("read_urdf, read_urdf_tree: collision shapes of links") {
   write(robot_with(
       "<collision name=\"first\"><origin xyz=\"1 2 3\" rpy=\"0 0 1\"/><geometry>"
       "<box size=\".1 .2 .3\" scale=\"1 1 1\"/></geometry></collision>\n"
@@ -90,38 +90,39 @@ TEST_CASE("shapes of links, in a tree and in both kinds of chains") {
   CHECK(tree.description().unknown.empty());
 }
 
-TEST_CASE("what is wrong with a shape: where, and what") {
+TEST_CASE("read_urdf, read_urdf_tree: errors of shapes name line, element and value") {
   const std::string in = ": <link name=\"a\"> ";
   CHECK(error_of("<collision/>\n") == "4" + in + "<collision>: no element <geometry>");
   CHECK(error_of("<collision><geometry/></collision>\n") ==
-        "4" + in + "<geometry>: has 0 shapes in place of one");
+        "4" + in + "<geometry>: it has 0 shapes (expected 1)");
   CHECK(error_of_shape("<sphere radius=\"1\"/><box size=\"1 1 1\"/>") ==
-        "5" + in + "<geometry>: has 2 shapes in place of one");
+        "5" + in + "<geometry>: it has 2 shapes (expected 1)");
   CHECK(error_of_shape("<sphere radius=\"1\"/><sphere radius=\"1\"/>") ==
-        "6" + in + "<sphere>: is there twice, first in line 6");
+        "6" + in + "<sphere>: it is repeated, first in line 6");
   CHECK(error_of_shape("<cone radius=\"1\"/>") ==
-        "6" + in + "<cone>: is none of the shapes box, cylinder, capsule, sphere and mesh");
+        "6" + in +
+            "<cone>: the shape is unknown (expected box, cylinder, capsule, sphere or mesh)");
   CHECK(error_of_shape("<sphere radious=\"1\"/>") ==
         "6" + in + "<sphere>: unknown attribute \"radious\": there are \"radius\"");
   CHECK(error_of_shape("<sphere/>") == "6" + in + "<sphere>: no attribute \"radius\"");
   CHECK(error_of_shape("<sphere radius=\"-1\"/>") ==
         "6" + in + "<sphere>: radius=\"-1\" is negative");
   CHECK(error_of_shape("<cylinder radius=\"1\" length=\"x\"/>") ==
-        "6" + in + "<cylinder>: length=\"x\" is no number up to 1e6");
+        "6" + in + "<cylinder>: length=\"x\" is not a number up to 1e6");
   CHECK(error_of_shape("<box size=\"1 1\"/>") ==
         "6" + in + "<box>: size=\"1 1\" is not three numbers");
   CHECK(error_of_shape("<box/>") == "6" + in + "<box>: no attribute \"size\"");
   CHECK(error_of_shape("<box size=\"1 1 -1\"/>") ==
         "6" + in + "<box>: size=\"1 1 -1\" is negative");
   CHECK(error_of_shape("<box size=\"1 1 1\" scale=\"1 1 2\"/>") ==
-        "6" + in + "<box>: has a scale, which is for meshes");
+        "6" + in + "<box>: scale is valid for meshes only");
   CHECK(error_of_shape("<mesh scale=\"1 1 1\"/>") ==
         "6" + in + "<mesh>: no attribute \"filename\"");
   CHECK(error_of("<collision><origin xyz=\"1 2\"/><geometry><sphere radius=\"1\"/></geometry>"
                  "</collision>\n") == "4" + in + "<origin>: xyz=\"1 2\" is not three numbers");
 }
 
-TEST_CASE("disabled collisions") {
+TEST_CASE("read_disabled_collisions: reads pairs, and errors name line and value") {
   write("<group name=\"arm\"><link name=\"a\"/></group>\n"
         "<disable_collisions link1=\"a\" link2=\"b\" reason=\"Adjacent\"/>\n"
         "<disable_collisions link1=\"b\" link2=\"c\"/>\n");
@@ -136,19 +137,19 @@ TEST_CASE("disabled collisions") {
         "4: <disable_collisions>: unknown attribute \"linc2\": there are \"link1\", \"link2\" and "
         "\"reason\"");
   CHECK(error_of_srdf("<disable_collisions link1=\"\" link2=\"b\"/>") ==
-        "3: <disable_collisions>: link1=\"\" names no link");
+        "3: <disable_collisions>: link1=\"\" is empty");
   CHECK(error_of_srdf("<disable_collisions link1=\"a\" link2=\"\"/>") ==
-        "3: <disable_collisions>: link2=\"\" names no link");
+        "3: <disable_collisions>: link2=\"\" is empty");
   CHECK(error_of_srdf("\n<disable_collisions link1=\"a\" link2=\"a\" reason=\"Never\"/>") ==
         "4: <disable_collisions>: link1 and link2 are both \"a\"");
   CHECK(error_of_srdf("<enable_collisions link1=\"a\" link2=\"b\"/>") ==
         "3: <enable_collisions> is not supported");
   std::ofstream(path) << "<sdf/>";
   CHECK(duet_test::message_of<file_error>([] { (void)read_disabled_collisions(path); }) ==
-        "duet: " + path + ":1: the root is <sdf>, not <robot>");
+        "duet: " + path + ":1: the root is <sdf> (expected <robot>)");
 }
 
-TEST_CASE("shapes of known robots") {
+TEST_CASE("read_urdf_tree: files of real robots have their number of shapes") {
   if (const auto folder = duet_test::outside_data("urdf")) {
     const auto count = [&](const char* name) {
       std::size_t result = 0;

@@ -42,7 +42,7 @@ const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/
 
 } // namespace
 
-TEST_CASE("a whole file: kinds, followers, masses, lines") {
+TEST_CASE("read_urdf_tree: joint types, mimic joints, masses and lines of a complete file") {
   write(
       "<link name=\"tip\"/>\n"
       "<link name=\"base\"><inertial><mass value=\"2\"/></inertial></link>\n"
@@ -87,7 +87,7 @@ TEST_CASE("a whole file: kinds, followers, masses, lines") {
   CHECK(message().empty());
 }
 
-TEST_CASE("mistakes, with file, line and element") {
+TEST_CASE("read_urdf_tree: errors name file, line and element") {
   const std::string file = "duet: " + path + ":";
   const auto check_error = [&](const std::string& inside, const std::string& expected) {
     write(inside);
@@ -100,26 +100,24 @@ TEST_CASE("mistakes, with file, line and element") {
   };
   const std::string q = file + "5: <joint name=\"q\">";
   check_error(follows("joint=\"p\""), "");
-  check_error(follows("joint=\"x\""), q + ": it follows no joint \"x\": there are \"p\", \"q\"");
-  check_error(follows("joint=\"q\""), q + ": follows itself");
+  check_error(follows("joint=\"x\""), q + ": it mimics no joint \"x\": there are \"p\", \"q\"");
+  check_error(follows("joint=\"q\""), q + ": it mimics itself");
   check_error(follows("joint=\"p\"", "planar"),
-              q + ": follows \"p\", but \"q\" has 3 coordinates, not one");
+              q + ": it mimics \"p\", but \"q\" has 3 coordinates (expected 1)");
   check_error(follows("multiplier=\"2\""), q + " <mimic>: no attribute \"joint\"");
   check_error(follows("joint=\"p\" multiplier=\"x\""),
-              q + " <mimic>: multiplier=\"x\" is no number up to 1e6");
+              q + " <mimic>: multiplier=\"x\" is not a number up to 1e6");
   check_error(follows("joint=\"p\" offset=\"3\""),
-              q + ": no motion of \"p\" is within its limits, -1 to 1");
+              q + ": no coordinate of \"p\" satisfies its limits -1 to 1");
   check_error(links + joint_of("p", "revolute", "a", "b", limit + "<mimic joint=\"q\"/>") +
                   joint_of("q", "revolute", "b", "c", limit + "<mimic joint=\"p\"/>"),
-              file + "4: <joint name=\"p\">: follows itself");
-  check_error(links + p,
-              file + "3: <link name=\"c\">: no joint is above it, and none above \"a\": a tree "
-                     "has one root");
+              file + "4: <joint name=\"p\">: it mimics itself");
+  check_error(links + p, file + "3: <link name=\"c\">: it is a second root, the first is \"a\"");
   check_error(links + joint_of("q", "fixed", "b", "c") + joint_of("r", "fixed", "c", "b"),
-              file + "5: <joint name=\"r\">: closes a cycle at the link \"b\"");
+              file + "5: <joint name=\"r\">: it closes a cycle at the link \"b\"");
   check_error(links + p + joint_of("q", "fixed", "z", "c"),
               q + ": no link \"z\": there are \"a\", \"b\", \"c\"");
-  check_error("", "duet: " + path + ": there are no links");
+  check_error("", "duet: " + path + ": the description has no links");
   const auto weighs = [&](const std::string& inside) {
     return "<link name=\"a\">\n<inertial>" + inside + "</inertial></link>";
   };
@@ -130,16 +128,15 @@ TEST_CASE("mistakes, with file, line and element") {
   check_error(weighs("<mass value=\"1\" unit=\"kg\"/>"),
               a + "<mass>: unknown attribute \"unit\": there are \"value\"");
   check_error(weighs("<mass value=\"1\"/><mass value=\"1\"/>"),
-              a + "<mass>: is there twice, first in line 4");
+              a + "<mass>: it is repeated, first in line 4");
   const auto moments = [&](const std::string& more) {
     return weighs(
         "<mass value=\"1\"/><inertia ixx=\"1\" ixy=\".1\" ixz=\".2\" iyy=\"2\" iyz=\".3\" "
         "izz=\"3\" " +
         more + "/>");
   };
-  check_error(
-      moments("iyx=\".1\" izx=\".2\" izy=\"-.3\""),
-      a + "<inertia>: izy=\"-.3\" is not iyz=\".3\": the matrix of inertia must be symmetric");
+  check_error(moments("iyx=\".1\" izx=\".2\" izy=\"-.3\""),
+              a + "<inertia>: izy=\"-.3\" differs from iyz=\".3\" (expected a symmetric matrix)");
   check_error(moments("iyx=\"x\""), a + "<inertia>: iyx=\"x\" is not a finite number");
   check_error(weighs("<mass value=\"1e9\"/>"), "");
   check_error(weighs("<mass value=\"1e400\"/>"),
@@ -154,7 +151,7 @@ TEST_CASE("mistakes, with file, line and element") {
   std::filesystem::remove(path);
 }
 
-TEST_CASE("20000 links in a row are read") {
+TEST_CASE("read_urdf_tree: reads a chain of 20000 links") {
   constexpr int count = 20000;
   std::string inside;
   for (int i = count; i >= 0; --i) {
@@ -176,7 +173,7 @@ TEST_CASE("20000 links in a row are read") {
   std::filesystem::remove(path);
 }
 
-TEST_CASE("every robot file is a tree whose chains are those that are read alone") {
+TEST_CASE("read_urdf_tree: chains of every robot file equal those of read_urdf") {
   const auto data = duet_test::outside_data("urdf");
   if (!data) {
     return;

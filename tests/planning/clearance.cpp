@@ -92,7 +92,8 @@ TEST_CASE("nothing to touch; what is no scene") {
                        "duet: the normal of obstacle 3 is no unit vector", invalid_input);
   s.bodies[4].link = 8;
   CHECK_THROWS_WITH_AS(require_scene(arm, s),
-                       "duet: serial_chain: no link 8 in a chain of 7 joints", invalid_input);
+                       "duet: serial_chain: link 8 does not exist, the chain has 7 joints",
+                       invalid_input);
 }
 
 TEST_CASE("where a coordinate is nan no distance is told, whichever obstacle comes first") {

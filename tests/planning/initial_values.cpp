@@ -173,7 +173,7 @@ TEST_CASE("default-initialized aggregates hold the values that their fields stat
   DUET_CHECK(joint<double>);
   DUET_CHECK(attached_frame<double>);
   DUET_CHECK(relative_frame);
-  DUET_CHECK(loop_motion_options);
+  DUET_CHECK(driven_motion_options);
   DUET_CHECK(assembly_configuration);
   DUET_CHECK(assembly_search_result);
   DUET_CHECK(assembly_search_options);

@@ -455,7 +455,7 @@ TEST_CASE("bad problems") {
                        invalid_input);
   CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, vector::Zero(6).eval()),
-                       "duet: a chain of 7 moving joints, but 6 coordinates", invalid_input);
+                       "duet: serial_chain: 6 coordinates (expected 7)", invalid_input);
   vector broken = start;
   broken[4] = INFINITY;
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, broken),

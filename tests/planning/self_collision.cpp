@@ -95,7 +95,8 @@ TEST_CASE("pairs: neither one link, nor neighbours, nor what is excluded by name
   CHECK(has(pairs, 0, 3));
   CHECK(has(pairs, 1, 3));
   CHECK_THROWS_WITH_AS((void)self_collision_pairs(arm, {{9, sphere<>{}}}),
-                       "duet: serial_chain: no link 9 in a chain of 7 joints", invalid_input);
+                       "duet: serial_chain: link 9 does not exist, the chain has 7 joints",
+                       invalid_input);
 }
 
 TEST_CASE("a chain and itself: the least distance, and its gradient") {

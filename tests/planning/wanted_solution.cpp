@@ -434,7 +434,7 @@ TEST_CASE("what is refused") {
   vector most = vector::Constant(7, .1);
   most[2] = std::nan("");
   CHECK_THROWS_WITH_AS(static_cast<void>(with_limits_about(arm, start, most)),
-                       "duet: with_limits_about: joint 2 is to stay within nan of 0",
+                       "duet: with_limits_about: joint 2: the interval 0 ± nan is not a number",
                        invalid_input);
   vector beyond = start;
   beyond[3] = .2; // the limit is -0.07

@@ -27,8 +27,8 @@ template <class T>
 constexpr void require_finite(const placement<T>& offset, const char* function) {
   const auto& t = offset.translation;
   if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
-    raise(invalid_input(
-        message("duet: ", function, ": its translation is (", t[0], ", ", t[1], ", ", t[2], ")")));
+    raise(invalid_input(message("duet: ", function, ": the translation (", t[0], ", ", t[1], ", ",
+                                t[2], ") is not finite")));
   }
 }
 
@@ -76,15 +76,15 @@ template <SerialChain C>
 template <SerialChain C, detail::JointOf<C> Which>
 [[nodiscard]] constexpr auto with_locked_joint(const C& chain, const Which& which,
                                                const typename C::scalar_type& theta) {
-  static_assert(C::joints != 1, "duet: with_locked_joint: no joint would be left to move");
+  static_assert(C::joints != 1, "duet: with_locked_joint: the only moving joint cannot be locked");
   using T = typename C::scalar_type;
   const int i = detail::joint_number(chain, which, "with_locked_joint");
   const auto& limits = chain.limits(i);
   if (!(limits.lower <= theta && theta <= limits.upper && theta - theta == 0)) {
-    detail::bad_joint(
-        std::size_t(i),
-        detail::message(theta, " is not within its limits, ", limits.lower, " to ", limits.upper),
-        "with_locked_joint", detail::joint_name(chain, i));
+    detail::bad_joint(std::size_t(i),
+                      detail::message("the coordinate ", theta, " is outside the limits ",
+                                      limits.lower, " to ", limits.upper),
+                      "with_locked_joint", detail::joint_name(chain, i));
   }
   const auto locked = detail::placement_at(chain.steps()[std::size_t(i)], theta);
   if constexpr (C::joints > 1) {

@@ -62,7 +62,7 @@ template <class S>
       parent.rate = parent.rate + sum.rate;
     }
   }
-  require(result[0].mass > 0, "duet: centre_of_mass: no link has a mass");
+  require(result[0].mass > 0, "duet: centre_of_mass: the mass of all links is 0 (expected > 0)");
   return result;
 }
 

@@ -53,9 +53,8 @@ void require_size(const C& chain, const X& theta) {
     static_assert(C::joints == argument::size_at_compile_time,
                   "duet: a chain takes as many coordinates as it has moving joints");
   } else if (argument::size(theta) != chain.size()) {
-    raise(invalid_input("duet: a chain of " + std::to_string(chain.size()) +
-                        " moving joints, but " + std::to_string(argument::size(theta)) +
-                        " coordinates"));
+    raise(invalid_input("duet: serial_chain: " + std::to_string(argument::size(theta)) +
+                        " coordinates (expected " + std::to_string(chain.size()) + ")"));
   }
 }
 

@@ -128,7 +128,7 @@ private:
   [[nodiscard]] solution assembled(const X& position) const {
     const solution result(constraints_, position, u_, {});
     if (!result.has_converged()) {
-      fail("no position near the given one at u = " + text(u_), u_);
+      fail("no position near the initial guess at u = " + text(u_), u_);
     }
     return result;
   }
@@ -199,8 +199,8 @@ private:
         done = to;
         max_step = std::min(limit, 2 * length);
       } else if (length <= 1e-6 * (1 - done)) {
-        fail("cannot close beyond u = " + text(u) + " on the way from " + text(u_) + " to " +
-                 text(target),
+        fail("the loops do not close beyond u = " + text(u) + " on the line from " + text(u_) +
+                 " to " + text(target),
              u);
       } else {
         max_step = length / 2;

@@ -48,13 +48,13 @@ public:
   /// Number of coordinates, which are those of the tree.
   [[nodiscard]] int size() const { return tree_.size(); }
   /// Number of equations of all loops.
-  [[nodiscard]] int equations() const { return int(rows_); }
+  [[nodiscard]] int equation_count() const { return int(rows_); }
   /// Characteristic length: the longest offset of a joint or constraint, or rod; 1 if all are zero.
   [[nodiscard]] double length() const { return length_; }
 
   /// Residuals F(q) of the loop-closure constraints, over any scalar.
   ///
-  /// \return an Eigen vector of `equations()` numbers
+  /// \return an Eigen vector of `equation_count()` numbers
   /// \throws invalid_input if the number of coordinates differs from `size()`
   template <VectorLike X>
   [[nodiscard]] auto residuals(const X& q) const {
@@ -73,18 +73,18 @@ public:
   [[nodiscard]] Eigen::MatrixXd constraint_jacobian(const Eigen::VectorXd& q) const;
 
   /// The configuration near an initial guess, by damped least squares (Levenberg–Marquardt) with
-  /// minimum-norm steps. Some coordinates may be held at their values in the guess.
+  /// minimum-norm steps. Some coordinates may be fixed at their values in the guess.
   ///
   /// Source: J. Fan and Y. Yuan, On the quadratic convergence of the Levenberg–Marquardt method
   /// without nonsingularity assumption, 2005: the damping is proportional to ‖F‖, and redundant
   /// equations do no harm.
   ///
   /// \param guess  initial guess of all coordinates
-  /// \param fixed  numbers of the held coordinates
+  /// \param fixed  numbers of the fixed coordinates
   /// \throws loop_closure_failure if no configuration is near; invalid_input if the number of
   /// coordinates differs from `size()`, and for numbers that are not finite
-  [[nodiscard]] Eigen::VectorXd closed(const Eigen::VectorXd& guess,
-                                       const std::vector<int>& fixed = {}) const;
+  [[nodiscard]] Eigen::VectorXd assemble(const Eigen::VectorXd& guess,
+                                         const std::vector<int>& fixed = {}) const;
 
   /// Independent coordinates, which to first order determine all others, chosen so that the
   /// dependent ones move as little as possible per unit of the independent ones: pivots of a QR

@@ -67,13 +67,13 @@ constexpr void require_row(const dh_row<T>& row, std::size_t i) {
   const T max_number(1e6);
   for (const T& x : {row.a, row.d, row.alpha, row.theta}) {
     if (!(x <= max_number && -x <= max_number)) {
-      bad_joint(i, "its row of parameters has a number beyond 1e6, or none");
+      bad_joint(i, message("the parameter ", x, " is not a number up to 1e6"));
     }
   }
   const T full_turn(6.2832);
   for (const T& x : {row.alpha, row.theta}) {
     if (!(x <= full_turn && -x <= full_turn)) {
-      bad_joint(i, "its row turns by more than a whole turn: angles are in radians");
+      bad_joint(i, message("the angle ", x, " exceeds a full turn (expected radians)"));
     }
   }
 }

@@ -143,8 +143,8 @@ template <class C, VectorLike X, FrameConstant Frame,
 }
 
 template <class C, VectorLike X>
-  requires SerialChain<std::remove_cvref_t<C>>
-      DUET_REFUSED("a chain has three Jacobians, say which: jacobian(chain, theta, frame::hybrid)")
+  requires SerialChain<std::remove_cvref_t<C>> DUET_REFUSED(
+      "a chain has three Jacobians, name the frame: jacobian(chain, theta, frame::hybrid)")
 detail::chain_jacobian<std::remove_cvref_t<C>, X> jacobian(C&&, const X&);
 
 DUET_ASKS_FOR_ONE_CONFIGURATION(jacobian, Eigen::MatrixXd)

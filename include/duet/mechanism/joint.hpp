@@ -116,7 +116,7 @@ template <class T>
   const T square = squared_norm(q);
   if (!is_nearly_one(square)) {
     raise(invalid_input(
-        message("duet: placement: its rotation ", q, " is no unit quaternion: normalized(q)")));
+        message("duet: placement: the rotation ", q, " is not a unit quaternion: normalized(q)")));
   }
   // A rotation whose norm is 1 to within round-off is kept to the last bit.
   const T rounding = 8 * std::numeric_limits<T>::epsilon();

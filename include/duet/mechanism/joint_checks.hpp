@@ -39,11 +39,13 @@ constexpr void require_limits(const joint_limits<T>& limits, std::size_t i,
                               const char* function = "serial_chain", std::string_view name = {}) {
   const T infinity = std::numeric_limits<T>::infinity();
   if (!(limits.lower <= limits.upper && infinity > limits.lower && limits.upper > -infinity)) {
-    bad_joint(i, message("no motion is within its limits, ", limits.lower, " to ", limits.upper),
+    bad_joint(i,
+              message("the limits ", limits.lower, " to ", limits.upper, " contain no coordinate"),
               function, name);
   }
   if (!(limits.velocity >= 0)) {
-    bad_joint(i, message("its limit of velocity is ", limits.velocity), function, name);
+    bad_joint(i, message("the velocity limit is ", limits.velocity, " (expected >= 0)"), function,
+              name);
   }
 }
 
@@ -52,21 +54,21 @@ constexpr void require_joint(const joint<T>& joint, std::size_t i,
                              const char* function = "serial_chain", std::string_view name = {}) {
   const auto& t = joint.origin.translation;
   if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
-    bad_joint(i, "its origin is not finite", function, name);
+    bad_joint(i, "the origin is not finite", function, name);
   }
   if (!is_nearly_one(squared_norm(joint.origin.rotation))) {
     bad_joint(i,
               message("the rotation ", joint.origin.rotation,
-                      " of its origin is no unit quaternion: normalized(q)"),
+                      " of the origin is not a unit quaternion: normalized(q)"),
               function, name);
   }
   const auto n = components(joint.axis);
   if (joint.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
-    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is no unit vector"), function,
-              name);
+    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is not a unit vector"),
+              function, name);
   }
   if (!(joint.pitch - joint.pitch == 0)) {
-    bad_joint(i, "its pitch is not finite", function, name);
+    bad_joint(i, message("the pitch ", joint.pitch, " is not finite"), function, name);
   }
   require_limits(joint.limits, i, function, name);
 }

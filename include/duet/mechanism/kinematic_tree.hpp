@@ -116,8 +116,8 @@ public:
   ///
   /// \throws invalid_input for i outside `links()`
   [[nodiscard]] attached_frame<double> link(int i) const {
-    detail::require(0 <= i && i < int(links().size()), "duet: kinematic_tree: no link ", i, " of ",
-                    links().size());
+    detail::require(0 <= i && i < int(links().size()), "duet: kinematic_tree: link ", i,
+                    " does not exist, the tree has ", links().size(), " links");
     return {i, {}};
   }
   /// The frame of a link, by its name.

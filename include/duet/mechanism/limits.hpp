@@ -64,8 +64,9 @@ template <class C, JointOf<C> Which>
 [[nodiscard]] constexpr int joint_number(const C& chain, const Which& which, const char* function) {
   if constexpr (std::integral<Which>) {
     if (which < 0 || which >= chain.size()) {
-      raise(invalid_input(message("duet: ", function, ": no joint ", which, " in a chain of ",
-                                  chain.size(), " moving joints")));
+      raise(invalid_input(message("duet: ", function, ": joint ", which,
+                                  " does not exist, the chain has ", chain.size(),
+                                  " moving joints")));
     }
     return int(which);
   } else {
@@ -150,7 +151,7 @@ template <SerialChain C, VectorLike X, VectorLike MaxChange>
     const joint_limits<T> limits{lower > current.lower ? lower : current.lower,
                                  upper < current.upper ? upper : current.upper, current.velocity};
     detail::require(lower == lower && upper == upper, "duet: with_limits_about: joint ", i,
-                    " is to stay within ", by, " of ", at);
+                    ": the interval ", at, " ± ", by, " is not a number");
     detail::require_limits(limits, std::size_t(i), "with_limits_about",
                            detail::joint_name(chain, i));
     result.set_limits(i, limits);

@@ -34,20 +34,20 @@ public:
   [[nodiscard]] loop_constraint read() {
     loop_constraint result;
     result.line = line_;
-    result.kind = kind(word("a kind of loop"));
+    result.kind = kind(word("the type of constraint"));
     result.first = frame();
     result.second = frame();
     if (result.kind == constraint_kind::distance) {
-      if (word("\"length\" of the rod") != "length") {
-        fail("\"length\" of the rod expected, not \"" + std::string(words_[next_ - 1]) + "\"");
+      if (word("\"length\"") != "length") {
+        fail("\"length\" expected, not \"" + std::string(words_[next_ - 1]) + "\"");
       }
       result.length = number("length");
       if (!(result.length > 0)) {
-        fail("length is " + std::string(words_[next_ - 1]));
+        fail("length is " + std::string(words_[next_ - 1]) + " (expected > 0)");
       }
     }
     if (next_ < words_.size()) {
-      fail("\"" + std::string(words_[next_]) + "\" is too much");
+      fail("\"" + std::string(words_[next_]) + "\" is superfluous");
     }
     return result;
   }
@@ -98,23 +98,23 @@ private:
         names.emplace_back(others[std::size_t(i)]);
       }
     }
-    fail("no kind of loop is \"" + std::string(name) + "\": " + closest_names(name, names));
+    fail("unknown type of constraint \"" + std::string(name) + "\": " + closest_names(name, names));
   }
 
   [[nodiscard]] constraint_frame frame() {
-    constraint_frame result{std::string(word("a link")), {}};
+    constraint_frame result{std::string(word("the name of a link")), {}};
     const auto at = numbers("", result.link, {"x", "y", "z"});
     if (has("axis")) {
       const auto n = numbers("axis ", result.link, {"x", "y", "z"});
       if (!(std::hypot(n[0], n[1], n[2]) > 0)) {
-        fail("axis on \"" + result.link + "\" has no direction");
+        fail("the axis on \"" + result.link + "\" is zero");
       }
       result.offset = frame_with_z_axis(at, n);
     } else if (has("rpy")) {
       const auto rpy = numbers("", result.link, {"roll", "pitch", "yaw"});
       for (const double angle : rpy) {
         if (std::abs(angle) > 1e6) { // larger angles lose digits
-          fail("the angle " + to_text(angle) + " on \"" + result.link + "\" is beyond 1e6 radians");
+          fail("the angle " + to_text(angle) + " on \"" + result.link + "\" exceeds 1e6 radians");
         }
       }
       result.offset = {rotation_about_axis(2, rpy[2]) * rotation_about_axis(1, rpy[1]) *
@@ -154,7 +154,7 @@ private:
     }
   });
   if (result.loops.empty()) {
-    detail::raise(file_error(path, "no loops"));
+    detail::raise(file_error(path, "the file contains no loop-closure constraints"));
   }
   return result;
 }

@@ -22,7 +22,7 @@
 namespace duet {
 
 /// Options of the continuation of a `driven_motion`.
-struct loop_motion_options {
+struct driven_motion_options {
   double largest_step = .2; ///< maximum norm of a step: radians, or relative to `length()`
 };
 
@@ -48,7 +48,7 @@ public:
   /// independent, and for mechanisms that are only first-order flexible: they have such rates and
   /// do not move
   driven_motion(closed_chain_mechanism mechanism, const Eigen::VectorXd& q0,
-                std::vector<int> drives, const loop_motion_options& options = {});
+                std::vector<int> drives, const driven_motion_options& options = {});
 
   /// The mechanism.
   [[nodiscard]] const closed_chain_mechanism& mechanism() const { return mechanism_; }
@@ -71,8 +71,8 @@ public:
       using argument = detail::vector_argument<U>;
       using S = promote_t<double, typename argument::scalar>;
       const auto count = Eigen::Index(drives_.size());
-      detail::require(argument::size(u) == count, "duet: driven_motion: ", count, " drives, but ",
-                      argument::size(u), " numbers are given");
+      detail::require(argument::size(u) == count, "duet: driven_motion: ", argument::size(u),
+                      " numbers (expected ", count, ")");
       Eigen::VectorXd target(count);
       for (Eigen::Index i = 0; i < count; ++i) {
         target[i] = double(innermost(argument::get(u, i)));
@@ -128,7 +128,7 @@ private:
 
   closed_chain_mechanism mechanism_;
   std::vector<int> drives_, dependent_;
-  loop_motion_options options_;
+  driven_motion_options options_;
   Eigen::VectorXd start_;
   Eigen::MatrixXd solve_; ///< `solver` at the start
 };

@@ -15,30 +15,31 @@
 
 namespace duet {
 
-/// One of the configurations in which the loops close (an assembly mode if the drives are held).
+/// One of the configurations in which the loops close (an assembly mode if the driven coordinates
+/// are fixed).
 struct assembly_configuration {
   Eigen::VectorXd coordinates; ///< coordinates of the tree, angles within (−π, π]
   /// Smallest singular value of ∂F/∂q with respect to the free coordinates; 0 at a branch point.
   double smallest_singular_value = 0;
-  int found = 0;             ///< number of random starts that led to it
+  int hits = 0;              ///< number of random starts that led to it
   bool within_limits = true; ///< true if all coordinates are within the limits of their joints
 };
 
 /// Result of a search for assembly configurations.
 struct assembly_search_result {
   std::vector<assembly_configuration>
-      positions;  ///< assembly configurations, ordered by their first coordinates that differ
-  int starts = 0; ///< number of initial guesses
-  int closed = 0; ///< number of guesses from which the loops closed
+      positions;     ///< assembly configurations, ordered by their first coordinates that differ
+  int starts = 0;    ///< number of initial guesses
+  int converged = 0; ///< number of guesses that converged to closed loops
 
-  /// Good–Turing estimate of the probability that one more closed start finds a new
-  /// configuration: the fraction of closed starts whose configuration no other start found. No
+  /// Good–Turing estimate of the probability that one more converged start finds a new
+  /// configuration: the fraction of converged starts whose configuration no other start found. No
   /// proof that none is missing.
   [[nodiscard]] double missing_probability() const {
     const auto once =
         std::count_if(positions.begin(), positions.end(),
-                      [](const assembly_configuration& each) { return each.found == 1; });
-    return closed > 0 ? double(once) / closed : 1;
+                      [](const assembly_configuration& each) { return each.hits == 1; });
+    return converged > 0 ? double(once) / converged : 1;
   }
 };
 
@@ -53,7 +54,7 @@ struct assembly_search_options {
   int max_starts = 20000; ///< maximum number of guesses
 };
 
-/// Assembly configurations of a closed-chain mechanism with some coordinates held, from random
+/// Assembly configurations of a closed-chain mechanism with some coordinates fixed, from random
 /// initial guesses: within the limits of joints whose limits are finite, otherwise angles within
 /// (−π, π) and lengths within ±π `length()`. Each is accurate to round-off. The search cannot prove
 /// that it is complete, but estimates the probability that one more guess finds another

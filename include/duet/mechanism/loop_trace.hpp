@@ -41,20 +41,20 @@ struct motion_trace {
   std::vector<dead_point> dead_points;     ///< dead points of all coordinates, as met
   std::vector<branch_point> branch_points; ///< branch points, in the order they are met
   bool is_closed = false; ///< true if it returns to its start, or to the branch it turned off to
-  bool meets_branches =
+  bool stopped_early =
       false; ///< true if it ends where branches touch, or where it cannot be followed
 };
 
 /// Options of `trace`.
 struct trace_options {
   double largest_step = .1; ///< maximum norm of a step: radians, or relative to `length()`
-  double longest = 200;     ///< maximum length of the motion in these units, then the trace stops
+  double max_length = 200;  ///< maximum length of the motion in these units, then the trace stops
   /// Indices of the tangents `branch_point::tangents` to continue along from the first branch
   /// point, the second …; straight on from all others.
   std::vector<std::size_t> branches = {};
 };
 
-/// Traces the motion along one driven coordinate, the others held, by predictor–corrector
+/// Traces the motion along one driven coordinate, the others fixed, by predictor–corrector
 /// continuation: from its start through dead points until it returns. If it cannot be followed
 /// further, it is also traced from the start in the opposite direction, whose configurations come
 /// first. Joint limits are ignored.

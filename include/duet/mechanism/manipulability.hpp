@@ -122,7 +122,8 @@ template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
   using vector = detail::joint_vector<S, C::joints>;
   const auto [w, by_entries] = detail::volume_of<true>(detail::tall_jacobian(chain, theta, at));
   if (any(innermost(w) == 0)) {
-    detail::raise(invalid_input("duet: manipulability_gradient: the Jacobian loses rank here"));
+    detail::raise(invalid_input(
+        "duet: manipulability_gradient: the Jacobian is singular at this configuration"));
   }
   value_and_gradient<S, vector> result{w, vector(chain.size())};
   const auto h = kinematic_hessian(chain, theta, frame::hybrid, at);

@@ -15,31 +15,31 @@ namespace duet {
 
 /// Evidence for a mobility.
 enum class mobility_evidence {
-  full_rank,       ///< the equations are independent here: certain
-  no_rates,        ///< no rates fulfil the equations: rigid, certain
-  no_acceleration, ///< no rates that fulfil the equations have an acceleration: rigid, certain
-  nearby_positions ///< configurations nearby were searched for
+  full_rank,          ///< the equations are independent here: certain
+  first_order_rigid,  ///< no rates fulfil the equations: rigid, certain
+  second_order_rigid, ///< no rates that fulfil the equations have an acceleration: rigid, certain
+  sampled             ///< configurations nearby were searched for
 };
 
 /// Mobility of a mechanism, and the results of simpler counts.
 struct mobility_result {
-  int mobility = 0;    ///< degrees of freedom: local dimension of the configuration space
-  int counted = 0;     ///< coordinates − equations, the Grübler–Kutzbach count
-  int first_order = 0; ///< coordinates − rank of ∂F/∂q here: number of independent rates
-  int nearby = 0;      ///< coordinates − rank of ∂F/∂q at configurations nearby
+  int mobility = 0;      ///< degrees of freedom: local dimension of the configuration space
+  int kutzbach = 0;      ///< coordinates − equations, the Grübler–Kutzbach count
+  int instantaneous = 0; ///< coordinates − rank of ∂F/∂q here: number of independent rates
+  int local = 0;         ///< coordinates − rank of ∂F/∂q at configurations nearby
   mobility_evidence evidence = mobility_evidence::full_rank; ///< evidence for `mobility`
 
   /// True if the count of coordinates and equations differs from the mobility.
-  [[nodiscard]] bool is_miscounted() const { return counted != mobility; }
+  [[nodiscard]] bool count_is_wrong() const { return kutzbach != mobility; }
   /// True if some rates do not move the mechanism: it is first-order flexible ("shaky"), or several
   /// motions meet here.
-  [[nodiscard]] bool is_singular() const { return first_order != mobility; }
+  [[nodiscard]] bool is_singular() const { return instantaneous != mobility; }
 };
 
 /// `mobility 1: counted -2, first order 1 here, 1 nearby`
 [[nodiscard]] inline std::string to_text(const mobility_result& m) {
-  return "mobility " + std::to_string(m.mobility) + ": counted " + std::to_string(m.counted) +
-         ", first order " + std::to_string(m.first_order) + " here, " + std::to_string(m.nearby) +
+  return "mobility " + std::to_string(m.mobility) + ": counted " + std::to_string(m.kutzbach) +
+         ", first order " + std::to_string(m.instantaneous) + " here, " + std::to_string(m.local) +
          " nearby";
 }
 

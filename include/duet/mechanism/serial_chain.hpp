@@ -69,8 +69,9 @@ struct poses_of {
 template <int N, class T = double>
 class serial_chain : public detail::poses_of<serial_chain<N, T>> {
   static_assert(N != 0, "duet: serial_chain<N> needs its number of joints, or -capacity");
-  static_assert(!Infinitesimal<T>, "duet: serial_chain: a table holds real numbers, what has "
-                                   "derivatives are the coordinates: pose(theta)");
+  static_assert(
+      !Infinitesimal<T>,
+      "duet: serial_chain: the table is real, only coordinates have derivatives: pose(theta)");
 
 public:
   using scalar_type = T;
@@ -91,12 +92,13 @@ public:
     for (std::size_t i = 0; i < input.size(); ++i) {
       detail::require_joint(input[i], i);
       if (input[i].coordinates() > 1) {
-        detail::bad_joint(i, "has several coordinates, which joints of a kinematic_tree may have");
+        detail::bad_joint(i, "it has several coordinates (use a kinematic_tree)");
       }
       carried = carried * input[i].origin;
       if (input[i].kind != joint_kind::fixed) {
         if (size_ == int(capacity)) {
-          detail::bad_joint(i, "the chain has room for " + std::to_string(capacity));
+          detail::bad_joint(i, "the chain has capacity for " + std::to_string(capacity) +
+                                   " moving joints");
         }
         frames_[std::size_t(size_)] = link_frames.empty() ? placement<T>{} : link_frames[i];
         add(input[i], carried);
@@ -104,8 +106,9 @@ public:
       }
     }
     if (N > 0 && size_ != N) {
-      detail::raise(invalid_input("duet: serial_chain<" + std::to_string(N) + ">: only " +
-                                  std::to_string(size_) + " joints move"));
+      detail::raise(invalid_input("duet: serial_chain<" + std::to_string(N) +
+                                  ">: " + std::to_string(size_) + " moving joints (expected " +
+                                  std::to_string(N) + ")"));
     }
     tip_ = {size_, carried * tool};
   }
@@ -134,8 +137,9 @@ public:
   /// \throws invalid_input for i outside 0 … size()
   [[nodiscard]] constexpr attached_frame<T> link(int i) const {
     if (i < 0 || i > size_) {
-      detail::raise(invalid_input("duet: serial_chain: no link " + std::to_string(i) +
-                                  " in a chain of " + std::to_string(size_) + " joints"));
+      detail::raise(invalid_input("duet: serial_chain: link " + std::to_string(i) +
+                                  " does not exist, the chain has " + std::to_string(size_) +
+                                  " joints"));
     }
     return {i, i == 0 ? placement<T>{} : frames_[std::size_t(i - 1)]};
   }

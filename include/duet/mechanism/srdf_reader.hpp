@@ -19,7 +19,7 @@ namespace duet::detail {
     raise(file_error(path, in.line, what));
   };
   if (robot.name != "robot") {
-    fail(robot, "the root is <" + robot.name + ">, not <robot>");
+    fail(robot, "the root is <" + robot.name + "> (expected <robot>)");
   }
   std::vector<link_pair> result;
   for (const xml_element& each : robot.children) {
@@ -40,7 +40,7 @@ namespace duet::detail {
         fail(each, std::string("<disable_collisions>: no attribute \"") + key + "\"");
       }
       if (each.attribute(key)->empty()) {
-        fail(each, std::string("<disable_collisions>: ") + key + "=\"\" names no link");
+        fail(each, std::string("<disable_collisions>: ") + key + "=\"\" is empty");
       }
     }
     if (*each.attribute("link1") == *each.attribute("link2")) {

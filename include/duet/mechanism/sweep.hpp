@@ -91,8 +91,8 @@ void sweep(const char* function, const C& chain, std::span<const X> configuratio
   for (std::size_t i = 0; i < configurations.size(); ++i) {
     if (argument::size(configurations[i]) != chain.size()) {
       raise(invalid_input(message("duet: ", function, ": configuration ", i, " has ",
-                                  argument::size(configurations[i]), " coordinates, but ",
-                                  chain.size(), " joints move")));
+                                  argument::size(configurations[i]), " coordinates (expected ",
+                                  chain.size(), ")")));
     }
   }
   parallel_for_blocks(

@@ -53,7 +53,7 @@ private:
       }
     }
     if (robot_.links.empty()) {
-      bad_robot(robot_, "there are no links");
+      bad_robot(robot_, "the description has no links");
     }
   }
 
@@ -82,7 +82,7 @@ private:
       int& above = above_[link_of(joint, joint.child)];
       if (above >= 0) {
         bad_part(robot_, joint,
-                 "the link \"" + joint.child + "\" has a joint above it already, \"" +
+                 "the link \"" + joint.child + "\" already has the parent joint \"" +
                      joint_at(above).name + "\"");
       }
       above = int(j);
@@ -95,8 +95,7 @@ private:
     for (std::size_t i = 0; i < above_.size(); ++i) {
       if (above_[i] < 0 && !links.empty()) {
         bad_part(robot_, robot_.links[i],
-                 "no joint is above it, and none above \"" + robot_.links[links[0]].name +
-                     "\": a tree has one root");
+                 "it is a second root, the first is \"" + robot_.links[links[0]].name + "\"");
       }
       if (above_[i] < 0) {
         links.push_back(i);
@@ -119,7 +118,7 @@ private:
         i = std::size_t(table_.link_numbers.at(joint_at(above_[i]).parent));
       }
       bad_part(robot_, joint_at(above_[i]),
-               "closes a cycle at the link \"" + robot_.links[i].name + "\"");
+               "it closes a cycle at the link \"" + robot_.links[i].name + "\"");
     }
   }
 
@@ -157,7 +156,7 @@ private:
       while (joint_at(j).mimic && joint_at(j).motion.kind != joint_kind::fixed &&
              source_of(j).own < 0) {
         if (is_open[std::size_t(j)] != 0) {
-          bad_part(robot_, joint_at(j), "follows itself");
+          bad_part(robot_, joint_at(j), "it mimics itself");
         }
         is_open[std::size_t(j)] = 1;
         open.push_back(j);
@@ -181,18 +180,18 @@ private:
         names.push_back(each.name);
       }
       bad_part(robot_, joint,
-               "it follows no joint \"" + joint.mimic->joint +
+               "it mimics no joint \"" + joint.mimic->joint +
                    "\": " + closest_names(joint.mimic->joint, names));
     }
     for (const tree_joint* each : {&joint, &joint_at(found->second)}) {
       if (each->motion.coordinates() != 1) {
         bad_part(robot_, joint,
-                 "follows \"" + joint.mimic->joint + "\", but \"" + each->name + "\" has " +
-                     std::to_string(each->motion.coordinates()) + " coordinates, not one");
+                 "it mimics \"" + joint.mimic->joint + "\", but \"" + each->name + "\" has " +
+                     std::to_string(each->motion.coordinates()) + " coordinates (expected 1)");
       }
     }
     if (!std::isfinite(joint.mimic->multiplier) || !std::isfinite(joint.mimic->offset)) {
-      bad_part(robot_, joint, "the multiplier or the offset by which it follows is not finite");
+      bad_part(robot_, joint, "the multiplier or the offset of its mimic is not finite");
     }
     return found->second;
   }
@@ -215,8 +214,8 @@ private:
     }
     if (!is_possible) {
       bad_part(robot_, joint,
-               "no motion of \"" + by.joint + "\" is within its limits, " + to_text(range.lower) +
-                   " to " + to_text(range.upper));
+               "no coordinate of \"" + by.joint + "\" satisfies its limits " +
+                   to_text(range.lower) + " to " + to_text(range.upper));
     }
   }
 
@@ -241,7 +240,8 @@ private:
     for (std::size_t i = 0; i < robot_.links.size(); ++i) {
       if (const auto& inertia = robot_.links[i].inertia) {
         if (!(inertia->mass >= 0 && std::isfinite(inertia->mass))) {
-          bad_part(robot_, robot_.links[i], "its mass is " + to_text(inertia->mass));
+          bad_part(robot_, robot_.links[i],
+                   "the mass is " + to_text(inertia->mass) + " (expected >= 0)");
         }
         const frame_on_node& frame = table_.links[i];
         mass_on_node& sum = table_.masses[std::size_t(frame.node + 1)];

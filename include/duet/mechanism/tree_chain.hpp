@@ -55,7 +55,7 @@ template <class Joints, class Pass, class Fail>
       path.push_back(joint->second);
       link = joints[joint->second].parent;
       if (!seen.insert(link).second) {
-        fail(joint->second, "closes a cycle at the link \"" + std::string(link) + "\"");
+        fail(joint->second, "it closes a cycle at the link \"" + std::string(link) + "\"");
       }
     }
     return link;
@@ -72,8 +72,8 @@ template <class Joints, class Pass, class Fail>
         climb(base, result.up, [&](std::string_view link) { return above_tip.contains(link); });
     const auto found = above_tip.find(meeting);
     if (found == above_tip.end()) {
-      fail("no joints connect the links \"" + base + "\" and \"" + tip + "\": above \"" +
-           std::string(top) + "\" there is none");
+      fail("no joints connect the links \"" + base + "\" and \"" + tip + "\": \"" +
+           std::string(top) + "\" has no parent joint");
     }
     result.down.resize(found->second);
   }
@@ -131,11 +131,11 @@ template <class JointAt>
 /// Reason why a joint cannot be one of a chain; empty if it can.
 [[nodiscard]] inline std::string not_in_a_chain(const tree_joint& joint) {
   if (joint.motion.coordinates() > 1) {
-    return "has " + std::to_string(joint.motion.coordinates()) +
-           " coordinates: that takes a kinematic_tree, not a chain";
+    return "it has " + std::to_string(joint.motion.coordinates()) +
+           " coordinates (use a kinematic_tree)";
   }
   return joint.mimic && joint.motion.kind != joint_kind::fixed
-             ? "follows \"" + joint.mimic->joint + "\": that takes a kinematic_tree, not a chain"
+             ? "it mimics \"" + joint.mimic->joint + "\" (use a kinematic_tree)"
              : "";
 }
 

@@ -254,11 +254,10 @@ template <VectorLike X, FrameConstant Frame, FrameOnTree At>
 }
 
 template <VectorLike X>
-DUET_REFUSED(
-    "of which frame, and in which axes? jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
+DUET_REFUSED("name the frame and the axes: jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
 Eigen::MatrixXd jacobian(const kinematic_tree&, const X&);
 template <VectorLike X, FrameConstant Frame>
-DUET_REFUSED("of which frame? jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
+DUET_REFUSED("name the frame: jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
 Eigen::MatrixXd jacobian(const kinematic_tree&, const X&, Frame);
 
 } // namespace duet

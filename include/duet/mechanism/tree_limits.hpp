@@ -30,8 +30,8 @@ template <class Which>
                                          const joint_limits<double>& limits) {
   int i = 0;
   if constexpr (std::integral<Which>) {
-    detail::require(0 <= which && which < tree.size(), "duet: with_limits: no coordinate ", which,
-                    " of ", tree.size());
+    detail::require(0 <= which && which < tree.size(), "duet: with_limits: coordinate ", which,
+                    " does not exist, the tree has ", tree.size());
     i = int(which);
   } else {
     i = tree.coordinate(which);

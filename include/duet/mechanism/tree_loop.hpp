@@ -70,7 +70,8 @@ struct loop_constraints {
   const auto n = detail::components(direction);
   const double scale = std::max({std::abs(n.x), std::abs(n.y), std::abs(n.z)});
   detail::require(scale > 0 && n.x - n.x == 0 && n.y - n.y == 0 && n.z - n.z == 0,
-                  "duet: frame_with_z_axis: (", n.x, ", ", n.y, ", ", n.z, ") is no direction");
+                  "duet: frame_with_z_axis: the direction (", n.x, ", ", n.y, ", ", n.z,
+                  ") is zero or not finite");
   const double x = n.x / scale, y = n.y / scale, z = n.z / scale;
   const double length = std::hypot(x, y, z);
   return {detail::rotation_from_z({x / length, y / length, z / length}), point};

@@ -36,8 +36,9 @@ using tree_scalar = promote_t<double, typename vector_argument<X>::scalar>;
 template <class X>
 void require_size(const tree_table& table, const X& q) {
   const auto size = Eigen::Index(table.names.size());
-  require(vector_argument<X>::size(q) == size, "duet: a tree of ", size, " coordinates, but ",
-          vector_argument<X>::size(q), " are given");
+  require(vector_argument<X>::size(q) == size,
+          "duet: kinematic_tree: ", vector_argument<X>::size(q), " coordinates (expected ", size,
+          ")");
 }
 
 /// Joint coordinates as functions of those of the tree.

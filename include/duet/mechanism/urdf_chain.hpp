@@ -60,9 +60,8 @@ public:
       for (const urdf_link& each : links_) {
         names.push_back(each.name);
       }
-      detail::raise(
-          invalid_input(printable("duet: no link \"" + std::string(name) +
-                                  "\" in the chain: " + detail::closest_names(name, names))));
+      detail::raise(invalid_input(printable("duet: urdf_chain: no link \"" + std::string(name) +
+                                            "\": " + detail::closest_names(name, names))));
     }
     return found->frame;
   }

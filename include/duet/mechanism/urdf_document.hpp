@@ -74,7 +74,7 @@ public:
   urdf_document(std::string path, xml_element robot)
       : path_(std::move(path)), robot_(std::move(robot)) {
     if (robot_.name != "robot") {
-      fail(robot_.line, "the root is <" + robot_.name + ">, not <robot>");
+      fail(robot_.line, "the root is <" + robot_.name + "> (expected <robot>)");
     }
     check(robot_);
   }
@@ -170,7 +170,7 @@ private:
     if (!value || !(std::abs(*value) <= limit)) {
       fail(context,
            std::string(key) + "=\"" + text +
-               (limit > max_number ? "\" is not a finite number" : "\" is no number up to 1e6"));
+               (limit > max_number ? "\" is not a finite number" : "\" is not a number up to 1e6"));
     }
     return *value;
   }
@@ -203,7 +203,7 @@ private:
           element.name == "robot" || each.name == "visual" || each.name == "collision";
       if (const xml_element* first = is_one_of_many ? &each : element.child(each.name);
           first != &each) {
-        fail(context, "is there twice, first in line " + std::to_string(first->line));
+        fail(context, "it is repeated, first in line " + std::to_string(first->line));
       }
       check(each, context.owner);
     }

@@ -136,9 +136,9 @@ private:
       const double magnitude = std::max(std::abs(result[i]), std::abs(other));
       if (!(std::abs(result[i] / 2 - other / 2) <= 1e-6 * (magnitude / 2))) { // few digits, maybe
         document_.fail(context, std::string(below[i]) + "=\"" +
-                                    document_.attribute(context, below[i]) + "\" is not " +
+                                    document_.attribute(context, below[i]) + "\" differs from " +
                                     keys[i] + "=\"" + document_.attribute(context, keys[i]) +
-                                    "\": the matrix of inertia must be symmetric");
+                                    "\" (expected a symmetric matrix)");
       }
     }
     return result;
@@ -170,7 +170,8 @@ private:
         result.axis = document_.numbers({*axis, &element}, "xyz", result.axis);
         const double length = std::hypot(result.axis[0], result.axis[1], result.axis[2]);
         if (!is_nearly_one(length * length)) {
-          document_.fail({*axis, &element}, "length " + to_text(length) + ", not 1");
+          document_.fail({*axis, &element},
+                         "the axis has length " + to_text(length) + " (expected 1)");
         }
       }
       if (result.coordinates() == 1) { // the format defines no limits for several coordinates
@@ -201,7 +202,7 @@ private:
     const std::string& name = document_.attribute({element}, "name");
     if (const auto [first, is_new] = to.emplace(name, &element); !is_new) {
       document_.fail({element},
-                     "is there twice, first in line " + std::to_string(first->second->line));
+                     "it is repeated, first in line " + std::to_string(first->second->line));
     }
     return name;
   }
@@ -217,7 +218,7 @@ private:
     }
     if (const auto [first, is_new] = joint_above_.emplace(child(element), &element); !is_new) {
       document_.fail({element}, "the link \"" + child(element) +
-                                    "\" has a joint above it already, \"" + name(*first->second) +
+                                    "\" already has the parent joint \"" + name(*first->second) +
                                     "\" of line " + std::to_string(first->second->line));
     }
     elements_.push_back(&element);
@@ -236,9 +237,9 @@ private:
         return meant;
       }
     }
-    document_.fail({element}, "type \"" + type +
-                                  "\" is none of revolute, continuous, prismatic, "
-                                  "fixed, planar and floating");
+    document_.fail({element}, "unknown type \"" + type +
+                                  "\" (expected revolute, continuous, prismatic, "
+                                  "fixed, planar or floating)");
   }
 
   /// Limits of `<limit>`, narrowed by the soft limits of `<safety_controller>`.
@@ -248,8 +249,8 @@ private:
     const xml_element* const limit = element.child("limit");
     if (limit == nullptr) {
       if (is_bounded) {
-        document_.fail({element}, "no element <limit>, which a " + *element.attribute("type") +
-                                      " joint must have");
+        document_.fail({element}, "no element <limit> (required for a " +
+                                      *element.attribute("type") + " joint)");
       }
       return result;
     }
@@ -274,7 +275,8 @@ private:
       result.upper = std::min(result.upper,
                               document_.limit(soft_context, "soft_upper_limit", result.upper, 1));
       if (result.lower > result.upper) {
-        document_.fail(soft_context, "no motion is within its limits and those of <limit>");
+        document_.fail(soft_context,
+                       "the soft limits contain no coordinate within those of <limit>");
       }
     }
     return result;

@@ -49,7 +49,7 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
   }
   if (geometry->children.size() != 1) {
     document.fail({*geometry, &link},
-                  "has " + std::to_string(geometry->children.size()) + " shapes in place of one");
+                  "it has " + std::to_string(geometry->children.size()) + " shapes (expected 1)");
   }
   collision_shape result{read_origin(document, collision, link), {}, collision.line};
   const xml_element& shape = geometry->children.front();
@@ -58,7 +58,7 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
   if (shape.name == "box") {
     (void)document.attribute(context, "size");
     if (document.numbers(context, "scale", {1, 1, 1}) != std::array<double, 3>{1, 1, 1}) {
-      document.fail(context, "has a scale, which is for meshes");
+      document.fail(context, "scale is valid for meshes only");
     }
     const collision_box box{document.numbers(context, "size", {})};
     if (box.size[0] < 0 || box.size[1] < 0 || box.size[2] < 0) {
@@ -75,7 +75,8 @@ read_shape(const urdf_document& document, const xml_element& collision, const xm
     result.geometry = collision_mesh{document.attribute(context, "filename"),
                                      document.numbers(context, "scale", {1, 1, 1})};
   } else {
-    document.fail(context, "is none of the shapes box, cylinder, capsule, sphere and mesh");
+    document.fail(context,
+                  "the shape is unknown (expected box, cylinder, capsule, sphere or mesh)");
   }
   return result;
 }

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: with_locked_joint: no joint would be left to move
+// expect: duet: with_locked_joint: the only moving joint cannot be locked
 
 #include <duet/mechanism/adapted.hpp>
 

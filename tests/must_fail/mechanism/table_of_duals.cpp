@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: serial_chain: a table holds real numbers
+// expect: duet: serial_chain: the table is real
 
 #include <duet/dual/dual.hpp>
 #include <duet/mechanism/serial_chain.hpp>

@@ -39,14 +39,14 @@ public:
     assembly_search_result result;
     random_source random(options.seed);
     const auto is_enough = [&] {
-      const double chance = result.missing_probability() + 1. / std::max(1, result.closed);
+      const double chance = result.missing_probability() + 1. / std::max(1, result.converged);
       return result.starts >= options.random_starts &&
              (result.starts >= options.max_starts || chance <= options.missing_probability);
     };
     for (; !is_enough(); ++result.starts) {
       const loop_closure_solver solver(of_, guess(random), free_, 100);
       if (solver.has_closed()) {
-        ++result.closed;
+        ++result.converged;
         add(result, wrapped(solver.coordinates()));
       }
     }
@@ -115,7 +115,7 @@ private:
     const auto poses = link_poses(q);
     for (std::size_t i = 0; i < known_poses_.size(); ++i) {
       if (are_same(poses, known_poses_[i])) {
-        ++result.positions[i].found;
+        ++result.positions[i].hits;
         return;
       }
     }
@@ -156,9 +156,10 @@ DUET_COMPILED_FUNCTION assembly_search_result
 find_assembly_configurations(const closed_chain_mechanism& mechanism, const std::vector<int>& fixed,
                              const Eigen::VectorXd& at, const assembly_search_options& options) {
   detail::require(Eigen::Index(fixed.size()) == at.size(),
-                  "duet: find_assembly_configurations: ", fixed.size(),
-                  " coordinates are held, but ", at.size(), " numbers given");
-  detail::require(at.allFinite(), "duet: find_assembly_configurations: coordinates are not finite");
+                  "duet: find_assembly_configurations: ", at.size(), " values for ", fixed.size(),
+                  " fixed coordinates");
+  detail::require(at.allFinite(),
+                  "duet: find_assembly_configurations: the fixed coordinates are not finite");
   Eigen::VectorXd q = Eigen::VectorXd::Zero(mechanism.size());
   static_cast<void>(detail::all_but(mechanism.size(), fixed));
   for (std::size_t i = 0; i < fixed.size(); ++i) {

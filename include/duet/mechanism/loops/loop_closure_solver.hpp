@@ -20,7 +20,8 @@ namespace duet::detail {
 [[nodiscard]] inline std::vector<int> all_but(int n, const std::vector<int>& these) {
   std::vector<int> result;
   for (const int i : these) {
-    require(0 <= i && i < n, "duet: closed_chain_mechanism: no coordinate ", i, " of ", n);
+    require(0 <= i && i < n, "duet: closed_chain_mechanism: coordinate ", i,
+            " does not exist, the mechanism has ", n);
   }
   for (int i = 0; i < n; ++i) {
     if (std::find(these.begin(), these.end(), i) == these.end()) {

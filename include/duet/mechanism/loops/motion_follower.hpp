@@ -49,14 +49,14 @@ namespace detail {
 #ifdef DUET_DEFINES_COMPILED
 DUET_COMPILED_FUNCTION
 driven_motion::driven_motion(closed_chain_mechanism mechanism, const Eigen::VectorXd& q0,
-                             std::vector<int> drives, const loop_motion_options& options)
+                             std::vector<int> drives, const driven_motion_options& options)
     : mechanism_(std::move(mechanism)), drives_(std::move(drives)),
       dependent_(detail::all_but(mechanism_.size(), drives_)), options_(options),
-      start_(mechanism_.closed(q0, drives_)), solve_(solver(start_)) {
+      start_(mechanism_.assemble(q0, drives_)), solve_(solver(start_)) {
   const detail::rank_revealing_svd all = detail::linearised(mechanism_, start_);
   const Eigen::Index free = mechanism_.size() - all.rank();
   detail::require(free == Eigen::Index(drives_.size()), "duet: driven_motion: ", drives_.size(),
-                  " drives, but the loops leave ", free, " independent rates");
+                  " driven coordinates, but the loops leave ", free, " independent rates");
   require_accelerations();
 }
 
@@ -72,7 +72,7 @@ DUET_COMPILED_FUNCTION Eigen::MatrixXd driven_motion::solver(const Eigen::Vector
   const Eigen::MatrixXd j = detail::columns(detail::unit_jacobian(mechanism_, q), dependent_);
   const detail::rank_revealing_svd svd(j);
   detail::require(svd.rank() == j.cols(), "duet: driven_motion: ", driven(),
-                  " does not determine the rates of the other coordinates: a dead point");
+                  " does not determine the rates of the other coordinates (dead point)");
   Eigen::MatrixXd result(j.cols(), j.rows());
   for (Eigen::Index i = 0; i < j.rows(); ++i) {
     result.col(i) = svd.solve(Eigen::VectorXd::Unit(j.rows(), i), j.cols())
@@ -100,7 +100,7 @@ DUET_COMPILED_FUNCTION void driven_motion::require_accelerations() const {
     detail::require(residual <= 1e-7 * max_derivative * max_derivative,
                     "duet: driven_motion: a rate of ",
                     mechanism_.tree().coordinate_names()[std::size_t(drive)],
-                    " fulfils the equations, but has no acceleration: it does not move so");
+                    " satisfies the equations to first order only: the mechanism does not move");
   }
 }
 
@@ -124,15 +124,15 @@ DUET_COMPILED_FUNCTION std::string driven_motion::text(const Eigen::VectorXd& q)
   const Eigen::VectorXd u = detail::entries(q, drives_);
   Eigen::VectorXd to = q;
   detail::put(target, drives_, to);
-  detail::raise(loop_closure_failure("duet: driven_motion: cannot close beyond " + driven() +
-                                         " = " + text(q) + " on the way from " + text(start_) +
-                                         " to " + text(to) + ": " + what,
+  detail::raise(loop_closure_failure("duet: driven_motion: the loops do not close beyond " +
+                                         driven() + " = " + text(q) + " on the line from " +
+                                         text(start_) + " to " + text(to) + ": " + what,
                                      {u.begin(), u.end()}));
 }
 
 DUET_COMPILED_FUNCTION Eigen::VectorXd
 driven_motion::followed(const Eigen::VectorXd& target) const {
-  detail::require(target.allFinite(), "duet: driven_motion: drives are not finite");
+  detail::require(target.allFinite(), "duet: driven_motion: the driven coordinates are not finite");
   const Eigen::VectorXd units = mechanism_.units();
   const Eigen::VectorXd displacement =
       (target - detail::entries(start_, drives_)).cwiseQuotient(detail::entries(units, drives_));
@@ -145,7 +145,7 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
   auto current = *curve.start(1); // its tangent is defined: drives determine all rates
   const auto require_step = [&](double step) {
     if (step < min_step) {
-      fail("no step leads on, branches touch or coordinates are singular",
+      fail("continuation fails, branches touch or coordinates are singular",
            curve.coordinates(current.x), target);
     }
   };
@@ -169,7 +169,7 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
           }
         }
         if (current.s() >= length || current.s_rate() <= 0) {
-          fail("a dead point where branches meet", curve.coordinates(met->x), target);
+          fail("dead point at a branch point", curve.coordinates(met->x), target);
         }
         continue;
       }
@@ -190,8 +190,8 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
       }
     }
     if (next->s_rate() <= 0 && (to.end.s() < length || step < min_step)) {
-      fail("a dead point, " + detail::moving_coordinates(mechanism_, curve.rates(to.end.tangent)) +
-               " move on",
+      fail("dead point, " + detail::moving_coordinates(mechanism_, curve.rates(to.end.tangent)) +
+               " still move",
            curve.coordinates(to.end.x), target);
     }
     if (to.end.s() >= length) {

@@ -95,30 +95,30 @@ DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& me
   const detail::rank_revealing_svd at_start = detail::linearised(mechanism, q);
   const int n = mechanism.size();
   mobility_result result;
-  result.counted = n - mechanism.equations();
-  result.first_order = n - int(at_start.rank());
-  result.mobility = result.nearby = result.first_order;
-  if (at_start.rank() == mechanism.equations()) {
+  result.kutzbach = n - mechanism.equation_count();
+  result.instantaneous = n - int(at_start.rank());
+  result.mobility = result.local = result.instantaneous;
+  if (at_start.rank() == mechanism.equation_count()) {
     return result;
   }
-  if (result.first_order == 0) {
-    result.evidence = mobility_evidence::no_rates;
+  if (result.instantaneous == 0) {
+    result.evidence = mobility_evidence::first_order_rigid;
     return result;
   }
   detail::neighbourhood around(mechanism);
   result.mobility = 0;
   if (!around.has_acceleration(q, at_start)) {
-    result.evidence = mobility_evidence::no_acceleration;
+    result.evidence = mobility_evidence::second_order_rigid;
     return result;
   }
-  result.evidence = mobility_evidence::nearby_positions;
+  result.evidence = mobility_evidence::sampled;
   for (int attempt = 0; attempt < 8; ++attempt) {
     if (const auto other = around.position(q, at_start.kernel(), .05)) {
       const detail::rank_revealing_svd at_other = detail::linearised(mechanism, *other);
       const int dimension = around.dimension(*other, at_other.kernel());
       if (dimension > result.mobility) {
         result.mobility = dimension;
-        result.nearby = n - int(at_other.rank());
+        result.local = n - int(at_other.rank());
       }
     }
   }

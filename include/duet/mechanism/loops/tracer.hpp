@@ -87,7 +87,7 @@ private:
     curve_point current = *curve_.start(direction);
     closure_test closure(of_, curve_, current);
     double done = 0;
-    for (double step = options_.largest_step; step > 1e-7 && done < options_.longest;) {
+    for (double step = options_.largest_step; step > 1e-7 && done < options_.max_length;) {
       auto next = curve_.advance(current, step);
       bool changes_branch = false;
       if (next) {
@@ -113,7 +113,7 @@ private:
       done += step;
       step = std::min(options_.largest_step, 2 * step);
     }
-    result_.meets_branches |= done < options_.longest;
+    result_.stopped_early |= done < options_.max_length;
     return positions;
   }
 
@@ -149,8 +149,8 @@ private:
     }
     const std::size_t met = result_.branch_points.size();
     at.chosen = met < options_.branches.size() ? options_.branches[met] : 0;
-    require(at.chosen < at.tangents.size(), "duet: trace: no branch ", at.chosen, " of ",
-            at.tangents.size(), " from branch point ", met);
+    require(at.chosen < at.tangents.size(), "duet: trace: branch ", at.chosen,
+            " does not exist, branch point ", met, " has ", at.tangents.size());
     result_.branch_points.push_back(at);
     const curve_point& to = crossing->points[at.chosen];
     const Eigen::VectorXd before = curve_.rates(from.tangent), after = curve_.rates(to.tangent);
@@ -175,7 +175,8 @@ private:
 DUET_COMPILED_FUNCTION motion_trace trace(const driven_motion& motion, int drive,
                                           const trace_options& options) {
   const auto count = int(motion.drives().size());
-  detail::require(0 <= drive && drive < count, "duet: trace: no drive ", drive, " of ", count);
+  detail::require(0 <= drive && drive < count, "duet: trace: driven coordinate ", drive,
+                  " does not exist, the motion has ", count);
   return detail::tracer(motion, drive, options).run();
 }
 #endif

@@ -42,7 +42,8 @@ DUET_COMPILED_FUNCTION closed_chain_mechanism::closed_chain_mechanism(kinematic_
     }
     if (loop.kind == constraint_kind::distance &&
         !(loop.length > 0 && std::isfinite(loop.length))) {
-      detail::bad_loop(constraints_, i, "its length is " + to_text(loop.length));
+      detail::bad_loop(constraints_, i,
+                       "the length is " + to_text(loop.length) + " (expected > 0)");
     }
     rows_ += equations_.back().size();
   }
@@ -58,14 +59,16 @@ closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
 }
 
 DUET_COMPILED_FUNCTION Eigen::VectorXd
-closed_chain_mechanism::closed(const Eigen::VectorXd& guess, const std::vector<int>& fixed) const {
-  detail::require(guess.allFinite(), "duet: closed_chain_mechanism: the guess is not finite");
+closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
+                                 const std::vector<int>& fixed) const {
+  detail::require(guess.allFinite(),
+                  "duet: closed_chain_mechanism: the initial guess is not finite");
   const detail::loop_closure_solver solver(*this, guess, detail::all_but(size(), fixed));
   if (!solver.has_closed()) {
-    detail::raise(
-        loop_closure_failure("duet: closed_chain_mechanism: no position near the guess: residual " +
-                                 to_text(solver.residual()),
-                             {guess.begin(), guess.end()}));
+    detail::raise(loop_closure_failure(
+        "duet: closed_chain_mechanism: no configuration near the initial guess, residual " +
+            to_text(solver.residual()),
+        {guess.begin(), guess.end()}));
   }
   return solver.coordinates();
 }
@@ -101,7 +104,7 @@ closed_chain_mechanism::frame(std::size_t i, const constraint_frame& at) const {
   }
   const auto& [r, t] = at.offset;
   if (!std::isfinite(t[0] + t[1] + t[2]) || !std::isfinite(squared_norm(r))) {
-    detail::bad_loop(constraints_, i, "its frame on \"" + at.link + "\" is not finite");
+    detail::bad_loop(constraints_, i, "the frame on \"" + at.link + "\" is not finite");
   }
   return {link->second, at.offset};
 }

@@ -33,7 +33,7 @@ DUET_COMPILED_FUNCTION triangle_mesh read_mesh(const std::string& path) {
     result.vertices = detail::triangle_file(path, max_megabytes).read(ending);
   }
   if (result.vertices.empty()) {
-    detail::raise(file_error(path, "has no triangles"));
+    detail::raise(file_error(path, "the file contains no triangles"));
   }
   return result;
 }

@@ -35,7 +35,7 @@ public:
     if (ending == ".obj") {
       read_obj();
     } else if (ending != ".stl") {
-      fail("is none of .stl, .obj and .dae");
+      fail("the format is unknown (expected .stl, .obj or .dae)");
     } else if (is_binary_stl()) {
       read_binary_stl();
     } else {
@@ -99,7 +99,7 @@ private:
           x[i] = double(bit_cast<float>(word(at + 12 * (vertex + 1) + 4 * i)));
           if (!std::isfinite(x[i])) {
             fail("triangle " + std::to_string((at - head) / bytes_of_triangle) +
-                 " has a corner that is not finite");
+                 " has a vertex that is not finite");
           }
         }
         triangles_.push_back(x);
@@ -109,8 +109,8 @@ private:
 
   void read_text_stl() {
     if (!next_line() || words_[0] != "solid") {
-      fail("is no STL: neither does it begin with \"solid\", nor has it the length of a binary "
-           "file with as many triangles as it says");
+      fail("the file is not STL: it neither begins with \"solid\" nor has the length of a binary "
+           "file with its number of triangles");
     }
     bool is_open = true;
     while (next_line()) {
@@ -167,7 +167,7 @@ private:
         vertices.push_back(point_of_line());
       } else if (words_[0] == "f") {
         if (words_.size() < 4) {
-          fail_of_line("a face has three corners or more");
+          fail_of_line("a face of three or more vertices expected");
         }
         std::vector<point> face;
         for (std::size_t i = 1; i < words_.size(); ++i) {
@@ -192,14 +192,14 @@ private:
     const double n = double(count), k = integer(text.substr(0, slash));
     if (!(k != 0 && -n <= k && k <= n)) {
       fail_at(text,
-              quoted(text) + " is no corner of the " + std::to_string(count) + " vertices before");
+              quoted(text) + " is not one of the " + std::to_string(count) + " vertices before it");
     }
     int others = 0; // of the texture, of the normal
     for (std::size_t at = slash, end; at < text.size(); at = end) {
       end = std::min(text.find('/', at + 1), text.size());
       const std::string_view other = text.substr(at + 1, end - at - 1);
       if (++others > 2 || (!other.empty() && integer(other) == 0)) {
-        fail_at(text, quoted(text) + " is none of k, k/t, k//n and k/t/n");
+        fail_at(text, quoted(text) + " is not a vertex reference (expected k, k/t, k//n or k/t/n)");
       }
     }
     return std::size_t(k > 0 ? k - 1 : n + k);
@@ -238,7 +238,7 @@ private:
   [[nodiscard]] double number(std::string_view text) const {
     const auto value = parse_number(text);
     if (!value) {
-      fail_at(text, quoted(text) + " is no number");
+      fail_at(text, quoted(text) + " is not a number");
     }
     return *value;
   }
