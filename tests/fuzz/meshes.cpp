@@ -91,7 +91,7 @@ void target(const std::string& input) {
                          "in proportion to the file");
       for (const auto& x : vertices) {
         for (const double each : x) {
-          duet_fuzz::require(std::isfinite(each), "finite corners");
+          duet_fuzz::require(std::isfinite(each), "finite vertices");
         }
       }
     } catch (const duet::file_error& error) {

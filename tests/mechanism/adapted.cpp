@@ -34,7 +34,7 @@ const auto base =
 const auto tool =
     pose(from_rotation_vector(Eigen::Vector3d(-1, .2, .5)), Eigen::Vector3d(.05, .1, -.2));
 
-/// The coordinates without the i-th.
+/// The coordinates except for the i-th.
 template <int N>
 duet_test::coordinates<N - 1> without(const duet_test::coordinates<N>& theta, int i) {
   duet_test::coordinates<N - 1> result;
@@ -42,7 +42,7 @@ duet_test::coordinates<N - 1> without(const duet_test::coordinates<N>& theta, in
   return result;
 }
 
-/// A slide, a fixed joint, a turn, a turn, another fixed joint.
+/// A fixed, a prismatic, a fixed, two revolute joints and another fixed one.
 urdf_chain<16> from_file() {
   const std::string path = "test_mechanism_adapted.urdf";
   const auto joint = [](const std::string& name, const std::string& type, char from, char to) {
@@ -149,7 +149,7 @@ TEST_CASE(
             Eigen::Vector3d(
                 Eigen::Vector3d(0, 0, 2) +
                 translation(arm.pose(theta)).cwiseProduct(Eigen::Vector3d(1, -1, -1)))) < 4e-15);
-  // To the end: the goal of the tool is the tool's.
+  // inverse_kinematics of the modified chain reaches the pose of its tool.
   const auto result = inverse_kinematics(six, expected, Eigen::Matrix<double, 6, 1>::Zero().eval());
   CHECK(result.reason == stop_reason::reached);
   CHECK(max_abs_difference(translation(six.pose(result.joints)), translation(expected)) < 1e-6);

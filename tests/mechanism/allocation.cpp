@@ -65,7 +65,7 @@ TEST_CASE("kinematic_tree: poses and Jacobians allocate only their results") {
   sum += pose_and_jacobian(tree, q, frame::hybrid, seen).jacobian(0, 0);
   CHECK(duet_test::allocations - before == 0);
   CHECK(sum == sum);
-  CHECK(tree.poses(q).size() == 31); // and where what moves stands
+  CHECK(tree.poses(q).size() == 31); // and the frames of the nodes
   CHECK(duet_test::allocations - before == 2);
 }
 

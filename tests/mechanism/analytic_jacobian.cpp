@@ -25,7 +25,7 @@ void check_euler(const Chain& arm, const X& theta) {
                             [&](const auto& x) { return coordinates_of(arm.pose(x)); }, theta)
                             .jacobian;
   const auto closed = euler_jacobian<Sequence>(arm, theta);
-  // Towards gimbal lock both grow, and so do their errors.
+  // Near gimbal lock both grow, and their errors with them.
   const double size = std::max(1.0, by_duals.cwiseAbs().maxCoeff());
   CAPTURE(size);
   CHECK(max_abs_difference(closed, by_duals) < 1e-13 * size * size);
@@ -34,7 +34,7 @@ void check_euler(const Chain& arm, const X& theta) {
 template <class Chain>
 void check_sequences(const Chain& arm, int count) {
   const auto all = duet_test::configurations(arm, count);
-  for (std::size_t i = 5; i < all.size(); ++i) { // not the ones that are in gimbal lock
+  for (std::size_t i = 5; i < all.size(); ++i) { // without those in gimbal lock
     const auto& theta = all[i];
     check_euler<xyz>(arm, theta);
     check_euler<yzx>(arm, theta);

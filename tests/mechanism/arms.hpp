@@ -22,7 +22,7 @@
 #include <vector>
 
 /// \file
-/// Arms that the tests of mechanisms run on, and where.
+/// Arms and configurations for tests.
 
 namespace duet_test {
 
@@ -36,7 +36,7 @@ void for_each_frame(F&& f) {
   f(duet::frame::hybrid);
 }
 
-/// Zero, stretched, folded, limits, tiny, then random: singular ones first.
+/// Configurations: zero, tiny, half turns, a bent elbow, then random; singular ones first.
 template <class Chain>
 std::vector<coordinates<Chain::joints>> configurations(const Chain& chain, int count) {
   constexpr int n = Chain::joints;
@@ -59,7 +59,7 @@ std::vector<coordinates<Chain::joints>> configurations(const Chain& chain, int c
   return result;
 }
 
-/// Every kind of joint, axes in general directions.
+/// A chain with all types of joints, with axes in general directions.
 inline duet::serial_chain<7> every_joint() {
   using duet::joint_kind;
   const auto n = [](double x, double y, double z) {
@@ -95,7 +95,7 @@ void for_each_arm(F&& f) {
   run(duet::robots::ur5e().table(), "ur5e");
 }
 
-/// The same for the arms that the compiler knows.
+/// Calls f(chain, name) on the arms known to the compiler.
 template <class F>
 void for_each_known_arm(F&& f) {
   f(duet::robots::panda());

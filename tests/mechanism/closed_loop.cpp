@@ -35,7 +35,7 @@ struct four_bar {
                        a * sin(theta) + b * sin(x[0]) - c * sin(x[1]));
   }
 
-  /// ψ by Freudenstein's equation, A sin ψ + B cos ψ = C; `open` is the way it is assembled.
+  /// ψ by Freudenstein's equation, A sin ψ + B cos ψ = C; `open` selects the assembly mode.
   template <class T>
   T rocker(const T& theta, double open) const {
     using std::atan2;
@@ -55,7 +55,7 @@ struct four_bar {
   }
 };
 
-/// The largest difference of ψ, ψ′ and ψ″ from the closed form's, each on its own scale.
+/// Maximum difference of ψ, ψ′ and ψ″ from the closed form, each relative to its scale.
 template <class Loop>
 double rocker_error(const Loop& loop, const four_bar& bars, double theta, double open) {
   const auto x = derivatives<2>(loop, theta);
@@ -86,10 +86,10 @@ TEST_CASE("constrained_mechanism: a crank-rocker agrees with the closed form ove
       CAPTURE(theta);
       CHECK(rocker_error(loop, bars, theta, open) < 1e-13);
     }
-    // A start that is only near.
+    // An initial guess that is only near.
     const Eigen::Vector2d near = bars.position(.3, open) + Eigen::Vector2d(.2, -.1);
     CHECK((constrained_mechanism(bars, near, .3).position() - loop.position()).norm() < 1e-15);
-    // Whole turns leave the angles where they were: the rocker never goes around.
+    // Full turns do not change the angles, as the rocker never makes a full turn.
     CHECK((loop(.3 + 6 * pi) - loop.position()).norm() < 1e-14);
     const auto moved = loop.warm_started_at(2);
     CHECK(moved.parameter() == 2);
@@ -103,7 +103,7 @@ TEST_CASE("constrained_mechanism: a dead point is approached and reported, not p
   for (const double open : {-1.0, 1.0}) {
     const constrained_mechanism loop(bars, bars.position(.5, open), .5);
     for (const double before : {1e-1, 1e-3, 1e-6}) {
-      // Rates are unbounded there: errors of the closed form itself grow by 1/before.
+      // Rates are unbounded at the dead point: errors of the closed form itself grow by 1/before.
       CHECK(rocker_error(loop, bars, dead - before, open) < 1e-14 / before);
     }
     for (const double beyond : {1e-6, .1, 2.0}) {
@@ -142,12 +142,12 @@ TEST_CASE("constrained_mechanism: errors contain the parameter") {
   CHECK_THROWS_WITH_AS((void)slider(std::nan("")),
                        "duet: constrained_mechanism: u = nan is not finite", invalid_input);
   CHECK_THROWS_AS(constrained_mechanism(circle, 0.0, 1.0),
-                  loop_closure_failure); // in the dead point itself
+                  loop_closure_failure); // start at the dead point itself
 }
 
 TEST_CASE("constrained_mechanism: tiny steps and a constant position have exact derivatives") {
   const auto circle = [](const auto& x, const auto& u) { return x * x + u * u - 1; };
-  const constrained_mechanism slider(circle, -.7, 0.0); // the other side
+  const constrained_mechanism slider(circle, -.7, 0.0); // the other branch
   CHECK(slider.position() == -1);
   for (const double u : {1e-300, 1e-18, 1e-9, 1e-3, .6, .999}) {
     const auto x = derivatives<2>(slider, -u);

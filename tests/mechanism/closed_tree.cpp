@@ -44,7 +44,7 @@ VectorXd vector(std::initializer_list<double> x) {
 
 constexpr int kinds = int(constraint_kind::distance) + 1;
 
-/// A body that floats, held by one loop of a kind; both frames turned and displaced.
+/// A floating body with one constraint of a type, between rotated and displaced frames.
 closed_chain_mechanism constrained_body(constraint_kind kind, double scale = 1) {
   robot_description robot;
   robot.links = {{"base"}, {"body"}};
@@ -57,7 +57,7 @@ closed_chain_mechanism constrained_body(constraint_kind kind, double scale = 1) 
          .8 * scale}}});
 }
 
-/// The pose of the second frame in the first.
+/// Pose of the second frame relative to the first.
 dual_quaternion<double> seen(const closed_chain_mechanism& mechanism, const VectorXd& q) {
   const loop_constraint& loop = mechanism.loops()[0];
   const auto at = [&](const constraint_frame& frame) {
@@ -95,7 +95,7 @@ TEST_CASE("closed_chain_mechanism: every constraint type has its number of equat
       if (is_point) {
         CHECK(t.norm() < 1e-12);
       }
-      if (has_axis) { // the same way round
+      if (has_axis) { // in the same direction
         CHECK((r.col(2) - Vector3d::UnitZ()).norm() < 1e-12);
       }
       if (kind == constraint_kind::fixed || kind == constraint_kind::prismatic) {
@@ -113,7 +113,7 @@ TEST_CASE("closed_chain_mechanism: every constraint type has its number of equat
       if (kind == constraint_kind::distance) {
         CHECK(std::abs(t.norm() - .8) < 1e-12);
       }
-      // Those that Eigen's QR of the rates has its pivots at.
+      // The pivots of Eigen's QR of the rates.
       const MatrixXd j = mechanism.constraint_jacobian(q) * mechanism.units().asDiagonal();
       const MatrixXd rates = Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner>(
                                  j, Eigen::ComputeFullU | Eigen::ComputeFullV)
@@ -226,7 +226,7 @@ TEST_CASE("closed: fixed coordinates keep their values, and the step is the shor
   CHECK(std::abs(q[2] - 2.002371114722) < 1e-12);
   const VectorXd again = mechanism.assemble(q);
   CHECK(max_abs_difference(q, again) < 1e-14);
-  // From a little beside the curve of positions straight back to it: across its tangent.
+  // A guess next to the curve of configurations returns to it orthogonally to its tangent.
   const VectorXd tangent = detail::linearised(mechanism, q).kernel();
   const VectorXd nearby = q + 1e-4 * vector({.3, .5, -.2});
   CHECK(std::abs((mechanism.assemble(nearby) - nearby).dot(tangent)) < 1e-8);
@@ -294,13 +294,13 @@ TEST_CASE("find_assembly_configurations: stops at the missing probability or at 
   const assembly_search_result until =
       search({0}, {.random_starts = 1, .missing_probability = .02});
   CHECK(until.positions.size() == 2);
-  CHECK(until.converged == 50); // 1 / 50 is no more than the chance
+  CHECK(until.converged == 50); // 1 / 50 does not exceed the required probability
   CHECK(until.missing_probability() == 0);
   CHECK(search({0}, {.random_starts = 70, .missing_probability = .02}).starts == 70);
   CHECK(search({0}, {.random_starts = 1, .missing_probability = 0, .max_starts = 60}).starts == 60);
   CHECK(search({0}, {.random_starts = 80, .missing_probability = 0, .max_starts = 60}).starts ==
         80);
-  // Nothing is held: each guess finds another one.
+  // No coordinate is fixed: each guess finds another configuration.
   const assembly_search_result curve =
       search({}, {.random_starts = 1, .missing_probability = .5, .max_starts = 90});
   CHECK(curve.starts == 90);

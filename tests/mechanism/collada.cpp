@@ -25,7 +25,7 @@ triangle_mesh read(const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
   return read_mesh(path);
 }
-/// What is wrong, behind the file's name.
+/// Error message, without the name of the file.
 std::string error_of(const std::string& text) {
   const std::string message = duet_test::message_of<file_error>([&] { (void)read(text); });
   const std::string begin = "duet: " + path + ":";
@@ -42,8 +42,8 @@ void check_vertices(const triangle_mesh& m, const std::vector<point>& expected) 
   }
 }
 
-/// Of the six volumes of a tetrahedron over the origin, the sum: its sign tells which way triangles
-/// are turned.
+/// Sum of six times the signed volumes of the tetrahedra over the origin: its sign is the
+/// orientation of the triangles.
 double six_volumes(const triangle_mesh& m) {
   double sum = 0;
   for (std::size_t i = 0; i < m.vertices.size(); i += 3) {
@@ -54,7 +54,7 @@ double six_volumes(const triangle_mesh& m) {
   return sum;
 }
 
-/// The five positions p0 to p4 that faces are made of below.
+/// The five positions p0 to p4 of the faces in these tests.
 const std::array<point, 5> p = {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}};
 const std::string sources =
     "<source id=\"s\"><float_array id=\"a\" count=\"15\">0 0 0\n1 0 0\n1 1 0\n0 1 0\t0 0 1e0"
@@ -87,7 +87,7 @@ std::string with_asset(const std::string& inside) {
   return document(sources + triangle, "<node>" + shown + "</node>\n",
                   "<asset>" + inside + "</asset>");
 }
-/// A document with a text that stands there once replaced.
+/// A document with one occurrence of a text replaced.
 std::string changed(std::string text, const std::string& from, const std::string& to) {
   REQUIRE(text.find(from) != std::string::npos);
   return text.replace(text.find(from), from.size(), to);
@@ -112,7 +112,7 @@ TEST_CASE("COLLADA: all types of faces are split into triangles") {
   check_vertices(
       read(of_mesh(sources + "<tristrips count=\"1\">" + input + "<p>0 1 2 3 4</p></tristrips>")),
       {p[0], p[1], p[2], p[1], p[3], p[2], p[2], p[3], p[4]});
-  // Corners whose first number is that of a normal.
+  // Vertices whose first number is the index of a normal.
   check_vertices(read(of_mesh(sources + "<triangles count=\"1\">" +
                               changed(input, "offset=\"0\"", "offset=\"1\"") +
                               "<p>7 3 7 2 7 1</p></triangles>")),
@@ -147,7 +147,7 @@ TEST_CASE("COLLADA: positions are read by offset, stride and parameter names") {
 }
 
 TEST_CASE("COLLADA: nodes transform their geometry, and lengths are metres") {
-  // Outermost first, and before what is placed: 2 (T R S x), R a quarter turn about z.
+  // The outermost transform is applied last: 2 (T R S x), R a quarter turn about z.
   const auto moved = [](const point& x) {
     return point{2 * (1 - 5 * x[1]), 2 * (2 + 3 * x[0]), 2 * (3 + 7 * x[2])};
   };
@@ -175,7 +175,7 @@ TEST_CASE("COLLADA: nodes transform their geometry, and lengths are metres") {
       expected);
   check_vertices(read(of_node("<rotate>0 0 0 0</rotate><rotate>1 0 0 90</rotate>")),
                  {p[0], p[1], {1, 0, 1}});
-  for (const char* axis : {"X_UP", "Y_UP", " Z_UP\n"}) { // turns nothing
+  for (const char* axis : {"X_UP", "Y_UP", " Z_UP\n"}) { // rotates nothing
     check_vertices(read(with_asset(std::string("<unit/><up_axis>") + axis + "</up_axis>")),
                    {p[0], p[1], p[2]});
   }
@@ -319,7 +319,7 @@ TEST_CASE("COLLADA: cyclic and excessive instances are rejected") {
   }
   CHECK(error_of(document(sources + triangle, nodes))
             .ends_with("<instance_node>: the scene has more than 5 million triangles"));
-  // Without triangles there is nothing to place.
+  // Without triangles the instances add nothing.
   CHECK(error_of(document(sources, nodes)) == " the file contains no triangles");
 }
 

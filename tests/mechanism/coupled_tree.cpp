@@ -24,7 +24,7 @@ using duet_test::all_joints;
 using duet_test::for_each_frame;
 using duet_test::max_abs_difference;
 
-/// All coordinates of the tree by four.
+/// All coordinates of the tree as functions of four numbers.
 constexpr auto waves = [](const auto& y) {
   using std::sin;
   using S = std::decay_t<decltype(y[0] + 0.)>;
@@ -117,7 +117,7 @@ TEST_CASE("coupled_tree: a linear coupling equals mimic joints") {
     std::vector<S> q;
     for (int i = 0; i < 15; ++i) {
       q.push_back(y[i]);
-      if (i == 11) { // behind `turn` stands what follows `grip`
+      if (i == 11) { // the coordinate after `turn` mimics `grip`
         q.push_back(-2.5 * y[0] + .1);
       }
     }

@@ -6,7 +6,7 @@
 #include <duet/mechanism/joint_efforts.hpp>
 
 /// \file
-/// All that is evaluated of a chain, in one number.
+/// Sum of all functions of a chain, as one number.
 
 namespace duet_test {
 

@@ -116,7 +116,7 @@ TEST_CASE("joint_efforts: τ = Jᵀ F agrees in all frames and has the power of 
     CHECK(max_abs_difference(efforts, joint_efforts(arm, theta, spatial, frame::spatial)) < 1e-13);
     const vector6<double> hybrid = coAd(pose(rotation(a), Eigen::Vector3d(0, 0, 0))) * wrench;
     CHECK(max_abs_difference(efforts, joint_efforts(arm, theta, hybrid, frame::hybrid)) < 1e-13);
-    // A force that holds a weight at the tip: minus the gradient of its potential.
+    // A force that supports a weight at the tip: minus the gradient of its potential.
     vector6<double> force = vector6<double>::Zero();
     force[2] = 5;
     const auto potential = [&](const auto& x) { return 5 * translation(arm.pose(x))[2]; };

@@ -85,7 +85,7 @@ public:
     return chain;
   }
 
-  /// All links that hang on a root, its name aside.
+  /// All links below the root, which has no segment.
   [[nodiscard]] KDL::Tree tree() const {
     KDL::Tree result(root());
     add_below(result, root());
@@ -148,7 +148,7 @@ double rate_gap(const Chain& arm, const KDL::Chain& other, int representation, c
   return max_abs_difference(jacobian_rate(arm, theta, rates, frame_of_rate), expected.data);
 }
 
-/// Zero, straight angles, right angles, then random.
+/// Configurations: zero, straight angles, right angles, then random.
 vector configuration(int which, Eigen::Index size, duet_test::random_source& random) {
   vector theta =
       vector::Constant(size, which == 1 ? 3.141592653589793 : 1.5707963267948966 * which / 2);
@@ -160,8 +160,8 @@ vector configuration(int which, Eigen::Index size, duet_test::random_source& ran
   return theta;
 }
 
-/// The folder of robot files; none where KDL's matrices are not aligned as the tests' are, as they
-/// are freed here, and there.
+/// The folder of robot files; empty if KDL aligns matrices differently from this test, as both free
+/// them.
 std::optional<std::filesystem::path> robot_files() {
   if (EIGEN_MAX_ALIGN_BYTES > 16) {
     duet_test::skip("Orocos KDL was compiled for matrices aligned to 16 bytes, this is not");
@@ -234,7 +234,7 @@ TEST_CASE("trees of every robot file agree with Orocos KDL, including mimic join
     const KDL::Tree other = robot.tree();
     const kinematic_tree tree = read_urdf_tree(path);
     REQUIRE(other.getNrOfSegments() + 1 == tree.links().size());
-    // Coordinates of KDL's tree by those of ours, q = M y + c.
+    // Coordinates of KDL's tree as functions of those of duet, q = M y + c.
     Eigen::MatrixXd to_all = Eigen::MatrixXd::Zero(other.getNrOfJoints(), tree.size());
     vector offset = vector::Zero(other.getNrOfJoints());
     for (const auto& [link, joint] : robot.joint_above) {

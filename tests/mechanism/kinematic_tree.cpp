@@ -32,8 +32,8 @@ using Eigen::VectorXd;
 
 dual_quaternion<double> pose_of(const placement<double>& at) { return at.pose(); }
 
-/// What functions are asked about: links before and behind others, on the root, points, and frames
-/// seen from others, above, below and beside them.
+/// Frames of interest: links before and behind others, on the root, points, and frames relative to
+/// others above, below and next to them.
 template <class F>
 void for_each_frame_of_interest(const kinematic_tree& tree, F&& f) {
   const auto hand = tree.link("hand").at_point({.3, -.2, .5});
@@ -111,7 +111,7 @@ TEST_CASE("kinematic_tree: poses are the products of the joint displacements") {
     const auto hand = elbow * origin(4) * pose(from_axis_angle(axis(4), q[11]), none);
     const auto finger = hand * origin(0) * pose(one, Vector3d(grip * axis(0)));
     const auto thumb = hand * origin(6) * pose(from_axis_angle(axis(6), oppose), none);
-    // In the plane: e_x and e_y carried by the shortest turn of e_z to the axis.
+    // In the plane: e_x and e_y carried by the shortest rotation of e_z to the axis.
     const Vector3d n = axis(7);
     const Vector3d z(0, 0, 1);
     const auto tilt = from_axis_angle(Vector3d(z.cross(n).normalized()), std::acos(n[2]));
@@ -155,7 +155,7 @@ TEST_CASE("kinematic_tree: a planar joint moves in its plane, also for axes near
     CHECK(std::abs(translation(at).dot(n)) < 1e-15);
     CHECK(std::abs(translation(at).norm() - .5) < 1e-15);
     CHECK(max_abs_difference(rotation_vector(rotation(at)), Vector3d(.5 * n)) < 1e-15);
-    // The shortest turn is about y, and at −z a half turn about x.
+    // The shortest rotation is about y, and for −z a half turn about x.
     CHECK(max_abs_difference(translation(at),
                              small > 1e-15 ? Vector3d(-.3, .4, 0) : Vector3d(.3, -.4, 0)) < 1e-3);
   }
@@ -178,7 +178,7 @@ TEST_CASE("kinematic_tree: Jacobians of frames, points and relative poses equal 
   }
   const auto m = jacobian(tree, coordinates_of(tree, 1).back(), frame::body,
                           relative_frame{tree.link("hand"), tree.link("body")});
-  CHECK(m.leftCols(7).isZero(0)); // what moves both
+  CHECK(m.leftCols(7).isZero(0)); // joints that move both frames
   CHECK(m.rightCols(3).isZero(0));
 }
 
@@ -321,7 +321,7 @@ TEST_CASE("kinematic_tree: a chain of 20000 links has accurate poses and Jacobia
   }
   const kinematic_tree tree(robot);
   CHECK(tree.size() == 2);
-  // Every second one slides by ½ along z, the others turn by 2⁻¹⁴ about it.
+  // Every second joint translates by ½ along z, the others rotate by 2⁻¹⁴ about it.
   const Eigen::Vector2d q(std::ldexp(1., -14), .5);
   const auto tip = tree.pose(q, count);
   CHECK(std::abs(translation(tip)[2] - count / 4.) < 1e-8);

@@ -26,7 +26,7 @@ using namespace duet;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A slide, then a joint that turns all round.
+/// A prismatic joint, then a continuous one.
 urdf_chain<16> from_file() {
   const std::string path = "test_mechanism_limits.urdf";
   std::ofstream(path) << "<robot name=\"r\"><link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>"
@@ -88,7 +88,7 @@ TEST_CASE("with_limits: a single joint of a static chain, respected by inverse_k
   CHECK(wide.limits(0).lower == -4);
   CHECK(wide.limits(6).upper == 4);
 
-  // What reads limits reads these.
+  // inverse_kinematics respects the changed limits.
   const Eigen::Matrix<double, 7, 1> start(0, -.8, 0, -1.5, 0, 1.6, .8),
       target(.3, -.6, .2, -2.4, .1, 1.9, .5);
   const auto goal = arm.pose(target);

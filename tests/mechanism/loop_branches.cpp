@@ -31,7 +31,7 @@ using Eigen::VectorXd;
 
 constexpr double pi = std::numbers::pi;
 
-/// Of a four-bar with all joints on a line, where i-th order terms of
+/// First-order terms for a four-bar with all joints on a line, where the terms of
 /// a exp(iθ) + b exp(i(θ + β)) − c exp(iψ) = d vanish for rates (θ, β, ψ) along a motion.
 double first_order(const std::array<double, 4>& bar, const VectorXd& q, const VectorXd& v) {
   const double a = bar[0] * std::cos(q[0]), b = bar[1] * std::cos(q[0] + q[1]),
@@ -48,7 +48,7 @@ closed_chain_mechanism bars(const std::array<double, 4>& bar) {
   return four_bar(bar[0], bar[1], bar[2], bar[3]);
 }
 
-/// Two lines, each both ways, straight on first and back last.
+/// Checks a crossing of two lines: four tangents, straight on first and back last.
 void check_crossing(const std::array<double, 4>& bar, const branch_point& at) {
   for (int i = 0; i < 3; ++i) { // all joints on a line
     CHECK(std::abs(std::sin(at.coordinates[i])) < 1e-13);
@@ -57,7 +57,7 @@ void check_crossing(const std::array<double, 4>& bar, const branch_point& at) {
   CHECK((at.tangents[0] + at.tangents[3]).norm() < 1e-14);
   CHECK((at.tangents[1] + at.tangents[2]).norm() < 1e-14);
   CHECK(std::abs(at.tangents[0].dot(at.tangents[1])) < .999);
-  const double first = at.tangents[1][0]; // increases on the first way of a pair
+  const double first = at.tangents[1][0]; // increases along the first tangent of a pair
   CHECK((std::abs(first) < 1e-13 ? at.tangents[1][1] : first) > 0);
   for (const VectorXd& tangent : at.tangents) {
     CHECK(std::abs(tangent.norm() - 1) < 1e-14);
@@ -66,7 +66,7 @@ void check_crossing(const std::array<double, 4>& bar, const branch_point& at) {
   }
 }
 
-/// Lengths with the sum of two bars that of the others, or their difference.
+/// Bar lengths of a foldable four-bar: two bars have the sum or the difference of the others.
 std::array<double, 4> change_point(duet::random_source& random) {
   for (;;) {
     const double a = random.uniform(.2, 1), c = random.uniform(.2, 1), d = random.uniform(.2, 1);
@@ -131,7 +131,7 @@ TEST_CASE("trace: a flat parallelogram continues as parallelogram or antiparalle
     }
     CHECK(crossed > 40);
   }
-  // Back where it came from.
+  // The last tangent leads back along the motion.
   const motion_trace back = trace(motion, 0, {.branches = {3}});
   CHECK(back.branch_points[0].chosen == 3);
   CHECK(std::abs(back.positions.back()[0] - back.positions.back()[2]) < 1e-12);
@@ -171,7 +171,7 @@ TEST_CASE("trace: tangents at branch points of random foldable four-bars agree w
         CHECK(mechanism.residuals(q).norm() < 1e-11);
       }
     }
-    // Newton's method with 100 digits so near to the crossing that chords are tangents.
+    // Newton's method with 100 digits, so near to the crossing that chords equal tangents.
     const branch_point& at = complete.branch_points[0];
     for (const VectorXd& tangent : at.tangents) {
       const real_100 step("1e-25");
@@ -184,7 +184,7 @@ TEST_CASE("trace: tangents at branch points of random foldable four-bars agree w
       const int fixed = std::abs(tangent[0]) > .5 ? 0 : std::abs(tangent[1]) > .5 ? 1 : 2;
       const int i = fixed == 0 ? 1 : 0, j = fixed == 2 ? 1 : 2;
       const real_100 a = bar[0], b = bar[1], c = bar[2], d = bar[3];
-      // b as the crossing has it in exact arithmetic: lengths of bars are rounded
+      // b of the exact crossing, as the lengths of the bars are rounded
       const auto sign = [&](int n) { return cos(flat[std::size_t(n)]); };
       const real_100 exact_b = (d - a * sign(0) + c * sign(2)) / cos(flat[0] + flat[1]);
       CHECK(abs(exact_b - b) < 1e-15);
@@ -216,13 +216,13 @@ TEST_CASE("trace: a kite and a five-bar have their branch points") {
   REQUIRE(complete.branch_points.size() == 2);
   for (const branch_point& at : complete.branch_points) {
     check_crossing(bar, at);
-    CHECK(std::abs(at.tangents[1][0]) < 1e-14); // coupler and rocker turn as one
+    CHECK(std::abs(at.tangents[1][0]) < 1e-14); // coupler and rocker rotate together
   }
   const motion_trace folded = trace(motion, 0, {.branches = {1}});
   CHECK(folded.is_closed);
   CHECK(std::abs(folded.positions.back()[0]) < 1e-12);
 
-  // A five-bar whose right crank is held where its end is a crank's length from the left foot.
+  // A five-bar whose right crank is fixed with its end one crank length from the left pivot.
   robot_description robot;
   robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
   robot.joints = {revolute_joint("left", "ground", at_point(-.3, 0)),
@@ -312,7 +312,8 @@ TEST_CASE("trace: two coupled parallelograms have four branches in a kernel of d
     }
   }
 
-  // A parallelogram with a third crank stays one: where it is flat it is shaky, but has one branch.
+  // A parallelogram with a third crank stays a parallelogram: flat, it is first-order flexible, but
+  // has one branch.
   robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"rocker"}, {"third"}};
   robot.joints = {revolute_joint("crank", "ground", {}),
                   revolute_joint("coupler", "crank", at_point(.3, 0)),
@@ -333,7 +334,8 @@ TEST_CASE("trace: two coupled parallelograms have four branches in a kernel of d
 
 TEST_CASE("trace: branch points of slider-cranks in both units and of a spherical four-bar") {
   for (const double mm : {1., 1000.}) {
-    // Crank and coupler of one length: x = 2 r cos θ, β = −2 θ, or folded with the slide at rest.
+    // Crank and coupler of equal length: x = 2 r cos θ, β = −2 θ, or folded with the slider at
+    // rest.
     const double r = .3 * mm;
     robot_description robot;
     robot.links = {{"ground"}, {"crank"}, {"coupler"}, {"slide"}};
@@ -353,12 +355,13 @@ TEST_CASE("trace: branch points of slider-cranks in both units and of a spherica
       CHECK(std::abs(at.coordinates[2]) < 1e-14 * mm);
       REQUIRE(at.tangents.size() == 4);
       Vector3d along(1, -2, -2 * sine), folded(1, 0, 0);
-      along /= 3; // unit length in radians and parts of r
+      along /= 3; // unit length, in radians and relative to r
       CHECK((at.tangents[0].cwiseQuotient(mechanism.units()) - along).norm() < 1e-13);
       CHECK((at.tangents[1].cwiseQuotient(mechanism.units()) - folded).norm() < 1e-13);
     }
   }
-  // All axes in a point, opposite sides alike: tan(θ₁/2) tan(θ₂/2) is one of two constants.
+  // All axes meet in a point, opposite sides are equal: tan(θ₁/2) tan(θ₂/2) is one of two
+  // constants.
   const double a = .4, b = .9;
   const closed_chain_mechanism sphere = duet_test::ring({{0, a}, {0, b}, {0, a}, {0, b}});
   const std::array constants{std::cos((a + b) / 2) / std::cos((b - a) / 2),
@@ -386,7 +389,8 @@ TEST_CASE("trace: branch points of slider-cranks in both units and of a spherica
 }
 
 TEST_CASE("trace: tangents that are not isolated are omitted") {
-  // Two cranks with couplers of their length move one slide. With that at rest both turn freely.
+  // Two cranks with couplers of equal length move one slider. With the slider at rest both rotate
+  // freely.
   robot_description robot;
   robot.links = {{"ground"}, {"a"}, {"b"}, {"c"}, {"d"}, {"slide"}};
   robot.joints = {revolute_joint("a", "ground", {}),
@@ -408,7 +412,7 @@ TEST_CASE("trace: tangents that are not isolated are omitted") {
     if (i % 2 == 0) { // both are folded
       CHECK(std::abs(at.coordinates[4]) < 1e-14);
       CHECK(at.tangents.size() == 2);
-    } else { // both are stretched: cranks go on the same way, or opposite ones
+    } else { // both are stretched: cranks continue in equal or opposite directions
       CHECK(std::abs(std::abs(at.coordinates[4]) - .6) < 1e-14);
       CHECK(at.tangents.size() == 4);
     }
@@ -442,7 +446,7 @@ TEST_CASE("driven_motion: continues straight through branch points") {
   CHECK(message_of([&] { (void)derivatives<1>(flat, 0.); }) ==
         "duet: driven_motion: crank does not determine the rates of the other coordinates (dead "
         "point)");
-  // An antiparallelogram, too.
+  // The same test for an antiparallelogram.
   const Vector3d crossed(1, 0, -2 * std::atan(std::tan(.5) * 1.1 / .5));
   const closed_chain_mechanism mechanism = bars({.3, .8, .3, .8});
   const driven_motion anti(mechanism, mechanism.assemble(crossed, {0}), {0});

@@ -25,7 +25,7 @@ loop_constraints read(const std::string& content) {
   return read_loops(path);
 }
 
-/// What is said of the content, without the file's name.
+/// Error message for the content, without the name of the file.
 std::string error_of(const std::string& content) {
   const std::string text = message_of<file_error>([&] { (void)read(content); });
   const std::string begin = "duet: " + path + ":";

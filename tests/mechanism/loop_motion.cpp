@@ -51,7 +51,7 @@ T freudenstein(double a, double b, double c, double d, const T& theta, double si
   return atan2(s, k) + side * atan2(sqrt(T(k * k + s * s - q * q)), q);
 }
 
-/// Two cranks about (∓foot, 0), two couplers that meet in a hinge.
+/// Two cranks about (∓foot, 0), two couplers that meet in a revolute joint.
 closed_chain_mechanism five_bar(double foot, double crank, double coupler) {
   robot_description robot;
   robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
@@ -65,7 +65,7 @@ closed_chain_mechanism five_bar(double foot, double crank, double coupler) {
                                    {"right_coupler", at_point(coupler, 0)}}}});
 }
 
-/// The upper point where circles about the cranks' ends meet.
+/// Upper intersection of the circles about the ends of the cranks.
 template <class T>
 std::array<T, 2> meeting_point(double foot, double crank, double coupler, const T& left,
                                const T& right) {
@@ -217,7 +217,7 @@ TEST_CASE("driven_motion, trace: dead points are located, reported and passed") 
   }
   CHECK(of_crank >= 2);
   CHECK(of_rocker >= 2);
-  // A crank that goes round has none.
+  // A crank with full turns has no dead points.
   const motion_trace round =
       trace(driven_motion(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0}));
   CHECK(round.is_closed);
@@ -243,7 +243,7 @@ TEST_CASE("driven_motion: 200 random four-bars stop at the dead points of the cl
     const Vector2d end(d + c * std::cos(psi), c * std::sin(psi));
     const double beta = std::atan2(end[1] - elbow[1], end[0] - elbow[0]);
     const driven_motion motion(four_bar(a, b, c, d), vector({from, beta - from, psi}), {0});
-    // The first crank angle on the way at which the distance of the free ends is b ± c.
+    // The first crank angle along the line at which the distance of the free ends is b ± c.
     double first = 2;
     for (const double reach : {b + c, std::abs(b - c)}) {
       const double cosine = (a * a + d * d - reach * reach) / (2 * a * d);
@@ -274,7 +274,7 @@ TEST_CASE("driven_motion: 200 random four-bars stop at the dead points of the cl
 
 TEST_CASE("driven_motion: singular coordinates and invalid drives are rejected") {
   using duet_test::message_of;
-  // A body that turns about z by a rotation vector, which is singular after a whole turn.
+  // A body that rotates about z by a rotation vector, which is singular after a full turn.
   robot_description robot;
   robot.links = {{"base"}, {"body"}};
   robot.joints = {{"ball", "base", "body", {joint_kind::spherical}}};

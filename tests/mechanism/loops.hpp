@@ -13,17 +13,17 @@
 #include <vector>
 
 /// \file
-/// Mechanisms with loops that tests run on.
+/// Closed-chain mechanisms for tests.
 
 namespace duet_test {
 
-/// At a point, with the link's axes.
+/// Frame at a point, with the axes of the link.
 inline duet::placement<double> at_point(double x, double y, double z = 0) {
   return placement_at(0, 0, 0, x, y, z);
 }
 
-/// Turning joints about z of the frames in a row, on a base; the links are named "0" (the base),
-/// "1" …
+/// A chain of revolute joints about the z axes of the frames, on a base; the links are named "0"
+/// (the base), "1" …
 inline duet::robot_description revolute_chain(const std::vector<duet::placement<double>>& origins) {
   duet::robot_description robot;
   robot.links = {{"0"}};
@@ -42,7 +42,7 @@ inline duet::tree_joint revolute_joint(const std::string& name, const std::strin
   return {name, parent, name, {duet::joint_kind::continuous, origin}};
 }
 
-/// The crank turns about (0, 0), the rocker about (ground, 0); what is cut is the joint between
+/// The crank rotates about (0, 0), the rocker about (ground, 0); the cut joint is that between
 /// coupler and rocker.
 inline duet::closed_chain_mechanism
 four_bar(double crank, double coupler, double rocker, double ground,
@@ -57,7 +57,7 @@ four_bar(double crank, double coupler, double rocker, double ground,
       {{{kind, {"coupler", at_point(coupler, 0)}, {"rocker", at_point(rocker, 0)}}}});
 }
 
-/// One loop of turning joints with the link lengths and twists of Denavit and Hartenberg and no
+/// One loop of revolute joints with the link lengths and twists of Denavit and Hartenberg and no
 /// offsets, cut at the last joint.
 inline duet::closed_chain_mechanism ring(const std::vector<std::array<double, 2>>& links) {
   std::vector<duet::placement<double>> origins = {{}};

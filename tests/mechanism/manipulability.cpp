@@ -67,7 +67,7 @@ TEST_CASE("manipulability: equals √det(JJᵀ), and its gradient 50-digit dual 
 TEST_CASE("manipulability: a planar two-link arm agrees with the closed form") {
   const double a = .7, b = .4;
   const auto arm = from_dh(std::array<dh_row<>, 2>{{{.a = a}, {.a = b}}});
-  const auto upper = [&](const auto& theta) { // its tip's two coordinates alone
+  const auto upper = [&](const auto& theta) { // the two coordinates of its tip only
     return jacobian(arm, theta, frame::hybrid).template topRows<2>().determinant();
   };
   for (const double bend : {1e-6, .3, -1.2, 3.1}) {
@@ -98,7 +98,7 @@ TEST_CASE("manipulability: vanishes linearly at singularities, where the gradien
   CHECK(manipulability(arm, theta) == doctest::Approx(2 * w).epsilon(1e-6));
   CHECK(w > 1e-12);
 
-  // Two axes in one line, exactly.
+  // Two coincident axes, exactly.
   const std::array<joint<>, 2> joints{};
   const serial_chain<2> twice(joints);
   const Eigen::Vector2d zero(0, 0);
@@ -109,14 +109,14 @@ TEST_CASE("manipulability: vanishes linearly at singularities, where the gradien
 TEST_CASE("manipulability_gradient: accurate within round-off of a singularity") {
   const auto arm = robots::ur5e().table();
   coordinates<6> theta;
-  theta << .3, -1, 1e-6, -.7, .9, .7; // the elbow is all but stretched
+  theta << .3, -1, 1e-6, -.7, .9, .7; // the elbow is nearly stretched
   const double gradient = manipulability_gradient(arm, theta).gradient[2];
   CHECK(gradient > .05);
   int regular = 0;
   for (const double bend : {1e-14, 1e-15, 7e-16, 4e-16, 1e-16, 5e-17, 1e-17, 1e-100}) {
     CAPTURE(bend);
     theta[2] = bend;
-    if (manipulability(arm, theta) > 0) { // as rounded; of either side
+    if (manipulability(arm, theta) > 0) { // rounded to either side
       ++regular;
       coordinates<6> g = manipulability_gradient(arm, theta).gradient;
       CHECK(std::abs(g[2]) == doctest::Approx(gradient).epsilon(1e-6));
@@ -126,7 +126,7 @@ TEST_CASE("manipulability_gradient: accurate within round-off of a singularity")
   }
   CHECK(regular > 3);
 
-  // |det M| M⁻ᵀ is but for its sign the matrix of cofactors, whatever the smallest pivot.
+  // |det M| M⁻ᵀ is, except for its sign, the matrix of cofactors, for any smallest pivot.
   for (const double small : {1e-3, 1e-16, -1e-17, 1e-140}) {
     detail::tall_matrix<double, 2> m(2, 2), cofactors(2, 2);
     m << 1, 2, 0, small;

@@ -32,7 +32,8 @@ std::string bytes(std::uint32_t x) {
 }
 std::string bytes(float x) { return bytes(detail::bit_cast<std::uint32_t>(x)); }
 
-/// A binary file whose corner k of triangle i is (i, k, .5), with a header that says solid.
+/// A binary file whose vertex k of triangle i is (i, k, .5), with a header that begins with
+/// "solid".
 std::string binary(std::uint32_t triangles) {
   std::string result = "solid but binary" + std::string(64, ' ') + bytes(triangles);
   for (std::uint32_t i = 0; i < triangles; ++i) {
@@ -50,7 +51,7 @@ std::string write(const std::string& ending, const std::string& content) {
   return name + ending;
 }
 
-/// What is wrong, behind the file's name.
+/// Error message, without the name of the file.
 std::string error_of(const std::string& ending, const std::string& content) {
   const std::string path = write(ending, content);
   const std::string message = duet_test::message_of<file_error>([&] { (void)read_mesh(path); });
@@ -82,7 +83,7 @@ TEST_CASE("read_mesh: binary STL with a text-like header and padding") {
   bad.replace(84 + 50 + 12 + 4, 4, bytes(std::numeric_limits<float>::infinity()));
   CHECK(error_of(".stl", bad) == " triangle 1 has a vertex that is not finite");
   CHECK(error_of(".stl", binary(0)) == " the file contains no triangles");
-  // One byte is missing: it is no binary file then, and no text either.
+  // With one byte missing it is neither a binary nor a text file.
   CHECK(error_of(".stl", binary(2).substr(0, 183)) == "1: the file ends before \"endsolid\"");
   CHECK(error_of(".stl", std::string(90, 'x')) ==
         " the file is not STL: it neither begins with \"solid\" nor has the length of a binary "
@@ -128,7 +129,7 @@ TEST_CASE("read_mesh: text STL, and an error for every wrong line") {
   CHECK(without("endsolid x\n", "") == "8: the file ends before \"endsolid\"");
   CHECK(without("endsolid x\n", "edsolid x\n") == expected("9", normal, "edsolid x"));
   CHECK(without("endsolid x\n", "endsolid x\nfacet") == expected("10", "solid", "facet"));
-  // Triangles without area have no normal: some programs write what they get then.
+  // Triangles without area have no normal: some programs write the result of a division by zero.
   for (const char* none : {"nan", "-nan", "-nan(ind)", "inf"}) {
     CHECK(read_mesh(write(".stl", "solid\nfacet normal 0 1 " + std::string(none) +
                                       facet.substr(20) + "endsolid"))
@@ -179,16 +180,16 @@ TEST_CASE("read_mesh: OBJ lines joined by a backslash keep their line numbers in
   CHECK(error_of(".obj", vertices + "f 1 2 \\\n 3 \\\n 9 \\\n 1\n") ==
         "9: \"9\" is not one of the 3 vertices before it");
   CHECK(error_of(".obj", vertices + "\nv 1 \\\n\n2 3\n") ==
-        "8: \"v x y z\" expected, not \"v 1\""); // an empty line ends it
+        "8: \"v x y z\" expected, not \"v 1\""); // an empty line ends the statement
   CHECK(error_of(".obj", vertices + "f 1\\\n2\nx\n") ==
         "7: a face of three or more vertices expected, not \"f 1\\\\n2\"");
   CHECK(error_of(".obj", vertices + "f 1 \\ 2 3\n") ==
         "7: \"\\\" is not one of the 3 vertices before it");
-  // A comment ends with its line, so that one with a folder's name takes nothing with it.
+  // A comment ends with its line, even if it ends with a backslash, as names of folders do.
   CHECK(read_mesh(write(".obj", "# of C:\\models\\\n" + vertices + "f 1 2 3")).vertices.size() ==
         3);
   CHECK(error_of(".obj", "\\") == " the file contains no triangles");
-  // Nor has STL such lines.
+  // STL has no joined lines.
   CHECK(error_of(".stl", "solid a\nfacet normal 0 0 \\\n1\n") == "2: \"\\\" is not a number");
 }
 

@@ -26,7 +26,7 @@ VectorXd vector(std::initializer_list<double> x) {
   return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
 }
 
-/// With the sine of its twist per length.
+/// A link whose twist angle has a given sine per length.
 std::array<double, 2> with_twist(double length, double ratio) {
   return {length, std::asin(length * ratio)};
 }
@@ -62,7 +62,7 @@ TEST_CASE("mobility: Bennett's and Goldberg's linkages have mobility 1, a genera
   CHECK(m.mobility == 1);
   CHECK(m.kutzbach == -2);
   CHECK(m.evidence == mobility_evidence::sampled);
-  // tan(θ1/2) tan(θ2/2) = ± sin((β + α)/2) / sin((β − α)/2), the same all the way.
+  // tan(θ1/2) tan(θ2/2) = ± sin((β + α)/2) / sin((β − α)/2), constant along the motion.
   const driven_motion by_first(bennett, q, {0});
   const double constant = std::sin((b[1] + a[1]) / 2) / std::sin((b[1] - a[1]) / 2);
   for (const double theta : {.3, .8, 1.9, 2.8}) {
@@ -82,14 +82,14 @@ TEST_CASE("mobility: Bennett's and Goldberg's linkages have mobility 1, a genera
   }
   CHECK(moving > 0);
 
-  // The lengths of Bennett's, another twist: closes nowhere.
+  // The lengths of Bennett's linkage with another twist: no configuration exists.
   const closed_chain_mechanism general = ring({a, b, a, {b[0], b[1] + .1}});
   CHECK(find_assembly_configurations(general, {}, VectorXd(), {.random_starts = 30})
             .positions.empty());
 }
 
 TEST_CASE("mobility: a stretched frame is first-order flexible and rigid") {
-  // Two links in a row between pins as far apart as both are long.
+  // Two collinear links between pins at the distance of their total length.
   robot_description robot;
   robot.links = {{"ground"}, {"first"}, {"second"}};
   robot.joints = {revolute_joint("first", "ground", {}),
@@ -107,7 +107,7 @@ TEST_CASE("mobility: a stretched frame is first-order flexible and rigid") {
                        "order only: the mechanism does not move",
                        invalid_input);
 
-  // Pins nearer to each other: rigid to first order.
+  // Closer pins: rigid to first order.
   const closed_chain_mechanism rigid(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"second", at_point(.5, 0)}, {"ground", at_point(.9, 0)}}}});
@@ -141,7 +141,7 @@ TEST_CASE("mobility: a parallelogram has two rates if flat, or if it carries a f
   const mobility_result n = mobility(both, vector({1, -1, 1, 0, 0}));
   CHECK(n.mobility == 1);
   CHECK(n.instantaneous == 2);
-  CHECK(n.local == 2); // shaky everywhere
+  CHECK(n.local == 2); // first-order flexible everywhere
 }
 
 TEST_CASE(
@@ -166,7 +166,7 @@ TEST_CASE(
 }
 
 TEST_CASE("mobility: independent equations give the Grübler–Kutzbach count") {
-  // A plate on three rods between the base and itself moves in three ways.
+  // A plate on three rods has three degrees of freedom.
   robot_description robot;
   robot.links = {{"base"}, {"plate"}};
   robot.joints = {{"free", "base", "plate", {joint_kind::floating}}};

@@ -29,7 +29,7 @@ double pose_difference(const dual_quaternion<double>& a, const dual_quaternion<d
   return max_abs_difference(transform_matrix(a), transform_matrix(b));
 }
 
-/// The transform of a chain by matrices: products of Eigen's own.
+/// Transform of a chain as a product of Eigen's matrices.
 struct by_matrices {
   Eigen::Isometry3d value = Eigen::Isometry3d::Identity();
 
@@ -97,7 +97,7 @@ TEST_CASE("from_dh, from_modified_dh: poses equal products of matrices") {
 }
 
 TEST_CASE("from_screws: poses equal the product of exponentials") {
-  // Screws at zero configuration: the spatial twists of the links, by the poses' own derivatives.
+  // Screws at the zero configuration: the spatial twists of the links, from derivatives of poses.
   const auto arm = duet_test::every_joint();
   const coordinates<7> zero = coordinates<7>::Zero();
   std::vector<joint_screw<>> screws;
@@ -118,7 +118,7 @@ TEST_CASE("from_screws: poses equal the product of exponentials") {
   CHECK(product.kind(1) == joint_kind::prismatic);
   CHECK(product.kind(2) == joint_kind::helical);
   CHECK(product.kind(6) == joint_kind::revolute);
-  // The arm's shifts are metres: rounding errors are on the scale of where they lead.
+  // Translations are in metres: rounding errors are proportional to the distance.
   const auto rounding = [](const dual_quaternion<double>& a) {
     return 1e-14 * (1 + translation(a).norm());
   };
@@ -140,7 +140,7 @@ TEST_CASE("from_screws: poses equal the product of exponentials") {
 
 TEST_CASE("static_chain: poses equal those of its table") {
   duet_test::for_each_known_arm([](const auto& arm) {
-    // What is fused with what differs: a rounding a joint, on the scale of where it leads.
+    // Fused operations differ: one rounding per joint, proportional to the distance.
     const auto close = [&](const dual_quaternion<double>& a, const dual_quaternion<double>& b) {
       const double rounding = std::numeric_limits<double>::epsilon();
       return pose_difference(a, b) < double(arm.size()) * rounding * (1 + translation(b).norm());
@@ -309,7 +309,7 @@ TEST_CASE("serial_chain: vectorised sines give the derivatives of long double") 
   check(unsized);
   const auto panda = robots::panda();
   check(panda);
-  // What is not a number stays with the joints after it.
+  // A NaN only affects the joints after it.
   coordinates<7> broken = coordinates<7>::Constant(.5);
   broken[5] = std::nan("");
   const auto expected = pose_coordinates(panda.pose(coordinates<7>::Constant(.5).eval(), 5));

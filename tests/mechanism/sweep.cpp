@@ -24,8 +24,7 @@ using duet_test::ulps_apart;
 
 namespace {
 
-/// Sines of the library are within 1 ulp, and so are those of the C library; seven joints add them
-/// up.
+/// Sines of duet and of the C library are within 1 ulp; the errors of seven joints add up.
 constexpr double limit = 16;
 
 using angles = Eigen::Matrix<double, 7, 1>;
@@ -103,7 +102,7 @@ TEST_CASE("poses, jacobians: sweeps of other frames resize dynamic matrices") {
   const auto chain = robots::panda();
   const auto theta = configurations(6);
   std::vector<dual_quaternion<double>> a(6);
-  std::vector<Eigen::MatrixXd> m(6); // which get their sizes
+  std::vector<Eigen::MatrixXd> m(6); // are resized
   m[2].resize(6, 9);
   m[4].resize(6, 7);
   poses(chain, theta, a, one_core, 3);
@@ -133,7 +132,7 @@ TEST_CASE("poses, jacobians: errors name index and size") {
   std::vector<Eigen::Matrix<double, 6, 6>> fixed(5);
   CHECK(message_of([&] { jacobians(chain, theta, frame::body, fixed); }) ==
         "duet: jacobians: result 0 is a 6 × 6 matrix, not 6 × 7");
-  // Room for six columns at most, and where no matrix could be made larger.
+  // Capacity for at most six columns, and maps, which cannot be resized.
   std::vector<Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6>> bounded(5);
   bounded[0].resize(6, 6);
   CHECK(message_of([&] { jacobians(chain, theta, frame::body, bounded); }) ==

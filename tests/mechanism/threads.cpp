@@ -17,7 +17,7 @@ namespace {
 
 using namespace duet;
 
-/// f(0) … f(count − 1) in four threads at once are what they are in one.
+/// Checks that f(0) … f(count − 1) are equal in four concurrent threads and in one.
 template <class F>
 void check_in_threads(std::size_t count, const F& f) {
   std::vector<double> expected;

@@ -13,7 +13,7 @@
 #include <vector>
 
 /// \file
-/// Trees that tests run on, and where.
+/// Kinematic trees and configurations for tests.
 
 namespace duet_test {
 
@@ -24,7 +24,7 @@ inline duet::placement<double> placement_at(double a, double b, double c, double
 }
 
 /// Every kind of joint, on two arms and a leg, children before parents in the list; axes in general
-/// directions, joints that follow others, links with and without mass.
+/// directions, mimic joints, links with and without mass.
 inline duet::robot_description all_joints() {
   using duet::joint_kind;
   const auto axis = [](double x, double y, double z) {
@@ -80,7 +80,7 @@ inline duet::robot_description all_joints() {
   return robot;
 }
 
-/// Zero, tiny, half turns, near a full turn of what turns by a rotation vector, then random.
+/// Configurations: zero, tiny, half turns, near a full turn of rotation vectors, then random.
 inline std::vector<Eigen::VectorXd> coordinates_of(const duet::kinematic_tree& tree, int count) {
   const Eigen::Index n = tree.size();
   std::vector<Eigen::VectorXd> result = {

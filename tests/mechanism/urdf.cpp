@@ -55,7 +55,7 @@ TEST_CASE("read_urdf: origins, axes and limits follow the format") {
   CHECK(chain.kind(1) == joint_kind::continuous);
   CHECK(chain.limits(1).upper == INFINITY);
   const Eigen::Vector2d theta(.5, .7);
-  // Roll, pitch and yaw are turns about fixed axes.
+  // Roll, pitch and yaw are rotations about fixed axes.
   const auto expected =
       pose(from_euler<zyx>(.3, .2, .1), Eigen::Vector3d(.1, .2, .8)) *
       pose(from_axis_angle(Eigen::Vector3d(0, 1, 0), .7), Eigen::Vector3d(0, 0, 0));
@@ -66,7 +66,7 @@ TEST_CASE("read_urdf: origins, axes and limits follow the format") {
   CHECK_THROWS_WITH_AS((void)chain.link("x"),
                        "duet: urdf_chain: no link \"x\": there are \"a\", \"b\", \"c\"",
                        invalid_input);
-  // Where nothing is said the axis is x.
+  // The default axis is x.
   write(links + first + joint_to_c(""));
   const auto along_x = read_urdf(path, "b", "c");
   const Eigen::Matrix<double, 1, 1> angle(.4);
@@ -119,7 +119,7 @@ TEST_CASE("read_urdf: errors name file, line and element") {
                       ": no joints connect the links \"a\" and \"c\": \"c\" has no parent joint");
   check_error("<joint name=\"q\" type=\"fixed\"><parent link=\"z\"/><child link=\"c\"/></joint>",
               q + " <parent>: no link \"z\"" + origins);
-  // Where it is in nobody's way it does no harm.
+  // A joint with unknown links outside the chain is no error.
   check_error(
       joint_to_c("") +
           "<joint name=\"r\" type=\"fixed\"><parent link=\"y\"/><child link=\"z\"/></joint>",
@@ -128,7 +128,7 @@ TEST_CASE("read_urdf: errors name file, line and element") {
   const std::string missing = "duet: " + path + ": no link \"z\"" + origins;
   CHECK(message("a", "z") == missing);
   CHECK(message("z", "c") == missing);
-  // The other way round.
+  // The chain in the opposite direction.
   const auto back = read_urdf(path, "c", "a");
   CHECK(back.joint_names() == std::vector<std::string>{"q", "p"});
   const Eigen::Vector2d theta(.5, .7);
@@ -145,7 +145,7 @@ TEST_CASE("read_urdf: unknown attributes are rejected, unknown elements are list
   const std::string file = "duet: " + path + ":";
   const auto check_error = [&](const std::string& joint, const std::string& expected) {
     write(links + first + joint);
-    CHECK(message("a", "a") == expected); // wherever it stands
+    CHECK(message("a", "a") == expected); // anywhere in the file
   };
   const std::string q = file + "5: <joint name=\"q\">";
   const std::string unknown = ": unknown attribute ";
@@ -168,7 +168,7 @@ TEST_CASE("read_urdf: unknown attributes are rejected, unknown elements are list
               q + unknown + "\"typ\": there are \"type\", \"name\"");
   check_error("<link nam=\"q\"/>",
               file + "5: <link>" + unknown + "\"nam\": there are \"name\", \"type\"");
-  // One name for two.
+  // Repeated names.
   check_error("<link name=\"b\"/>", file + "5: <link name=\"b\">: it is repeated, first in line 3");
   check_error(joint_to_c("") + "<link name=\"d\"/>\n<joint name=\"q\" type=\"fixed\"><parent "
                                "link=\"a\"/><child link=\"d\"/></joint>",
@@ -177,7 +177,7 @@ TEST_CASE("read_urdf: unknown attributes are rejected, unknown elements are list
       joint_to_c("") +
           "<joint name=\"r\" type=\"fixed\"><parent link=\"a\"/><child link=\"c\"/></joint>",
       file + "6: <joint name=\"r\">: the link \"c\" already has the parent joint \"q\" of line 5");
-  // What is other programs'.
+  // Attributes and elements of other programs.
   check_error(joint_to_c("<axis xyz=\"0 0 1\" rpy=\"0 0 0\"/><limit command_effort=\"1\"/>"), "");
   check_error(joint_to_c("<dynamics D=\"1\" mu_coulomb=\"0\"/><calibration rising=\"0\"/>"), "");
   check_error("<link name=\"x\" xmlns:v=\"w\" v:y=\"1\"><visual any=\"1\"/></link>"
@@ -185,7 +185,7 @@ TEST_CASE("read_urdf: unknown attributes are rejected, unknown elements are list
               "");
   CHECK(read_urdf_summary(path).unknown.empty());
   CHECK(to_text(read_urdf_summary(path)).find("unknown") == std::string::npos);
-  // Elements.
+  // Unknown elements.
   write(links + first + joint_to_c("<orgin xyz=\"1 0 0\"/>\n<Axis/>") +
         "<v:tool/>\n<link name=\"x\"><contact/></link>");
   const auto names = read_urdf_summary(path);
@@ -280,7 +280,7 @@ TEST_CASE("read_urdf: malformed XML is rejected with line and element") {
   const std::string deep = file + "1: elements are nested more than 100 deep, in <x> of line 1";
   CHECK(error_of(nested(100, "<x>", "</x>")) == deep);
   CHECK(error_of(nested(200000, "<x>", "</x>")) == deep);
-  // Tags that are none.
+  // Text that only looks like tags.
   CHECK(error_of(
             nested(1, "<!--<x><x>--><?p <x>?><y z='&lt;x>' w = \"&lt;x>\" /><![CDATA[<x>]]>", ""))
             .empty());
@@ -399,7 +399,7 @@ TEST_CASE("read_urdf: control characters in names are escaped in errors") {
         "duet: " + path + ": no link \"\\n\": there are \"a\", \"\\xc2\\x9b2J\"");
   CHECK(message("a", "\x1b[2J") ==
         "duet: " + path + ": no link \"\\x1b[2J\": there are \"\\xc2\\x9b2J\", \"a\"");
-  write("<link name=\"\x1b[2J\"/>"); // which XML has not
+  write("<link name=\"\x1b[2J\"/>"); // a character that XML does not permit
   CHECK(message() == "duet: " + path + ":3: not well-formed (invalid token), in <robot> of line 2");
   std::filesystem::remove(path);
 }
@@ -425,14 +425,14 @@ TEST_CASE("read_urdf: files of real robots agree with the built-in arms") {
     CHECK(max_abs_difference(transform_matrix(panda.pose(theta, panda.link("panda_link4"))),
                              transform_matrix(known.pose(theta, 4))) < 4e-15);
   }
-  // Fingers: the second one follows the first.
+  // Fingers: the second one mimics the first.
   CHECK(read_urdf(folder + "panda.urdf", "panda_link0", "panda_leftfinger").size() == 8);
   CHECK_THROWS_AS((void)read_urdf(folder + "panda.urdf", "panda_link0", "panda_rightfinger"),
                   invalid_input);
   const auto tiago = read_urdf(folder + "tiago_no_hand.urdf", "base_link", "arm_7_link");
   CHECK(tiago.size() == 8);
   CHECK(tiago.kind(0) == joint_kind::prismatic);
-  // Of the torso's limits, 0 to 0.35, and of the arm's the soft ones hold.
+  // The soft limits of the arm apply.
   CHECK(tiago.limits(1).upper == 2.67889357189);
   CHECK(read_urdf(folder + "double_pendulum.urdf", "base_link", "link2").size() == 2);
   CHECK(read_urdf(folder + "ur5_robot.urdf", "base_link", "tool0").size() == 6);

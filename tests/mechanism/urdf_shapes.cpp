@@ -34,7 +34,7 @@ std::string robot_with(const std::string& inside) {
          "<child link=\"b\"/></joint>\n";
 }
 
-/// What is wrong behind the name of the file, of a tree and of a chain.
+/// Error message for a tree and a chain, without the name of the file.
 std::string error_of(const std::string& inside) {
   write(robot_with(inside));
   const std::string tree = duet_test::message_of<file_error>([] { (void)read_urdf_tree(path); });

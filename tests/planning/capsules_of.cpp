@@ -58,7 +58,7 @@ std::vector<point> inside_cylinder(const collision_cylinder& c, int count, bool 
   return result;
 }
 
-/// Of an octahedron with its corners at these distances from the origin, faces outwards.
+/// An octahedron with its vertices at these distances from the origin, with outward faces.
 triangle_mesh octahedron(double a, double b, double c) {
   triangle_mesh result;
   for (int k = 0; k < 8; ++k) {
@@ -229,7 +229,7 @@ TEST_CASE("the links of a tree and a chain: each shape where it stands") {
   CHECK(of_tree.volume_ratios[4] == doctest::Approx(1).epsilon(1e-15));
   CHECK(of_tree.volume_ratios[0] > 1);
   CHECK(of_tree.volume_ratios[2] > 1);
-  // The corners of the mesh, scaled, where the link is.
+  // The vertices of the mesh, scaled, in the frame of the link.
   const auto& meshed = of_tree.bodies[3];
   const auto where = pose(placed.rotation, point(placed.translation.data()));
   for (int axis = 0; axis < 3; ++axis) {

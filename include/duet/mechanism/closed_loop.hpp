@@ -163,7 +163,7 @@ private:
     if (!to.has_converged() || !(change > .25 && change < 4)) {
       return std::nullopt;
     }
-    // The rates at both ends must explain the displacement, and x must not turn back, as it would
+    // The rates at both ends must explain the displacement, and x must not reverse, as it would
     // beyond a gap.
     const tangent after = rate(to, next, du);
     const double fastest = std::max(before.norm(), after.norm());

@@ -40,7 +40,7 @@ struct motion_trace {
   std::vector<Eigen::VectorXd> positions;  ///< configurations in order along the motion
   std::vector<dead_point> dead_points;     ///< dead points of all coordinates, as met
   std::vector<branch_point> branch_points; ///< branch points, in the order they are met
-  bool is_closed = false; ///< true if it returns to its start, or to the branch it turned off to
+  bool is_closed = false; ///< true if it returns to its start, or to the branch that it changed to
   bool stopped_early =
       false; ///< true if it ends where branches touch, or where it cannot be followed
 };

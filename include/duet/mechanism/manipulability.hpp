@@ -67,7 +67,7 @@ template <bool WithGradient, class M>
     }
     const S smallest = abs(r(n - 1, n - 1));
     result.volume = others * smallest;
-    if constexpr (WithGradient) { // qr.solve would omit what is divided by a small pivot
+    if constexpr (WithGradient) { // qr.solve would omit entries divided by a small pivot
       result.gradient = M::Zero(m.rows(), n);
       for (Eigen::Index j = 0; j < n; ++j) { // column j of |r_last| R⁻ᵀ, then Q times it
         auto column = result.gradient.col(qr.colsPermutation().indices()[j]);

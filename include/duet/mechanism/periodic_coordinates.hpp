@@ -40,7 +40,7 @@ struct periodic_coordinates {
       const coordinate_source& source = of.tree().table().sources[std::size_t(node.coordinate)];
       if (!node.is_ball &&
           (node.step.is_translational || source.multiplier != std::round(source.multiplier))) {
-        angles[std::size_t(source.own)] = false; // what follows the coordinate would move
+        angles[std::size_t(source.own)] = false; // links that mimic the coordinate would move
       }
     }
   }

@@ -164,7 +164,7 @@ public:
     }
     displace(i, locked);
   }
-  /// Displaces all that follows link i, relative to the frame of link i.
+  /// Displaces all frames after link i, relative to the frame of link i.
   constexpr void displace(int i, const placement<T>& by) {
     if (i == size_) {
       tip_.offset = by * tip_.offset;

@@ -126,8 +126,8 @@ template <class Range>
 
 } // namespace detail
 
-/// Configurations of a chain, contiguous in memory: a span or a vector of what `chain.pose` takes,
-/// over numbers.
+/// Configurations of a chain, contiguous in memory: a span or a vector of arguments of
+/// `chain.pose`, over numbers.
 template <class R>
 concept Configurations = std::ranges::contiguous_range<R> && VectorLike<detail::range_element<R>>;
 

@@ -74,7 +74,7 @@ public:
 
   // For those who extend duet.
 
-  /// Displaces all that follows link i, and what is fixed to it.
+  /// Displaces all frames after link i, including links fixed to it.
   void displace(int i, const placement<double>& by) {
     serial_chain<-Capacity>::displace(i, by);
     for (urdf_link& each : links_) {

@@ -82,7 +82,7 @@ private:
   template <class Body>
   void guarded(const Body& body) {
     catching<void>(body, [&] {
-      is_out_of_memory_ = true; // nothing else is thrown there
+      is_out_of_memory_ = true; // nothing else is thrown in callbacks
       XML_StopParser(parser_, XML_FALSE);
     });
   }

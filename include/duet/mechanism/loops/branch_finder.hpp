@@ -85,7 +85,7 @@ private:
     const Eigen::Index n = from.x.size(), r = u.cols();
     const rank_revealing_svd reduced(Eigen::MatrixXd(u.transpose().lazyProduct(from.matrix)));
     const Eigen::VectorXd& s = reduced.singular_values();
-    Eigen::Index lost = 0; // rank that is lost, as far as visible from here
+    Eigen::Index lost = 0; // rank that is lost, as far as visible from this point
     while (lost < r && s[r - 1 - lost] < 10 * within * s[0]) {
       ++lost;
     }

@@ -49,7 +49,7 @@ private:
   static constexpr std::size_t head = 84, bytes_of_triangle = 50;
 
   [[noreturn]] void fail(const std::string& what) const { raise(file_error(path_, what)); }
-  /// A fault in what stands at a place in the text.
+  /// Throws the error of a word of the text, with its line.
   [[noreturn]] void fail_at(std::string_view location, const std::string& what) const {
     const auto before =
         std::string_view(text_).substr(0, std::size_t(location.data() - text_.data()));
@@ -184,7 +184,7 @@ private:
   }
   /// `7`, `7/1`, `7//3`, `7/1/3`, from 1 on; negative from the last one back.
   [[nodiscard]] std::size_t vertex_number(std::string_view text, std::size_t count) const {
-    const auto integer = [](std::string_view part) { // 0 where it is none
+    const auto integer = [](std::string_view part) { // 0 if it is not an integer
       const double k = parse_number(part).value_or(0);
       return std::isfinite(k) && k == std::floor(k) ? k : 0;
     };
