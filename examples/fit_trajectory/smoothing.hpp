@@ -48,7 +48,8 @@ struct smoothed {
 /// is given.
 inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double length,
                        double outlier) {
-  const duet::fit_options options{.length = length, .outlier_threshold = std::max(outlier, 0.0)};
+  const duet::fit_options options{.characteristic_length = length,
+                                  .outlier_threshold = std::max(outlier, 0.0)};
   fitted result = duet::fit<curve>(r.table.parameters, r.table.elements,
                                    duet::knots_every(r.table.parameters, rows_per_knot), options);
   const double limit = result.outlier_threshold;

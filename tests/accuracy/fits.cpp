@@ -58,7 +58,7 @@ row fit_row(const std::string& name, int count) {
                                 random_displacement<T>(noise.value, noise.value * length, random)));
       append(at, rows.back());
     }
-    const spline s = duet::fit<spline>(u, rows, knots, {.length = length}).curve;
+    const spline s = duet::fit<spline>(u, rows, knots, {.characteristic_length = length}).curve;
     at.direction.assign(at.x.size(), 0);
     const numbers parameters{0, random.uniform(0, 1), random.uniform(1, 3)};
     for (const double each : parameters) {

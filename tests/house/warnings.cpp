@@ -70,9 +70,9 @@ int main() {
   const auto weighted =
       fit<cumulative_bspline<double, 4>>(times, rows, knots, {.outlier_threshold = 0});
   std::cout << weighted.rms << weighted.outlier_threshold;
-  [[maybe_unused]] const std::tuple some{fit_options{.length = 2},
+  [[maybe_unused]] const std::tuple some{fit_options{.characteristic_length = 2},
                                          fit_options{.max_iterations = 3},
-                                         adaptive_table_options{.length = 2},
+                                         adaptive_table_options{.characteristic_length = 2},
                                          adaptive_table_options{.max_samples = 100},
                                          plan_options{.tolerance = 1e-9},
                                          plan_options{.max_iterations = 100},

@@ -167,8 +167,9 @@ TEST_CASE_TEMPLATE("outliers pull with a bounded force", Q, rotation, pose_type)
     rows[i] = moved(rows[i], random, i % 20 == 10 ? 1.5 : noise);
   }
   const auto plain = duet::fit<curve<Q>>(u, rows, reference.basis().knots());
-  const auto robust = duet::fit<curve<Q>>(u, rows, reference.basis().knots(),
-                                          {.length = 1, .outlier_threshold = 3 * noise});
+  const auto robust =
+      duet::fit<curve<Q>>(u, rows, reference.basis().knots(),
+                          {.characteristic_length = 1, .outlier_threshold = 3 * noise});
   CHECK(largest_distance(plain.curve, reference) > 0.1);
   CHECK(largest_distance(robust.curve, reference) < 2 * noise);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -300,8 +301,10 @@ TEST_CASE("the length weighs shifts against turns") {
     row = row * duet::pose(rotation(1.0), random_vector(random, 0.1));
   }
   const auto knots = duet::clamped_knots(steps(8, 4), 4); // too few for an exact fit
-  const auto worst_turn = [&](double length) {
-    const auto s = duet::fit<curve<pose_type>>(u, rows, knots, {.length = length}).curve;
+  const auto largest_angle = [&](double characteristic_length) {
+    const auto s = duet::fit<curve<pose_type>>(u, rows, knots,
+                                               {.characteristic_length = characteristic_length})
+                       .curve;
     double worst = 0;
     for (std::size_t i = 0; i < u.size(); ++i) {
       worst = std::max(worst, between(rotation(duet::rotation(s(u[i]))),
@@ -309,7 +312,7 @@ TEST_CASE("the length weighs shifts against turns") {
     }
     return worst;
   };
-  CHECK(worst_turn(100) < worst_turn(0.1));
+  CHECK(largest_angle(100) < largest_angle(0.1));
 }
 
 /// 2 log(S* Q), [v; ω] of poses
@@ -399,7 +402,7 @@ TEST_CASE("covariances of one size are a length, weights all alike are none") {
   for (auto& row : rows) {
     row = moved(row, random, 0.02);
   }
-  const auto plain = duet::fit<curve<pose_type>>(u, rows, knots, {.length = 0.5});
+  const auto plain = duet::fit<curve<pose_type>>(u, rows, knots, {.characteristic_length = 0.5});
   duet::fit_options options{.weights = std::vector<double>(rows.size(), 7.0)};
   options.covariances.emplace_back(
       Eigen::Matrix<double, 6, 1>(0.25, 0.25, 0.25, 1, 1, 1).asDiagonal());
@@ -568,8 +571,9 @@ TEST_CASE("bad input is named") {
   CHECK(message(steps(1, 40), rows) ==
         "duet: fit: too few rows for control element 4, which acts on parameters from 1 to 5: use "
         "fewer knots there");
-  CHECK(message(u, rows, {.length = 0}) == "duet: fit: length 0 and outlier_threshold inf: the "
-                                           "length must be positive, the limit not negative");
+  CHECK(message(u, rows, {.characteristic_length = 0}) ==
+        "duet: fit: characteristic_length is 0 and outlier_threshold is inf (expected a positive "
+        "length and a non-negative threshold)");
   CHECK(message(u, rows, {.weights = {1, 2}}) == "duet: fit: 2 weights for 41 rows");
   std::vector<double> weights(41, 1.0);
   weights[7] = 0;

@@ -75,7 +75,7 @@ TEST_CASE("a table of poses weighs shifts by the length") {
   const auto near = duet::adaptive_table<pose_curve>(moving, 0.0, 3.0, 1e-5);
   CHECK(largest_error(near.curve, moving) <= 1.1e-5);
   const auto coarse = duet::adaptive_table<pose_curve>(moving, 0.0, 3.0, 1e-5, duet::not_a_knot{},
-                                                       {.length = 1e-3});
+                                                       {.characteristic_length = 1e-3});
   CHECK(coarse.table.parameters.size() != near.table.parameters.size());
 }
 

@@ -25,7 +25,8 @@ namespace duet {
 
 /// Options of `adaptive_table`.
 struct adaptive_table_options {
-  double length = 1; ///< characteristic length: distance between poses that counts as 1 rad
+  /// Characteristic length: distance between poses that counts as much as a rotation by 1 rad.
+  double characteristic_length = 1;
   std::size_t initial_samples = 9;   ///< initial number of samples, equally spaced; at least 4
   std::size_t max_samples = 100'000; ///< maximum number of samples; more: `no_convergence`
 };
@@ -49,9 +50,10 @@ namespace detail {
 
 /// Angle between rotations, or distance between poses.
 template <class T>
-[[nodiscard]] real_type_t<T> miss(const quaternion<T>& a, const quaternion<T>& b, double length) {
+[[nodiscard]] real_type_t<T> miss(const quaternion<T>& a, const quaternion<T>& b,
+                                  double characteristic_length) {
   if constexpr (contains_tag<T, screw_tag>()) {
-    return innermost(distance(a, b, length));
+    return innermost(distance(a, b, characteristic_length));
   } else {
     return innermost(rotation_vector(quaternion<T>(conj(a) * b)).norm());
   }
@@ -77,9 +79,9 @@ template <class T, class F, class R>
 /// refined. Points are spread unevenly, because a ripple may vanish at even ones.
 template <class Spline, class F, class R>
 [[nodiscard]] double miss_between(const Spline& s, const F& f, const R& low, const R& high,
-                                  double tolerance, double length) {
+                                  double tolerance, double characteristic_length) {
   const auto miss_at = [&](const R& u) {
-    return double(miss(s(u), sample_of<typename Spline::scalar_type>(f, u), length));
+    return double(miss(s(u), sample_of<typename Spline::scalar_type>(f, u), characteristic_length));
   };
   double largest = 0;
   R worst = low;
@@ -120,7 +122,7 @@ template <class Spline, class F, class R>
 /// tolerance, so f must not have detail that these points miss.
 ///
 /// \param f          function that returns the rotation or pose at a parameter
-/// \param tolerance  radians, for poses as `distance` with `options.length`
+/// \param tolerance  radians, for poses as `distance` with `options.characteristic_length`
 /// \param ends       end conditions of the curve
 /// \throws invalid_input for a tolerance that is not positive, an empty range, and a function value
 /// that is not finite or not a unit, with the parameter
@@ -159,7 +161,8 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
       const R& high = table.parameters[i + 1];
       finer.parameters.push_back(low);
       finer.elements.push_back(table.elements[i]);
-      const double error = detail::miss_between(s, f, low, high, tolerance, options.length);
+      const double error =
+          detail::miss_between(s, f, low, high, tolerance, options.characteristic_length);
       worst = std::max(worst, error);
       if (!(error <= 0.99 * tolerance)) { // samples miss the last part of a maximum
         const R middle = low + (high - low) / R(2);
@@ -197,7 +200,7 @@ template <CurveType Spline>
 [[nodiscard]] std::vector<double>
 estimated_errors(const lookup_table<typename Spline::scalar_type>& table,
                  const curve_ends<typename Spline::scalar_type>& ends = not_a_knot{},
-                 double length = 1) {
+                 double characteristic_length = 1) {
   const std::size_t rows = table.parameters.size();
   if (rows < 9 || rows != table.elements.size()) {
     std::ostringstream message;
@@ -226,7 +229,7 @@ estimated_errors(const lookup_table<typename Spline::scalar_type>& table,
       const bool is_regular = i >= 6 && i + 6 < rows && longest < .6;
       const double safety = Spline::convergence > 4 ? 5 : is_regular ? 1.2 : 2.2;
       misses[i] = safety * std::pow(longest, Spline::convergence) / (shape * shape) *
-                  double(detail::miss(s(u[i]), elements[i], length));
+                  double(detail::miss(s(u[i]), elements[i], characteristic_length));
     }
   }
   std::vector<double> errors(rows - 2);

@@ -35,8 +35,8 @@ struct fit_result {
   using real_type = typename Spline::real_type;
   Spline curve; ///< fitted curve, with the given knots
   /// Residual |2 log(S(uᵢ)* Qᵢ)| of each sample: in radians; for poses the root of the sum of
-  /// squares of the angle and (distance/length); with `fit_options::covariances` in standard
-  /// deviations.
+  /// squares of the angle and (distance/characteristic length); with `fit_options::covariances` in
+  /// standard deviations.
   std::vector<real_type> residuals;
   real_type rms;  ///< root of the weighted mean square of `residuals`, outliers included
   int iterations; ///< number of Levenberg–Marquardt iterations
@@ -111,9 +111,9 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 ///               chosen parameters, `clamped_knots(few_parameters, Order)`; fewer knots smooth more
 /// \throws invalid_sample for a sample that is not finite, not a unit, outside the knots' domain or
 /// does not follow the sample before
-/// \throws invalid_input for counts that differ, too few samples on part of the domain, a length or
-/// weight that is not positive, a negative outlier threshold, or a covariance that is not positive
-/// definite
+/// \throws invalid_input for counts that differ, too few samples on part of the domain, a
+/// characteristic length or weight that is not positive, a negative outlier threshold, or a
+/// covariance that is not positive definite
 /// \throws no_convergence if the iteration does not converge
 template <CurveType Spline, class R, detail::RowOf<Spline> T>
 [[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
@@ -123,9 +123,10 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
                 "duet: fit makes cumulative_bspline<T, Order> from quaternion<T>");
   std::ostringstream message;
   detail::check_rows("fit", parameters, rows.size(), 0);
-  if (!(options.length > 0) || !(options.outlier_threshold >= 0)) {
-    message << "duet: fit: length " << options.length << " and outlier_threshold "
-            << options.outlier_threshold << ": the length must be positive, the limit not negative";
+  if (!(options.characteristic_length > 0) || !(options.outlier_threshold >= 0)) {
+    message << "duet: fit: characteristic_length is " << options.characteristic_length
+            << " and outlier_threshold is " << options.outlier_threshold
+            << " (expected a positive length and a non-negative threshold)";
     detail::raise(invalid_input(message.str()));
   }
   detail::require_fit_weights(options.weights, rows.size());

@@ -50,7 +50,8 @@ class bspline_fit : bspline_residuals<T, Order> {
 public:
   bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> elements,
               const fit_options& options)
-      : bspline_fit(basis, u, central_row(elements, R(options.length)), elements, options) {}
+      : bspline_fit(basis, u, central_row(elements, R(options.characteristic_length)), elements,
+                    options) {}
 
 private:
   /// Constructs the problem with samples relative to one of them: small rotations and translations
@@ -61,7 +62,8 @@ private:
         options_(options), basis_(&basis), u_(&u), origin_(origin),
         limits_(u.size(), R(options.outlier_threshold)) {
     if (is_robust()) {
-      controls_ = robust_centre<T>().controls(basis, u, this->rows(), R(options.length));
+      controls_ =
+          robust_centre<T>().controls(basis, u, this->rows(), R(options.characteristic_length));
       approach();
     } else {
       controls_ = elements_at_averages(basis, u, this->rows());
@@ -274,7 +276,7 @@ private:
   /// Sample farthest from those around it, and its distance.
   [[nodiscard]] std::pair<std::size_t, R> farthest_from_middle() const {
     const std::vector<R> sizes = residual_type::residuals(
-        robust_centre<T>().controls(*basis_, *u_, rows(), R(options_.length)));
+        robust_centre<T>().controls(*basis_, *u_, rows(), R(options_.characteristic_length)));
     const auto most = std::max_element(sizes.begin(), sizes.end());
     return {std::size_t(most - sizes.begin()), *most};
   }

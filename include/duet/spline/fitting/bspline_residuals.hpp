@@ -46,8 +46,8 @@ protected:
 
   bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
                     const fit_options& options)
-      : rows_(std::move(rows)), length_(R(options.length)), given_weights_(options.weights),
-        whitening_(inverse_roots(options.covariances)) {
+      : rows_(std::move(rows)), characteristic_length_(R(options.characteristic_length)),
+        given_weights_(options.weights), whitening_(inverse_roots(options.covariances)) {
     first_.reserve(u.size());
     weights_.reserve(u.size());
     for (const R& parameter : u) {
@@ -236,8 +236,8 @@ private:
     return whitening_[whitening_.size() > 1 ? i : 0];
   }
 
-  /// Residual in its unit: [v/length; ω] for poses; in standard deviations if there are
-  /// covariances.
+  /// Residual in its unit: [v/characteristic length; ω] for poses; in standard deviations if there
+  /// are covariances.
   [[nodiscard]] tangent scaled(const vector3<T>& r, std::size_t i) const {
     tangent result;
     if constexpr (dimension == 3) {
@@ -248,7 +248,7 @@ private:
     if (!whitening_.empty()) {
       result = whitening(i).lazyProduct(result).eval();
     } else if constexpr (dimension == 6) {
-      result.template head<3>() /= length_;
+      result.template head<3>() /= characteristic_length_;
     }
     return result;
   }
@@ -265,12 +265,12 @@ private:
     if (!whitening_.empty()) {
       block = block.lazyProduct(whitening(i).transpose()).eval();
     } else if constexpr (dimension == 6) {
-      block.template leftCols<3>() /= length_;
+      block.template leftCols<3>() /= characteristic_length_;
     }
   }
 
   std::vector<element> rows_;
-  R length_;
+  R characteristic_length_;
   std::vector<double> given_weights_;
   std::vector<square> whitening_; ///< empty, one for all or one for each sample
   std::vector<std::size_t> first_;

@@ -128,7 +128,7 @@ public:
   using R = real_type_t<T>;
   using point = std::array<R, is_pose ? 12 : 9>;
 
-  [[nodiscard]] static point of(const quaternion<T>& q, const R& length) {
+  [[nodiscard]] static point of(const quaternion<T>& q, const R& characteristic_length) {
     point result;
     const auto put = [&](const auto& entries, std::size_t at) {
       for (Eigen::Index i = 0; i < entries.size(); ++i) {
@@ -138,7 +138,7 @@ public:
     if constexpr (is_pose) {
       constexpr R most = std::numeric_limits<R>::max() / 64; // sums of differences stay finite
       put(rotation_matrix(rotation(q)), 0);
-      put(vector3<R>((translation(q) / length).cwiseMin(most).cwiseMax(-most)), 9);
+      put(vector3<R>((translation(q) / characteristic_length).cwiseMin(most).cwiseMax(-most)), 9);
     } else {
       put(rotation_matrix(q), 0);
     }
@@ -159,13 +159,13 @@ public:
 /// Sample with the least median separation from the others, among nine spread over all.
 template <class T>
 [[nodiscard]] quaternion<T> central_row(const std::vector<quaternion<T>>& rows,
-                                        const real_type_t<T>& length) {
+                                        const real_type_t<T>& characteristic_length) {
   using R = real_type_t<T>;
   using coordinates = median_coordinates<T>;
   constexpr std::size_t count = 9;
   std::array<typename coordinates::point, count> points;
   for (std::size_t k = 0; k < count; ++k) {
-    points[k] = coordinates::of(rows[k * (rows.size() - 1) / (count - 1)], length);
+    points[k] = coordinates::of(rows[k * (rows.size() - 1) / (count - 1)], characteristic_length);
   }
   std::vector<R> medians, separations(count);
   for (const auto& point : points) {
@@ -209,7 +209,7 @@ public:
   template <int Order>
   [[nodiscard]] std::vector<quaternion<T>>
   controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
-           const std::vector<quaternion<T>>& rows, const R& length) {
+           const std::vector<quaternion<T>>& rows, const R& characteristic_length) {
     constexpr std::array<std::size_t, 5> windows{81, 41, 21, 11, 5};
     std::vector<quaternion<T>> result;
     for (std::size_t i = 0; i < basis.size(); ++i) {
@@ -221,7 +221,7 @@ public:
       const std::size_t all = std::min(rows.size(), windows.front()), from = first_of(all);
       points_.clear();
       for (std::size_t k = from; k < from + all; ++k) {
-        points_.push_back(coordinates::of(rows[k], length));
+        points_.push_back(coordinates::of(rows[k], characteristic_length));
       }
       centre_ = middle - from;
       radius_ = std::numeric_limits<R>::infinity();
