@@ -28,7 +28,7 @@ inline table read_table(const std::string& path) {
   try {
     q = duet::align_quaternion_signs(q);
   } catch (const duet::invalid_sample& error) {
-    throw file_error(path, "row " + std::to_string(error.row() + 1) + ": " + error.reason());
+    throw file_error(path, "row " + std::to_string(error.index() + 1) + ": " + error.reason());
   }
   return {std::move(u), std::move(q)};
 }

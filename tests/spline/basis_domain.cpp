@@ -72,13 +72,13 @@ TEST_CASE("P1 as printed, closed at both ends, breaks the partition of unity at 
                         [&](std::size_t i) { return duet::basis_function(t, i, order, u); });
     };
     CHECK(printed(3.5) == doctest::Approx(1)); // between knots there is no difference
-    CHECK(printed(4.0) == doctest::Approx(2)); // at a knot everything counts twice
+    CHECK(printed(4.0) == doctest::Approx(2)); // two intervals contain a knot
     CHECK(half_open(3.5) == doctest::Approx(1));
     CHECK(half_open(4.0) == doctest::Approx(1));
   }
 }
 
-TEST_CASE("spans are half-open, the last one of the domain is closed") {
+TEST_CASE("bspline_basis: spans are half-open, the last one of the domain is closed") {
   const bspline_basis<3> basis({0, 0, 0, 1, 1, 2, 4, 4, 4});
   CHECK(basis.breaks() == numbers{0, 1, 2, 4});
   CHECK(basis.front() == 0);
@@ -92,11 +92,11 @@ TEST_CASE("spans are half-open, the last one of the domain is closed") {
   CHECK(basis.find_span(std::nextafter(4, 0)) == 2);
   CHECK(basis.find_span(4) == 2);
   CHECK(basis.first_function(0) == 0);
-  CHECK(basis.first_function(1) == 2); // the double knot passes two functions by
+  CHECK(basis.first_function(1) == 2); // at a double knot two functions end
   CHECK(basis.first_function(2) == 3);
 }
 
-TEST_CASE("the span is found wherever the knots are") {
+TEST_CASE("bspline_basis: find_span is correct for random uneven and repeated knots") {
   duet_test::random_source random(11);
   for (int repeat = 0; repeat < 50; ++repeat) {
     numbers t;
@@ -112,7 +112,7 @@ TEST_CASE("the span is found wherever the knots are") {
     try {
       basis = bspline_basis<4>(t);
     } catch (const invalid_input&) {
-      continue; // five equal knots, now and then
+      continue; // a knot is repeated five times, which the basis rejects
     }
     for (const double at : duet_test::parameters_on(t, 4)) {
       const std::size_t span = basis.find_span(at);
@@ -123,7 +123,7 @@ TEST_CASE("the span is found wherever the knots are") {
   }
 }
 
-TEST_CASE("where the knots go on beyond a full knot, the domain is still closed") {
+TEST_CASE("bspline_basis: the domain is closed even if knots follow a knot of full multiplicity") {
   const numbers t = {0, 0, 0, 1, 1, 1, 2};
   const bspline_basis<3> basis(t); // domain [0, 1], knots beyond it
   CHECK(basis.size() == 4);
@@ -135,24 +135,26 @@ TEST_CASE("where the knots go on beyond a full knot, the domain is still closed"
   CHECK(sum == 1);
 }
 
-TEST_CASE("bad knots") {
+TEST_CASE("bspline_basis: errors name invalid knots") {
   CHECK(error_message<4>({0, 1, 2, 3, 4, 5, 6}) ==
-        "duet: knots: order 4 needs at least 8 of them, got "
-        "7: clamped_knots(parameters, 4) makes enough");
-  CHECK(error_message<4>({}).starts_with("duet: knots: order 4 needs at least 8 of them, got 0"));
+        "duet: knots: order 4 needs at least 8 knots, got 7 (clamped_knots(parameters, 4) makes "
+        "enough)");
+  CHECK(error_message<4>({}).starts_with("duet: knots: order 4 needs at least 8 knots, got 0"));
   CHECK(error_message<2>({0, 1, 0.5, 2}) == "duet: knots: knot 2 = 0.5 is less than knot 1 = 1");
-  CHECK(error_message<2>({0, 1, not_a_number, 2}) == "duet: knots: knot 2 is nan");
-  CHECK(error_message<2>({0, 1, 2, infinity}) == "duet: knots: knot 3 is inf");
+  CHECK(error_message<2>({0, 1, not_a_number, 2}) ==
+        "duet: knots: knot 2 is nan (expected a finite number)");
+  CHECK(error_message<2>({0, 1, 2, infinity}) ==
+        "duet: knots: knot 3 is inf (expected a finite number)");
   CHECK(error_message<2>({0, 1, 1, 1, 2, 3}) ==
         "duet: knots: knot 3 = 1 is repeated more than 2 times");
-  CHECK(error_message<3>({0, 0, 1, 1, 2, 2}) == "duet: knots: the domain is empty");
+  CHECK(error_message<3>({0, 0, 1, 1, 2, 2}) == "duet: knots: the domain from 1 to 1 is empty");
   CHECK(error_message<2>({0, 0, 5e-324, 5e-324}) ==
         "duet: knots: knot 1 = 0 and knot 2 = 4.94066e-324 are too close: a derivative overflows");
   CHECK(error_message<2>({-1.7e308, -1.7e308, 1.7e308, 1.7e308}) ==
         "duet: knots: the distance from -1.7e+308 to 1.7e+308 overflows");
 }
 
-TEST_CASE("outside the domain") {
+TEST_CASE("cumulative_bspline: parameters outside the domain throw, with the value") {
   const duet::cumulative_bspline<double, 3> s({0, 1, 2, 3, 4, 5},
                                               duet_test::random_orientations(3, 0.4));
   CHECK_NOTHROW(static_cast<void>(s(2.0)));

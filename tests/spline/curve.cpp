@@ -47,7 +47,7 @@ cumulative_bspline<double, Order> random_curve(const std::vector<double>& knots,
 
 } // namespace
 
-TEST_CASE("cumulative_bspline: increments of small steps keep the digits of the controls") {
+TEST_CASE("cumulative_bspline: increments of small steps have the digits of the control points") {
   std::vector<double> breaks(38);
   std::iota(breaks.begin(), breaks.end(), 0.);
   for (const double step : {1e-12, 1e-9, 1e-6}) {
@@ -65,11 +65,11 @@ TEST_CASE("cumulative_bspline: increments of small steps keep the digits of the 
           (s.increments()[i].cast<long double>() - reference).norm() / reference.norm();
       largest = std::max(largest, double(miss));
     }
-    CHECK_LT(largest, 1e-18 / step + 1e-15); // what the truth itself loses
+    CHECK_LT(largest, 1e-18 / step + 1e-15); // the reference itself has this error
   }
 }
 
-TEST_CASE("P2: the curve is the product over all control quaternions") {
+TEST_CASE("P2: the curve equals the product over all control quaternions") {
   for_each_order([](auto order) {
     constexpr int k = order;
     for (const duet_test::named_knots& each : knot_vectors(k)) {
@@ -91,8 +91,8 @@ TEST_CASE("P2: the curve is the product over all control quaternions") {
   });
 }
 
-TEST_CASE("P2 as printed, functions from B_{−1}: the first exponent B̃_0 is right but for the first "
-          "span") {
+TEST_CASE("P2 as printed, functions from B_{−1}: the first exponent B̃_0 is correct except in the "
+          "first span") {
   const auto knots = knot_vectors(4)[1].knots;
   const auto s = random_curve<4>(knots, 1);
   const quaternion first = s.control_points().front();
@@ -113,7 +113,7 @@ TEST_CASE("P2 as printed, functions from B_{−1}: the first exponent B̃_0 is r
   CHECK(beyond > 10);
 }
 
-TEST_CASE("order 2 is spherical interpolation between neighbours") {
+TEST_CASE("cumulative_bspline: order 2 gives spherical interpolation between neighbours") {
   const std::vector<double> knots = {0, 0, 1, 3, 3.5, 3.5};
   const auto s = random_curve<2>(knots, 2);
   for (const double t : {0.0, 0.2, 0.7, 0.99}) {
@@ -125,7 +125,7 @@ TEST_CASE("order 2 is spherical interpolation between neighbours") {
   }
 }
 
-TEST_CASE("about one axis the angle is the plain B-spline of the control angles") {
+TEST_CASE("cumulative_bspline: about one axis the angle is the B-spline of the control angles") {
   const std::vector<double> angles = {0.3, 0.9, -0.5, 0.1, 2, 2.5, 1};
   const vector axis(0.36, -0.48, 0.8);
   std::vector<quaternion> controls;
@@ -143,7 +143,8 @@ TEST_CASE("about one axis the angle is the plain B-spline of the control angles"
   }
 }
 
-TEST_CASE("the curve meets its first and last control quaternion and one at every triple knot") {
+TEST_CASE("cumulative_bspline: the curve passes through the first and the last control quaternion "
+          "and one at every triple knot") {
   const auto knots = duet::clamped_knots(std::vector<double>{0, 1, 1, 1, 2, 3}, 4);
   const auto s = random_curve<4>(knots, 2);
   CHECK(max_abs_difference(s(0.0), s.control_points()[0]) < 1e-15);
@@ -151,7 +152,7 @@ TEST_CASE("the curve meets its first and last control quaternion and one at ever
   CHECK(max_abs_difference(s(3.0), s.control_points().back()) < 1e-15);
 }
 
-TEST_CASE("moving all control quaternions moves the curve") {
+TEST_CASE("cumulative_bspline: rotating all control quaternions rotates the curve") {
   const auto knots = knot_vectors(4)[0].knots;
   const auto s = random_curve<4>(knots, 1.2);
   const quaternion p = random_orientations(1, 1, 5).front();
@@ -165,7 +166,7 @@ TEST_CASE("moving all control quaternions moves the curve") {
   }
 }
 
-TEST_CASE("signs of control quaternions do not matter, but for the first one's") {
+TEST_CASE("cumulative_bspline: only the sign of the first control quaternion affects the curve") {
   const auto knots = knot_vectors(4)[1].knots;
   const auto s = random_curve<4>(knots, 2.5);
   std::vector<quaternion> flipped = s.control_points();
@@ -178,7 +179,7 @@ TEST_CASE("signs of control quaternions do not matter, but for the first one's")
   for (std::size_t i = 0; i < flipped.size(); ++i) {
     CHECK(t.control_points()[i] == s.control_points()[i]);
     CHECK(t.increments()[i] == s.increments()[i]);
-    CHECK(s.increments()[i].norm() <= 1.5707963268); // half angles of at most half a turn
+    CHECK(s.increments()[i].norm() <= 1.5707963268); // half of a half turn
   }
   for (const double u : parameters_on(knots, 4)) {
     CHECK(t(u) == s(u));
@@ -186,7 +187,8 @@ TEST_CASE("signs of control quaternions do not matter, but for the first one's")
   }
 }
 
-TEST_CASE("control quaternions that are not there, not one, or a half turn apart") {
+TEST_CASE("cumulative_bspline: errors for missing control quaternions, for norms other than 1 and "
+          "for neighbours half a turn apart") {
   const std::vector<double> knots = {0, 0, 0, 1, 2, 2, 2};
   using spline = cumulative_bspline<double, 3>;
   const auto make = [&](std::vector<quaternion> controls) {
@@ -195,18 +197,18 @@ TEST_CASE("control quaternions that are not there, not one, or a half turn apart
   const quaternion one(1);
   const double not_a_number = std::numeric_limits<double>::quiet_NaN();
   CHECK(message_of<duet::invalid_input>(make({one, one, one})) ==
-        "duet: cumulative_bspline: 7 knots of order 3 take 4 control elements, got 3");
+        "duet: cumulative_bspline: 7 knots of order 3 need 4 control points, got 3");
   CHECK(message_of<duet::invalid_input>(make({})) ==
-        "duet: cumulative_bspline: 7 knots of order 3 take 4 control elements, got 0");
+        "duet: cumulative_bspline: 7 knots of order 3 need 4 control points, got 0");
   CHECK(message_of<duet::invalid_sample>(make({one, one * 1.1, one, one})) ==
-        "duet: row 1: quaternion (1.1, 0, 0, 0) has norm 1.1, not 1");
+        "duet: sample 1: quaternion (1.1, 0, 0, 0) has norm 1.1, not 1");
   CHECK(message_of<duet::invalid_sample>(make({one, one, quaternion(), one})) ==
-        "duet: row 2: quaternion (0, 0, 0, 0) has norm 0, not 1");
+        "duet: sample 2: quaternion (0, 0, 0, 0) has norm 0, not 1");
   CHECK(message_of<duet::invalid_sample>(make({one, one, one, {0, not_a_number, 0, 1}})) ==
-        "duet: row 3: quaternion (0, nan, 0, 1) is not finite");
+        "duet: sample 3: quaternion (0, nan, 0, 1) is not finite");
   CHECK(message_of<duet::invalid_sample>(make({one, {0, 0.6, 0.8, 0}, one, one})) ==
-        "duet: row 1: half a turn from the row before: either way round is as short");
-  // A norm that is off by the digits of a printed table is put right.
+        "duet: sample 1: half a turn from the sample before: both arcs are equally short");
+  // A norm that differs from 1 by the rounding of a printed table is normalised.
   const spline s(knots, {one * 1.0004, one, one, one});
   CHECK(s.control_points()[0] == one);
 }

@@ -106,7 +106,7 @@ random_orientations(std::size_t count, double step, std::uint64_t seed = 1) {
 
 /// Unit quaternions, each turned from the one before by exactly `angle` about any axis.
 [[nodiscard]] inline std::vector<duet::quaternion<double>>
-turned_by(double angle, std::size_t count, std::uint64_t seed) {
+rotated_by(double angle, std::size_t count, std::uint64_t seed) {
   random_source random(seed);
   std::vector<duet::quaternion<double>> result = {duet::quaternion<double>(1)};
   while (result.size() < count) {

@@ -33,17 +33,17 @@ using rotation_vector = duet::rotation_vector_spline<screw>;
 template <class Spline>
 Spline some_spline() {
   std::vector<double> u;
-  std::vector<pose_type> rows;
+  std::vector<pose_type> samples;
   for (int i = 0; i <= 20; ++i) {
     u.push_back(i + 0.3 * std::sin(i));
-    const duet::vector3<double> turn(0.3 * std::sin(i), 0.1 * i, 0.4 * std::cos(2 * i));
-    rows.push_back(
-        duet::pose(duet::from_rotation_vector(turn), duet::vector3<double>(i, std::sin(i), 0)));
+    const duet::vector3<double> angles(0.3 * std::sin(i), 0.1 * i, 0.4 * std::cos(2 * i));
+    samples.push_back(
+        duet::pose(duet::from_rotation_vector(angles), duet::vector3<double>(i, std::sin(i), 0)));
   }
-  return duet::interpolate<Spline>(u, rows, duet::not_a_knot{});
+  return duet::interpolate<Spline>(u, samples, duet::not_a_knot{});
 }
 
-/// Increasing, with a few jumps.
+/// Increasing parameters with a few random ones among them.
 std::vector<double> many_parameters() {
   duet_test::random_source random(3);
   std::vector<double> u;
@@ -55,15 +55,16 @@ std::vector<double> many_parameters() {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("many parameters give what each gives, on any number of threads", Spline,
-                   cumulative, rotation_vector) {
+TEST_CASE_TEMPLATE(
+    "evaluate: many parameters give the results of single ones, with any number of threads", Spline,
+    cumulative, rotation_vector) {
   const auto s = some_spline<Spline>();
   const auto u = many_parameters();
   std::vector<pose_type> poses(u.size());
   std::vector<duet::motion<screw>> motions(u.size());
   duet::evaluate(s, u, poses);
   duet::evaluate_motion(s, u, duet::frame::body, motions);
-  double worst = 0; // in ulps: the sines of several parameters at once are not the C library's
+  double worst = 0; // in ulps: SIMD batches have sines other than the C library's
   const auto compare = [&](const auto& a, const auto& b) {
     worst = std::max(worst, duet_test::ulps_apart(a, b));
   };
@@ -90,7 +91,7 @@ TEST_CASE_TEMPLATE("many parameters give what each gives, on any number of threa
   }
 }
 
-TEST_CASE("what is done of a cancelled run is known") {
+TEST_CASE("evaluate: a cancelled run reports how many results are complete") {
   const auto s = some_spline<cumulative>();
   const auto u = many_parameters();
   std::vector<pose_type> all(u.size()), out(u.size());
@@ -113,10 +114,10 @@ TEST_CASE("what is done of a cancelled run is known") {
   }
 }
 
-TEST_CASE("bad sizes and parameters are named") {
+TEST_CASE("evaluate: errors name differing sizes and the first parameter outside the domain") {
   const auto s = some_spline<cumulative>();
-  const auto message = [&](std::vector<double> u, std::size_t room, duet::execution how) {
-    std::vector<pose_type> out(room);
+  const auto message = [&](std::vector<double> u, std::size_t size, duet::execution how) {
+    std::vector<pose_type> out(size);
     return duet_test::message_of([&] { duet::evaluate(s, u, out, how); });
   };
   CHECK(message({0, 1}, 3, duet::one_core) ==
@@ -126,26 +127,26 @@ TEST_CASE("bad sizes and parameters are named") {
   u[900] = -1;
   for (const duet::execution how : {duet::one_core, duet::execution{4}}) {
     CHECK(message(u, u.size(), how)
-              .starts_with("duet: row 700: spline evaluated at 99, outside its domain [0, "));
+              .starts_with("duet: sample 700: spline evaluated at 99, outside its domain [0, "));
   }
 }
 
-TEST_CASE("an error that does not come again one by one is passed on as it was") {
+TEST_CASE("evaluate: an error that single parameters do not reproduce is rethrown unchanged") {
   const std::vector<double> u = {0, 1, 2};
   const auto error_after = [&](const auto& f) {
     return duet_test::message_of([&] {
       try {
-        throw duet::invalid_input("duet: of several at once");
+        throw duet::invalid_input("duet: error of a batch");
       } catch (const duet::invalid_input&) {
-        duet::detail::rethrow_with_row(std::span<const double>(u), 1, f);
+        duet::detail::rethrow_with_index(std::span<const double>(u), 1, f);
       }
     });
   };
   const auto at_two = [](double x, duet::span_hint&) {
     return x < 2 ? x : throw duet::invalid_input("duet: too far");
   };
-  CHECK(error_after([](double x, duet::span_hint&) { return x; }) == "duet: of several at once");
-  CHECK(error_after(at_two) == "duet: row 2: too far");
+  CHECK(error_after([](double x, duet::span_hint&) { return x; }) == "duet: error of a batch");
+  CHECK(error_after(at_two) == "duet: sample 2: too far");
 }
 
 } // namespace test_spline_evaluate

@@ -35,7 +35,7 @@ vector3<double> random_vector(random_source& random, double size) {
   return vector3<double>(d[0], d[1], d[2]) * size;
 }
 
-/// q moved by random turns (and shifts) of a size
+/// Perturbs q by a random rotation (and translation) of the given size.
 rotation moved(const rotation& q, random_source& random, double size) {
   return q * duet::from_rotation_vector(random_vector(random, size));
 }
@@ -61,7 +61,7 @@ std::vector<double> steps(double end, int count) {
   return u;
 }
 
-/// A curve that turns a few times over [0, 8].
+/// Curve over [0, 8] with rotations of 0.7 rad from control point to control point.
 template <class Q>
 curve<Q> some_curve() {
   random_source random(5);
@@ -73,12 +73,12 @@ curve<Q> some_curve() {
 }
 
 template <class Curve>
-auto rows_of(const Curve& s, const std::vector<double>& u) {
-  std::vector<decltype(s(0.0))> rows;
+auto samples_of(const Curve& s, const std::vector<double>& u) {
+  std::vector<decltype(s(0.0))> samples;
   for (const double x : u) {
-    rows.push_back(s(x));
+    samples.push_back(s(x));
   }
-  return rows;
+  return samples;
 }
 
 template <class Curve>
@@ -94,41 +94,43 @@ double largest_distance(const Curve& a, const Curve& b) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("a curve is found again from its points", Q, rotation, pose_type) {
+TEST_CASE_TEMPLATE("fit: exact samples of a curve reproduce it", Q, rotation, pose_type) {
   const auto reference = some_curve<Q>();
   const auto u = steps(8, 60);
-  auto rows = rows_of(reference, u);
-  for (std::size_t i = 0; i < rows.size(); i += 3) {
-    rows[i] = -rows[i]; // the same rotation
+  auto samples = samples_of(reference, u);
+  for (std::size_t i = 0; i < samples.size(); i += 3) {
+    samples[i] = -samples[i]; // the same rotation
   }
-  const auto result = duet::fit<curve<Q>>(u, rows, reference.basis().knots());
+  const auto result = duet::fit<curve<Q>>(u, samples, reference.basis().knots());
   CHECK(largest_distance(result.curve, reference) <= 1e-13);
   CHECK(result.rms <= 1e-14);
   CHECK(result.iterations <= 8);
-  CHECK(result.residuals.size() == rows.size());
+  CHECK(result.residuals.size() == samples.size());
 }
 
-TEST_CASE("as many rows as controls are interpolated") {
+TEST_CASE("fit: as many samples as control points are interpolated") {
   const auto reference = some_curve<rotation>();
   std::vector<double> u = steps(8, 8);
   u.insert(u.begin() + 1, 0.4);
   u.insert(u.end() - 1, 7.7);
   const auto result =
-      duet::fit<curve<rotation>>(u, rows_of(reference, u), reference.basis().knots());
+      duet::fit<curve<rotation>>(u, samples_of(reference, u), reference.basis().knots());
   CHECK(result.rms <= 1e-13);
 }
 
-TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotation, pose_type) {
+TEST_CASE_TEMPLATE(
+    "fit: noise is smoothed, and perturbed control points increase the sum of squares", Q, rotation,
+    pose_type) {
   constexpr double noise = 0.01;
   const auto reference = some_curve<Q>();
   const auto u = steps(8, 400);
   random_source random(7);
-  auto rows = rows_of(reference, u);
-  for (Q& row : rows) {
-    row = moved(row, random, noise);
+  auto samples = samples_of(reference, u);
+  for (Q& sample : samples) {
+    sample = moved(sample, random, noise);
   }
-  const auto result = duet::fit<curve<Q>>(u, rows, reference.basis().knots());
-  // 401 rows, 11 controls: the curve should be about √(11/401) = 0.17 of the noise away.
+  const auto result = duet::fit<curve<Q>>(u, samples, reference.basis().knots());
+  // With 401 samples and 11 control points the error is about √(11/401) = 0.17 of the noise.
   CHECK(largest_distance(result.curve, reference) <=
         0.5 * noise * (std::is_same_v<Q, rotation> ? 1 : 2));
   const double expected = noise * (std::is_same_v<Q, rotation> ? 1 : std::sqrt(2.0));
@@ -137,53 +139,54 @@ TEST_CASE_TEMPLATE("noise is smoothed, and no nearby curve is nearer", Q, rotati
   const auto sum_of_squares = [&](const curve<Q>& s) {
     double sum = 0;
     for (std::size_t i = 0; i < u.size(); ++i) {
-      const auto d = between(s(u[i]), rows[i]);
+      const auto d = between(s(u[i]), samples[i]);
       sum += d * d;
     }
     return sum;
   };
-  if constexpr (std::is_same_v<Q, rotation>) { // of poses the metric is another one
-    const double least = sum_of_squares(result.curve);
+  if constexpr (std::is_same_v<Q, rotation>) { // `between` is another metric for poses
+    const double minimum = sum_of_squares(result.curve);
     for (std::size_t k = 0; k < result.curve.control_points().size(); ++k) {
       for (const double size : {1e-4, -1e-4}) {
         for (int axis = 0; axis < 3; ++axis) {
           auto controls = result.curve.control_points();
           controls[k] = controls[k] * duet::from_rotation_vector(
                                           vector3<double>(vector3<double>::Unit(axis) * size));
-          CHECK(sum_of_squares({reference.basis(), controls}) > least);
+          CHECK(sum_of_squares({reference.basis(), controls}) > minimum);
         }
       }
     }
   }
 }
 
-TEST_CASE_TEMPLATE("outliers pull with a bounded force", Q, rotation, pose_type) {
+TEST_CASE_TEMPLATE("fit with an outlier threshold: outliers of 1.5 have little effect", Q, rotation,
+                   pose_type) {
   constexpr double noise = 0.001;
   const auto reference = some_curve<Q>();
   const auto u = steps(8, 100);
   random_source random(11);
-  auto rows = rows_of(reference, u);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    rows[i] = moved(rows[i], random, i % 20 == 10 ? 1.5 : noise);
+  auto samples = samples_of(reference, u);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples[i] = moved(samples[i], random, i % 20 == 10 ? 1.5 : noise);
   }
-  const auto plain = duet::fit<curve<Q>>(u, rows, reference.basis().knots());
+  const auto plain = duet::fit<curve<Q>>(u, samples, reference.basis().knots());
   const auto robust =
-      duet::fit<curve<Q>>(u, rows, reference.basis().knots(),
+      duet::fit<curve<Q>>(u, samples, reference.basis().knots(),
                           {.characteristic_length = 1, .outlier_threshold = 3 * noise});
   CHECK(largest_distance(plain.curve, reference) > 0.1);
   CHECK(largest_distance(robust.curve, reference) < 2 * noise);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
     CHECK((robust.residuals[i] > 0.1) == (i % 20 == 10));
   }
 }
 
 namespace {
 
-/// Moved by so much in a random direction, and turned by anything.
+/// Outlier: translated by `size` in a random direction and rotated by a random angle.
 pose_type thrown(const pose_type& a, random_source& random, double size) {
-  const auto turn = duet::from_rotation_vector(random_vector(random, random.uniform(0, 3.1415)));
+  const auto any = duet::from_rotation_vector(random_vector(random, random.uniform(0, 3.1415)));
   const vector3<double> shift = random_vector(random, size);
-  return duet::pose(rotation(duet::rotation(a) * turn),
+  return duet::pose(rotation(duet::rotation(a) * any),
                     vector3<double>(duet::translation(a) + shift));
 }
 rotation thrown(const rotation& a, random_source& random, double) {
@@ -192,37 +195,39 @@ rotation thrown(const rotation& a, random_source& random, double) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotation, pose_type) {
+TEST_CASE_TEMPLATE("fit with an outlier threshold: outliers of any size do not move the curve", Q,
+                   rotation, pose_type) {
   constexpr double noise = 0.001, limit = 3 * noise;
   const auto reference = some_curve<Q>();
   const auto u = steps(8, 80);
   const auto& knots = reference.basis().knots();
-  const auto check = [&](double share, double size, bool all_alike, double outlier, double most) {
-    CAPTURE(share);
+  const auto check = [&](double fraction, double size, bool all_alike, double outlier,
+                         double tolerance) {
+    CAPTURE(fraction);
     CAPTURE(size);
     random_source random(17);
-    auto rows = rows_of(reference, u);
+    auto samples = samples_of(reference, u);
     std::vector<double> good_u;
     std::vector<Q> good;
     const Q common = thrown(Q(1.0), random, size);
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      rows[i] = moved(rows[i], random, noise);
-      if (i == 57 || random.uniform(0, 1) < share) {
-        rows[i] = all_alike ? common * rows[i] : thrown(rows[i], random, size);
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      samples[i] = moved(samples[i], random, noise);
+      if (i == 57 || random.uniform(0, 1) < fraction) {
+        samples[i] = all_alike ? common * samples[i] : thrown(samples[i], random, size);
       } else {
         good_u.push_back(u[i]);
-        good.push_back(rows[i]);
+        good.push_back(samples[i]);
       }
     }
     const auto expected = duet::fit<curve<Q>>(good_u, good, knots, {.outlier_threshold = limit});
-    const auto found = duet::fit<curve<Q>>(u, rows, knots, {.outlier_threshold = outlier});
-    CHECK(largest_distance(found.curve, expected.curve) <= most);
-    CHECK(found.residuals[57] > 4 * limit);
-    CHECK(std::isfinite(found.rms));
-    CHECK(found.outlier_threshold == doctest::Approx(limit).epsilon(0.5));
+    const auto result = duet::fit<curve<Q>>(u, samples, knots, {.outlier_threshold = outlier});
+    CHECK(largest_distance(result.curve, expected.curve) <= tolerance);
+    CHECK(result.residuals[57] > 4 * limit);
+    CHECK(std::isfinite(result.rms));
+    CHECK(result.outlier_threshold == doctest::Approx(limit).epsilon(0.5));
   };
-  // Where the good rows alone take it, to what the iteration leaves; if a limit is to be found that
-  // is another one, to a part of the noise.
+  // The curve is that of the good samples alone, to the tolerance of the iteration. An estimated
+  // threshold (0) differs from `limit`, which changes the curve by a fraction of the noise.
   check(0.3, 1, false, limit, 1e-9);
   check(0.2, 1, false, 0, 0.3 * noise);
   if constexpr (std::is_same_v<Q, pose_type>) {
@@ -232,31 +237,31 @@ TEST_CASE_TEMPLATE("outliers of any size leave the curve where it is", Q, rotati
   }
 }
 
-TEST_CASE("where a residual is beyond the range of numbers, so is their mean") {
+TEST_CASE("fit: if a residual overflows, rms is infinite") {
   const auto reference = some_curve<pose_type>();
   const auto u = steps(8, 100);
-  auto rows = rows_of(reference, u);
-  rows[40] = duet::pose(rotation(1.0), vector3<double>(1.2e308, 1.2e308, 1.2e308));
-  const auto found =
-      duet::fit<curve<pose_type>>(u, rows, reference.basis().knots(), {.outlier_threshold = 0.01});
-  CHECK(std::isinf(found.residuals[40]));
-  CHECK(std::isinf(found.rms));
+  auto samples = samples_of(reference, u);
+  samples[40] = duet::pose(rotation(1.0), vector3<double>(1.2e308, 1.2e308, 1.2e308));
+  const auto result = duet::fit<curve<pose_type>>(u, samples, reference.basis().knots(),
+                                                  {.outlier_threshold = 0.01});
+  CHECK(std::isinf(result.residuals[40]));
+  CHECK(std::isinf(result.rms));
 }
 
-TEST_CASE("least squares name the row that is too far to be squared") {
+TEST_CASE("fit by least squares: the error names a sample whose squared distance overflows") {
   const auto reference = some_curve<pose_type>();
   const auto u = steps(8, 100);
-  auto rows = rows_of(reference, u);
-  rows[40] = duet::pose(rotation(1.0), vector3<double>(1e160, 0, 0));
-  const auto message = duet_test::message_of<duet::invalid_sample>(
-      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, reference.basis().knots())); });
-  CHECK(message.rfind("duet: row 40: is 1", 0) == 0);
-  CHECK(message.find("e+160 from the rows around it, too far for least squares: "
-                     "fit_options::outlier_threshold "
-                     "makes the fit robust") != std::string::npos);
+  auto samples = samples_of(reference, u);
+  samples[40] = duet::pose(rotation(1.0), vector3<double>(1e160, 0, 0));
+  const auto message = duet_test::message_of<duet::invalid_sample>([&] {
+    static_cast<void>(duet::fit<curve<pose_type>>(u, samples, reference.basis().knots()));
+  });
+  CHECK(message.rfind("duet: sample 40: is 1", 0) == 0);
+  CHECK(message.find("e+160 from the samples around it, too far for least squares "
+                     "(fit_options::outlier_threshold makes the fit robust)") != std::string::npos);
 }
 
-TEST_CASE("rows that are all the same, and two kinds of them") {
+TEST_CASE("fit: equal samples give a constant curve with any outlier threshold") {
   const auto u = steps(8, 100);
   const auto knots = duet::clamped_knots(steps(8, 8), 4);
   const rotation q = duet::from_rotation_vector(vector3<double>(1, 2, 3));
@@ -269,18 +274,18 @@ TEST_CASE("rows that are all the same, and two kinds of them") {
   }
 }
 
-TEST_CASE("messages give the last step") {
+TEST_CASE("fit: no_convergence gives the number of steps and the last step") {
   const auto reference = some_curve<rotation>();
   const auto u = steps(8, 100);
   const auto message = duet_test::message_of<duet::no_convergence>([&] {
-    static_cast<void>(duet::fit<curve<rotation>>(u, rows_of(reference, u),
+    static_cast<void>(duet::fit<curve<rotation>>(u, samples_of(reference, u),
                                                  reference.basis().knots(), {.max_iterations = 1}));
   });
   CHECK(message.rfind("duet: fit: the iteration does not converge after 1 steps, the last one 0.",
                       0) == 0);
-  // Of robust fits all steps, those before the last stage included.
+  // For robust fits the number includes the steps before the last stage.
   random_source random(17);
-  auto noisy = rows_of(reference, u);
+  auto noisy = samples_of(reference, u);
   for (rotation& q : noisy) {
     q = moved(q, random, 0.1);
   }
@@ -292,17 +297,17 @@ TEST_CASE("messages give the last step") {
   CHECK(robust.find(" after 1 steps") == std::string::npos);
 }
 
-TEST_CASE("the length weighs shifts against turns") {
+TEST_CASE("fit: a larger characteristic length reduces the errors of rotation") {
   const auto reference = some_curve<pose_type>();
   const auto u = steps(8, 40);
   random_source random(13);
-  auto rows = rows_of(reference, u);
-  for (auto& row : rows) { // no noise in the turns, shifts along
-    row = row * duet::pose(rotation(1.0), random_vector(random, 0.1));
+  auto samples = samples_of(reference, u);
+  for (auto& sample : samples) { // noise in the translations alone
+    sample = sample * duet::pose(rotation(1.0), random_vector(random, 0.1));
   }
   const auto knots = duet::clamped_knots(steps(8, 4), 4); // too few for an exact fit
   const auto largest_angle = [&](double characteristic_length) {
-    const auto s = duet::fit<curve<pose_type>>(u, rows, knots,
+    const auto s = duet::fit<curve<pose_type>>(u, samples, knots,
                                                {.characteristic_length = characteristic_length})
                        .curve;
     double worst = 0;
@@ -315,17 +320,17 @@ TEST_CASE("the length weighs shifts against turns") {
   CHECK(largest_angle(100) < largest_angle(0.1));
 }
 
-/// 2 log(S* Q), [v; ω] of poses
+/// Error 2 log(S* Q); for poses [v; ω].
 template <class Q>
-Eigen::VectorXd error_of(const Q& s, const Q& row) {
+Eigen::VectorXd error_of(const Q& s, const Q& sample) {
   if constexpr (std::is_same_v<Q, rotation>) {
-    return duet::rotation_vector(conj(s) * row);
+    return duet::rotation_vector(conj(s) * sample);
   } else {
-    return duet::twist(pose_type(1.0), log(conj(s) * row), duet::frame::spatial);
+    return duet::twist(pose_type(1.0), log(conj(s) * sample), duet::frame::spatial);
   }
 }
 
-/// An ellipsoid, some ten times as long as wide, in no axes of the body's.
+/// Covariance of an ellipsoid about ten times as long as wide, not aligned with the body axes.
 Eigen::MatrixXd random_covariance(random_source& random, Eigen::Index n) {
   Eigen::MatrixXd root(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -336,22 +341,23 @@ Eigen::MatrixXd random_covariance(random_source& random, Eigen::Index n) {
   return root * root.transpose() + 1e-6 * Eigen::MatrixXd::Identity(n, n);
 }
 
-TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
+TEST_CASE_TEMPLATE("fit with weights and covariances: perturbed control points increase the cost",
+                   Q, rotation, pose_type) {
   const auto reference = some_curve<Q>();
   const auto knots = reference.basis().knots();
   const auto u = steps(8, 100);
   random_source random(17);
-  auto rows = rows_of(reference, u);
+  auto samples = samples_of(reference, u);
   const Eigen::Index n = std::is_same_v<Q, rotation> ? 3 : 6;
   duet::fit_options options;
-  for (Q& row : rows) {
-    row = moved(row, random, 0.02);
+  for (Q& sample : samples) {
+    sample = moved(sample, random, 0.02);
     options.weights.push_back(random.uniform(0.1, 3));
     options.covariances.push_back(random_covariance(random, n));
   }
-  const auto check_least = [&](const auto& fitted, const duet::fit_options& of) {
+  const auto check_minimum = [&](const auto& fitted, const duet::fit_options& of) {
     const auto residual = [&](const curve<Q>& s, std::size_t i) {
-      const Eigen::VectorXd e = error_of(Q(s(u[i])), rows[i]);
+      const Eigen::VectorXd e = error_of(Q(s(u[i])), samples[i]);
       const Eigen::MatrixXd& sigma = of.covariances[of.covariances.size() > 1 ? i : 0];
       return std::sqrt(e.dot(sigma.inverse() * e));
     };
@@ -364,7 +370,7 @@ TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
       }
       return sum;
     };
-    const double least = cost(fitted.curve);
+    const double minimum = cost(fitted.curve);
     for (std::size_t k = 0; k < fitted.curve.control_points().size(); ++k) {
       for (const double size : {1e-4, -1e-4}) {
         for (int axis = 0; axis < n; ++axis) {
@@ -376,7 +382,7 @@ TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
             controls[k] = controls[k] * (axis < 3 ? duet::pose(rotation(1.0), step)
                                                   : pose_type(duet::from_rotation_vector(step)));
           }
-          CHECK(cost({reference.basis(), controls}) > least);
+          CHECK(cost({reference.basis(), controls}) > minimum);
         }
       }
     }
@@ -384,34 +390,34 @@ TEST_CASE_TEMPLATE("weights and covariances of rows", Q, rotation, pose_type) {
       CHECK(fitted.residuals[i] == doctest::Approx(residual(fitted.curve, i)).epsilon(1e-9));
     }
   };
-  check_least(duet::fit<curve<Q>>(u, rows, knots, options), options);
+  check_minimum(duet::fit<curve<Q>>(u, samples, knots, options), options);
   duet::fit_options robust = options;
   robust.outlier_threshold = 2;
-  check_least(duet::fit<curve<Q>>(u, rows, knots, robust), robust);
+  check_minimum(duet::fit<curve<Q>>(u, samples, knots, robust), robust);
   duet::fit_options one_for_all{.weights = options.weights};
   one_for_all.covariances.push_back(options.covariances[0]);
-  check_least(duet::fit<curve<Q>>(u, rows, knots, one_for_all), one_for_all);
+  check_minimum(duet::fit<curve<Q>>(u, samples, knots, one_for_all), one_for_all);
 }
 
-TEST_CASE("covariances of one size are a length, weights all alike are none") {
+TEST_CASE("fit: equal covariances act as a characteristic length, equal weights have no effect") {
   const auto reference = some_curve<pose_type>();
   const auto knots = reference.basis().knots();
   const auto u = steps(8, 60);
   random_source random(19);
-  auto rows = rows_of(reference, u);
-  for (auto& row : rows) {
-    row = moved(row, random, 0.02);
+  auto samples = samples_of(reference, u);
+  for (auto& sample : samples) {
+    sample = moved(sample, random, 0.02);
   }
-  const auto plain = duet::fit<curve<pose_type>>(u, rows, knots, {.characteristic_length = 0.5});
-  duet::fit_options options{.weights = std::vector<double>(rows.size(), 7.0)};
+  const auto plain = duet::fit<curve<pose_type>>(u, samples, knots, {.characteristic_length = 0.5});
+  duet::fit_options options{.weights = std::vector<double>(samples.size(), 7.0)};
   options.covariances.emplace_back(
       Eigen::Matrix<double, 6, 1>(0.25, 0.25, 0.25, 1, 1, 1).asDiagonal());
-  const auto same = duet::fit<curve<pose_type>>(u, rows, knots, options);
+  const auto same = duet::fit<curve<pose_type>>(u, samples, knots, options);
   CHECK(largest_distance(same.curve, plain.curve) <= 1e-13);
   CHECK(same.rms == doctest::Approx(plain.rms).epsilon(1e-13));
 }
 
-TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
+TEST_CASE("fit: results agree with long double to round-off, with and without outlier threshold") {
   using wide = long double;
   const auto reference = some_curve<rotation>();
   const auto knots = reference.basis().knots();
@@ -420,18 +426,19 @@ TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
     CAPTURE(noise);
     CAPTURE(outlier);
     random_source random(3);
-    std::vector<rotation> rows;
-    std::vector<duet::quaternion<wide>> wide_rows;
+    std::vector<rotation> samples;
+    std::vector<duet::quaternion<wide>> wide_samples;
     for (const double x : u) {
-      rows.push_back(moved(reference(x), random, noise));
-      const rotation& q = rows.back();
-      wide_rows.push_back(normalized(duet::quaternion<wide>(q.w(), q.x(), q.y(), q.z())));
+      samples.push_back(moved(reference(x), random, noise));
+      const rotation& q = samples.back();
+      wide_samples.push_back(normalized(duet::quaternion<wide>(q.w(), q.x(), q.y(), q.z())));
     }
-    const auto s = duet::fit<curve<rotation>>(u, rows, knots, {.outlier_threshold = outlier}).curve;
+    const auto s =
+        duet::fit<curve<rotation>>(u, samples, knots, {.outlier_threshold = outlier}).curve;
     const auto exact =
-        duet::fit<duet::cumulative_bspline<wide>>(std::vector<wide>(u.begin(), u.end()), wide_rows,
-                                                  std::vector<wide>(knots.begin(), knots.end()),
-                                                  {.outlier_threshold = outlier})
+        duet::fit<duet::cumulative_bspline<wide>>(
+            std::vector<wide>(u.begin(), u.end()), wide_samples,
+            std::vector<wide>(knots.begin(), knots.end()), {.outlier_threshold = outlier})
             .curve;
     for (const double x : steps(8, 50)) {
       const auto q = s(x);
@@ -444,7 +451,7 @@ TEST_CASE("to rounding: as in wider arithmetic, noise or not, robust or not") {
   check(1e-6, std::numeric_limits<double>::infinity());
 }
 
-TEST_CASE_TEMPLATE("fit: small steps far from the identity keep their digits", Q, rotation,
+TEST_CASE_TEMPLATE("fit: small steps far from the identity have all digits", Q, rotation,
                    pose_type) {
   const auto along = [](double x) {
     if constexpr (std::is_same_v<Q, rotation>) {
@@ -458,15 +465,15 @@ TEST_CASE_TEMPLATE("fit: small steps far from the identity keep their digits", Q
   const Q origin = moved(Q(1.0), random, 1.3);
   const auto u = steps(8, 60);
   for (const double step : {1e-12, 1e-8}) {
-    // What the rounded rows are, seen from the first of them.
-    std::vector<Q> rows, seen;
+    // The reference is fitted to the rounded samples relative to the first of them.
+    std::vector<Q> samples, relative;
     for (const double x : u) {
-      rows.push_back(origin * along(step * (x + .1 * std::sin(x))));
-      seen.push_back(duet::detail::relative_rotation(rows[0], rows.back()));
+      samples.push_back(origin * along(step * (x + .1 * std::sin(x))));
+      relative.push_back(duet::detail::relative_rotation(samples[0], samples.back()));
     }
     const auto knots = duet::clamped_knots(steps(8, 8), 4);
-    const auto fitted = duet::fit<curve<Q>>(u, rows, knots).curve;
-    const auto expected = duet::fit<curve<Q>>(u, seen, knots).curve;
+    const auto fitted = duet::fit<curve<Q>>(u, samples, knots).curve;
+    const auto expected = duet::fit<curve<Q>>(u, relative, knots).curve;
     double largest = 0;
     for (const double x : steps(8, 40)) {
       const auto rate = fitted.motion(x, duet::frame::body).velocity;
@@ -477,48 +484,50 @@ TEST_CASE_TEMPLATE("fit: small steps far from the identity keep their digits", Q
   }
 }
 
-TEST_CASE("fit: residuals of the size of the motion, half of them bounded, still converge") {
-  // Gauss and Newton's steps alone shrink by a twentieth each here.
+TEST_CASE(
+    "fit: converges with residuals as large as the motion, half of them beyond the threshold") {
+  // Gauss–Newton steps alone would shrink by only a twentieth each.
   random_source random(2091);
   std::vector<double> u;
-  std::vector<pose_type> rows;
+  std::vector<pose_type> samples;
   for (int i = 0; i < 300; ++i) {
     u.push_back(.05 * i);
     const auto at = duet::pose(duet::from_rotation_vector(vector3<double>(.3 * u[std::size_t(i)], 0,
                                                                           .9 * u[std::size_t(i)])),
                                vector3<double>(.4 * u[std::size_t(i)], .1, 0));
-    rows.push_back(moved(at, random, i % 10 < 3 ? 2.5 : .5));
+    samples.push_back(moved(at, random, i % 10 < 3 ? 2.5 : .5));
   }
-  const auto result =
-      duet::fit<curve<pose_type>>(u, rows, duet::knots_every(u, 5, 4), {.outlier_threshold = 1e-3});
+  const auto result = duet::fit<curve<pose_type>>(u, samples, duet::knots_every(u, 5, 4),
+                                                  {.outlier_threshold = 1e-3});
   CHECK_LT(result.iterations, 100);
 }
 
-TEST_CASE("fit: what keeps plain least squares from converging is named") {
+TEST_CASE("fit by least squares: no_convergence names a sample far from the others") {
   std::vector<double> u;
-  std::vector<pose_type> rows;
+  std::vector<pose_type> samples;
   for (int i = 0; i < 60; ++i) {
     u.push_back(.05 * i);
-    rows.push_back(duet::pose(duet::from_rotation_vector(vector3<double>(0, 0, u.back())),
-                              vector3<double>(u.back(), 0, 0)));
+    samples.push_back(duet::pose(duet::from_rotation_vector(vector3<double>(0, 0, u.back())),
+                                 vector3<double>(u.back(), 0, 0)));
   }
-  rows[23] = duet::pose(duet::rotation(rows[23]), vector3<double>(1e6, -2e6, 5e5));
+  samples[23] = duet::pose(duet::rotation(samples[23]), vector3<double>(1e6, -2e6, 5e5));
   const auto knots = duet::knots_every(u, 5, 4);
   const std::string message = duet_test::message_of<duet::no_convergence>(
-      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, rows, knots)); });
-  CHECK_MESSAGE(message.find(": row 23 is 2.29") != std::string::npos, message);
+      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, samples, knots)); });
+  CHECK_MESSAGE(message.find(": sample 23 is 2.29") != std::string::npos, message);
   CHECK(message.ends_with(
-      " from the rows around it, and fit_options::outlier_threshold makes the fit robust"));
-  CHECK(duet::fit<curve<pose_type>>(u, rows, knots, {.outlier_threshold = .1}).residuals[22] <
+      " from the samples around it (fit_options::outlier_threshold makes the fit robust)"));
+  CHECK(duet::fit<curve<pose_type>>(u, samples, knots, {.outlier_threshold = .1}).residuals[22] <
         1e-3);
 }
 
-TEST_CASE("a knot at every n-th row") {
+TEST_CASE("knots_every: a knot at every n-th sample, usable by fit for any number of samples") {
   using knots = std::vector<double>;
   const knots u{0, 1, 2, 4, 8, 9, 10};
   CHECK(duet::knots_every(u, 3) == knots{0, 0, 0, 0, 4, 10, 10, 10, 10});
   CHECK(duet::knots_every(u, 2, 3) == knots{0, 0, 0, 2, 8, 10, 10, 10});
-  CHECK(duet::knots_every(u, 4, 2) == knots{0, 0, 10, 10}); // 2 rows are too few for one more
+  CHECK(duet::knots_every(u, 4, 2) ==
+        knots{0, 0, 10, 10}); // two more samples are too few for a knot
   CHECK(duet::knots_every(u, 1, 2) == knots{0, 0, 1, 2, 4, 8, 9, 10, 10});
   for (const std::size_t many : {6UL, 7UL, std::size_t(-1)}) {
     CHECK(duet::knots_every(u, many, 2) == knots{0, 0, 10, 10});
@@ -527,13 +536,12 @@ TEST_CASE("a knot at every n-th row") {
     return duet_test::message_of([&] { static_cast<void>(duet::knots_every(parameters, n)); });
   };
   CHECK(error_message(u, 0) ==
-        "duet: knots_every: n = 0 and 7 rows: n must be positive, and at least "
-        "two rows there");
-  CHECK(error_message({1}, 3) == "duet: knots_every: n = 3 and 1 rows: n must be positive, and at "
-                                 "least two rows there");
+        "duet: knots_every: n is 0 with 7 parameters (expected n > 0 and two parameters or more)");
+  CHECK(error_message({1}, 3) ==
+        "duet: knots_every: n is 3 with 1 parameters (expected n > 0 and two parameters or more)");
   CHECK(!error_message({}, 3).empty());
 
-  // Rows of any number and spacing can be fitted by them.
+  // Samples of any number and spacing can be fitted with these knots.
   const auto reference = some_curve<rotation>();
   for (const int count : {8, 9, 60, 61, 63}) {
     auto t = steps(8, count);
@@ -542,58 +550,60 @@ TEST_CASE("a knot at every n-th row") {
     }
     for (const std::size_t n : {2UL, 3UL, 7UL}) {
       const auto result =
-          duet::fit<curve<rotation>>(t, rows_of(reference, t), duet::knots_every(t, n));
+          duet::fit<curve<rotation>>(t, samples_of(reference, t), duet::knots_every(t, n));
       CHECK(result.residuals.size() == t.size());
     }
   }
 }
 
-TEST_CASE("bad input is named") {
+TEST_CASE("fit: errors name invalid arguments") {
   const auto reference = some_curve<rotation>();
   const auto knots = reference.basis().knots();
-  const auto message = [&](std::vector<double> u, std::vector<rotation> rows,
+  const auto message = [&](std::vector<double> u, std::vector<rotation> samples,
                            const duet::fit_options& options = {}) {
     return duet_test::message_of(
-        [&] { static_cast<void>(duet::fit<curve<rotation>>(u, rows, knots, options)); });
+        [&] { static_cast<void>(duet::fit<curve<rotation>>(u, samples, knots, options)); });
   };
   const auto u = steps(8, 40);
-  const auto rows = rows_of(reference, u);
-  CHECK(message(steps(8, 39), rows) == "duet: fit: 40 parameters, but 41 rows");
-  CHECK(message(steps(9, 40), rows) ==
-        "duet: row 36: parameter 8.1 is outside the knots' domain, 0 to 8: clamped_knots of "
-        "parameters from 0 to 9 hold all rows");
-  auto bad = rows;
+  const auto samples = samples_of(reference, u);
+  CHECK(message(steps(8, 39), samples) == "duet: fit: 40 parameters, but 41 samples");
+  CHECK(message(steps(9, 40), samples) ==
+        "duet: sample 36: parameter 8.1 is outside the knots' domain, 0 to 8 (clamped_knots of "
+        "parameters from 0 to 9 have all samples in it)");
+  auto bad = samples;
   bad[3] = rotation(0.0);
-  CHECK(message(u, bad) == "duet: row 3: quaternion (0, 0, 0, 0) has norm 0, not 1");
+  CHECK(message(u, bad) == "duet: sample 3: quaternion (0, 0, 0, 0) has norm 0, not 1");
   CHECK(message(steps(8, 5), std::vector<rotation>(6, rotation(1.0))) ==
-        "duet: fit: too few rows for control element 2, which acts on parameters from 0 to 3: use "
-        "fewer knots there");
-  CHECK(message(steps(1, 40), rows) ==
-        "duet: fit: too few rows for control element 4, which acts on parameters from 1 to 5: use "
-        "fewer knots there");
-  CHECK(message(u, rows, {.characteristic_length = 0}) ==
+        "duet: fit: there are too few samples for control point 2, which acts on parameters from "
+        "0 to 3 (use fewer knots there)");
+  CHECK(message(steps(1, 40), samples) ==
+        "duet: fit: there are too few samples for control point 4, which acts on parameters from "
+        "1 to 5 (use fewer knots there)");
+  CHECK(message(u, samples, {.characteristic_length = 0}) ==
         "duet: fit: characteristic_length is 0 and outlier_threshold is inf (expected a positive "
         "length and a non-negative threshold)");
-  CHECK(message(u, rows, {.weights = {1, 2}}) == "duet: fit: 2 weights for 41 rows");
+  CHECK(message(u, samples, {.weights = {1, 2}}) == "duet: fit: 2 weights for 41 samples");
   std::vector<double> weights(41, 1.0);
   weights[7] = 0;
-  CHECK(message(u, rows, {.weights = weights}) ==
-        "duet: fit: weight 7 is 0, not a positive number: a row that does not count is left out");
+  CHECK(message(u, samples, {.weights = weights}) ==
+        "duet: fit: weight 7 is 0 (expected a finite positive number; omit samples that should not "
+        "count)");
   Eigen::MatrixXd sigma = Eigen::MatrixXd::Identity(3, 3);
-  CHECK(message(u, rows, {.covariances = {sigma, sigma}}) ==
-        "duet: fit: 2 covariances for 41 rows: one for each, or one for all");
-  CHECK(message(u, rows, {.covariances = {Eigen::MatrixXd::Identity(6, 6)}}) ==
+  CHECK(message(u, samples, {.covariances = {sigma, sigma}}) ==
+        "duet: fit: 2 covariances for 41 samples (expected one for each, or one for all)");
+  CHECK(message(u, samples, {.covariances = {Eigen::MatrixXd::Identity(6, 6)}}) ==
         "duet: fit: covariance 0 is 6 x 6, not 3 x 3");
   sigma(0, 1) = 0.5;
-  CHECK(message(u, rows, {.covariances = {sigma}}) == "duet: fit: covariance 0 is not symmetric");
+  CHECK(message(u, samples, {.covariances = {sigma}}) ==
+        "duet: fit: covariance 0 is not symmetric");
   sigma(1, 0) = 0.5;
   sigma(2, 2) = -1;
-  CHECK(message(u, rows, {.covariances = {sigma}}) ==
+  CHECK(message(u, samples, {.covariances = {sigma}}) ==
         "duet: fit: covariance 0 is not positive definite");
   auto repeated = u;
   repeated[8] = repeated[7];
-  CHECK(message(repeated, rows) ==
-        "duet: row 8: parameter 1.4 does not increase, the row before has 1.4");
+  CHECK(message(repeated, samples) ==
+        "duet: sample 8: parameter 1.4 does not increase, the sample before has 1.4");
 }
 
 } // namespace test_spline_fit

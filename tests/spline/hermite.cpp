@@ -31,17 +31,17 @@ const auto moving = [](const auto& u) {
   using std::cos;
   using std::sin;
   using S = std::decay_t<decltype(u)>;
-  const vector3<S> turn(S(0.8 * sin(1.3 * u)), S(0.5 * u), S(0.6 * cos(0.7 * u)));
-  return duet::pose(duet::from_rotation_vector(turn), vector3<S>(S(sin(u)), S(u), S(cos(2 * u))));
+  const vector3<S> angles(S(0.8 * sin(1.3 * u)), S(0.5 * u), S(0.6 * cos(0.7 * u)));
+  return duet::pose(duet::from_rotation_vector(angles), vector3<S>(S(sin(u)), S(u), S(cos(2 * u))));
 };
 
 template <class Frame>
-struct rows {
+struct samples {
   std::vector<double> u;
   std::vector<pose_type> poses;
   std::vector<vector6<double>> twists;
 
-  rows(int count, Frame frame) {
+  samples(int count, Frame frame) {
     for (int i = 0; i <= count; ++i) {
       u.push_back(4.0 * i / count + 0.1 * std::sin(8.0 * i / count)); // uneven
       const auto [a, a_dot] = duet::derivative(moving, u.back());
@@ -52,7 +52,7 @@ struct rows {
 };
 
 double largest_error(int count) {
-  const rows r(count, duet::frame::body);
+  const samples r(count, duet::frame::body);
   const auto s = duet::hermite_spline(r.u, r.poses, r.twists, duet::frame::body);
   double largest = 0;
   for (int i = 0; i <= 1000; ++i) {
@@ -63,8 +63,8 @@ double largest_error(int count) {
 }
 
 template <class Frame>
-void check_rows(Frame frame) {
-  const rows r(12, frame);
+void check_samples(Frame frame) {
+  const samples r(12, frame);
   auto flipped = r.poses;
   flipped[3] = -flipped[3];
   const auto s = duet::hermite_spline(r.u, flipped, r.twists, frame);
@@ -80,19 +80,19 @@ void check_rows(Frame frame) {
 
 } // namespace
 
-TEST_CASE("the curve goes through its rows at the velocities given") {
-  check_rows(duet::frame::body);
-  check_rows(duet::frame::spatial);
+TEST_CASE("hermite_spline: the curve passes through its samples with the given velocities") {
+  check_samples(duet::frame::body);
+  check_samples(duet::frame::spatial);
 }
 
-TEST_CASE("it is fourth-order accurate") {
+TEST_CASE("hermite_spline: the error decreases with the fourth power of the step") {
   const double order = std::log2(largest_error(32) / largest_error(64));
   CHECK(order > 3.8);
   CHECK(order < 4.2);
 }
 
-TEST_CASE("rotations are the rotations of poses") {
-  const rows r(10, duet::frame::spatial);
+TEST_CASE("hermite_spline: curves of rotations are the rotations of curves of poses") {
+  const samples r(10, duet::frame::spatial);
   std::vector<rotation> rotations;
   std::vector<vector3<double>> omegas;
   for (std::size_t i = 0; i < r.u.size(); ++i) {
@@ -106,22 +106,22 @@ TEST_CASE("rotations are the rotations of poses") {
   }
 }
 
-TEST_CASE("bad rows are named") {
-  rows r(5, duet::frame::body);
+TEST_CASE("hermite_spline: errors name invalid samples") {
+  samples r(5, duet::frame::body);
   const auto message = [&](const std::vector<vector6<double>>& twists) {
     return duet_test::message_of(
         [&] { static_cast<void>(duet::hermite_spline(r.u, r.poses, twists, duet::frame::body)); });
   };
   auto twists = r.twists;
   twists[2][4] = std::numeric_limits<double>::quiet_NaN();
-  CHECK(message(twists) == "duet: row 2: the velocity is not finite");
+  CHECK(message(twists) == "duet: sample 2: the velocity is not finite");
   twists.pop_back();
-  CHECK(message(twists) == "duet: hermite_spline: 6 rows, but 5 velocities");
+  CHECK(message(twists) == "duet: hermite_spline: 6 samples, but 5 velocities");
   r.u.pop_back();
-  CHECK(message(r.twists) == "duet: hermite_spline: 5 parameters, but 6 rows");
+  CHECK(message(r.twists) == "duet: hermite_spline: 5 parameters, but 6 samples");
   r.u.push_back(9);
   r.u[3] = r.u[2];
-  CHECK(message(r.twists).starts_with("duet: row 3: parameter "));
+  CHECK(message(r.twists).starts_with("duet: sample 3: parameter "));
 }
 
 } // namespace test_spline_hermite

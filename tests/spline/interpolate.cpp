@@ -98,7 +98,7 @@ TEST_CASE("the curve passes through the data and meets its end conditions") {
 TEST_CASE("steps of 2.8 rad between rows, on random axes") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
-    const table q = duet_test::turned_by(2.8, 20, seed);
+    const table q = duet_test::rotated_by(2.8, 20, seed);
     const parameters u = seed % 2 == 0 ? uniform(20) : [&] {
       duet_test::random_source random(seed);
       parameters result = {0};
@@ -122,7 +122,7 @@ TEST_CASE("steps of 2.9 rad between rows, on slowly turning axes") {
 }
 
 TEST_CASE("a curve is copied by its knots, control quaternions and increments") {
-  const table q = duet_test::turned_by(2, 20, 1);
+  const table q = duet_test::rotated_by(2, 20, 1);
   const spline s = interpolate<spline>(uniform(20), q);
   const spline copy(s.basis().knots(), s.control_points(), s.increments());
   bool beyond_half_a_turn = false;

@@ -166,7 +166,7 @@ TEST_CASE("periodic: turning on and on about one axis at constant rate") {
 
 TEST_CASE("the report: iterations, what is left, the largest step") {
   duet::interpolation_report report;
-  const table q = duet_test::turned_by(1.25, 30, 3);
+  const table q = duet_test::rotated_by(1.25, 30, 3);
   const parameters u = duet_test::uneven_parameters(30);
   const spline s = duet::interpolate<spline>(u, q, duet::natural{}, report);
   CHECK(report.largest_step == doctest::Approx(1.25).epsilon(1e-14));

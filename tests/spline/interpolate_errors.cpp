@@ -27,16 +27,16 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const quaternion one(1);
 
-/// The row that is to blame and the reason, as "row: reason".
-std::string bad_row(const parameters& u, const table& q) {
+/// Index of the invalid sample and the reason, as "index: reason".
+std::string invalid_sample_of(const parameters& u, const table& q) {
   try {
     static_cast<void>(duet::interpolate<spline>(u, q));
   } catch (const duet::invalid_sample& e) {
-    const std::string text = std::to_string(e.row()) + ": " + e.reason();
-    CHECK(e.what() == "duet: row " + text);
+    const std::string text = std::to_string(e.index()) + ": " + e.reason();
+    CHECK(e.what() == "duet: sample " + text);
     return text;
   }
-  return "no row";
+  return "no invalid sample";
 }
 
 template <class Exception, class Ends = duet::natural>
@@ -51,63 +51,66 @@ std::string message_of(const parameters& u, const table& q, const Ends& ends = {
 
 } // namespace
 
-TEST_CASE("orientations that no curve goes through") {
+TEST_CASE("interpolate: errors name orientations that no curve can pass through") {
   const parameters u = {0, 1, 2};
-  CHECK(bad_row(u, {one, one, {0, not_a_number, 0, 0}}) ==
+  CHECK(invalid_sample_of(u, {one, one, {0, not_a_number, 0, 0}}) ==
         "2: quaternion (0, nan, 0, 0) is not finite");
-  CHECK(bad_row(u, {{infinity, 0, 0, 0}, one, one}) ==
+  CHECK(invalid_sample_of(u, {{infinity, 0, 0, 0}, one, one}) ==
         "0: quaternion (inf, 0, 0, 0) is not finite");
-  CHECK(bad_row(u, {one, {0.5, 0.5, 0.5, 0}, one}) ==
+  CHECK(invalid_sample_of(u, {one, {0.5, 0.5, 0.5, 0}, one}) ==
         "1: quaternion (0.5, 0.5, 0.5, 0) has norm 0.866025, not 1");
-  CHECK(bad_row(u, {one, {}, one}) == "1: quaternion (0, 0, 0, 0) has norm 0, not 1");
-  CHECK(bad_row(u, {one, {1e200, 0, 0, 0}, one}) ==
+  CHECK(invalid_sample_of(u, {one, {}, one}) == "1: quaternion (0, 0, 0, 0) has norm 0, not 1");
+  CHECK(invalid_sample_of(u, {one, {1e200, 0, 0, 0}, one}) ==
         "1: quaternion (1e+200, 0, 0, 0) has norm 1e+200, not 1");
-  CHECK(bad_row(u, {one, one, {0, 0, 0.6, 0.8}}) ==
-        "2: half a turn from the row before: either way round is as short");
+  CHECK(invalid_sample_of(u, {one, one, {0, 0, 0.6, 0.8}}) ==
+        "2: half a turn from the sample before: both arcs are equally short");
 }
 
-TEST_CASE("parameters that do not increase") {
+TEST_CASE("interpolate: errors name parameters that do not increase or are not finite") {
   const table q = {one, one, one, one};
-  CHECK(bad_row({0, 1, 1, 2}, q) == "2: parameter 1 does not increase, the row before has 1");
-  CHECK(bad_row({0, 1, 0.5, 2}, q) == "2: parameter 0.5 does not increase, the row before has 1");
-  CHECK(bad_row({0, 1, 2, not_a_number}, q) == "3: parameter nan is not finite");
-  CHECK(bad_row({-infinity, 1, 2, 3}, q) == "0: parameter -inf is not finite");
+  CHECK(invalid_sample_of({0, 1, 1, 2}, q) ==
+        "2: parameter 1 does not increase, the sample before has 1");
+  CHECK(invalid_sample_of({0, 1, 0.5, 2}, q) ==
+        "2: parameter 0.5 does not increase, the sample before has 1");
+  CHECK(invalid_sample_of({0, 1, 2, not_a_number}, q) == "3: parameter nan is not finite");
+  CHECK(invalid_sample_of({-infinity, 1, 2, 3}, q) == "0: parameter -inf is not finite");
 }
 
-TEST_CASE("too few rows, and columns of different length") {
+TEST_CASE("interpolate: errors for too few samples and for differing numbers of parameters") {
   using duet::invalid_input;
-  CHECK(message_of<invalid_input>({}, {}) == "duet: interpolate: needs 2 rows or more, got 0");
-  CHECK(message_of<invalid_input>({1}, {one}) == "duet: interpolate: needs 2 rows or more, got 1");
+  CHECK(message_of<invalid_input>({}, {}) == "duet: interpolate: needs 2 samples or more, got 0");
+  CHECK(message_of<invalid_input>({1}, {one}) ==
+        "duet: interpolate: needs 2 samples or more, got 1");
   CHECK(message_of<invalid_input>({1, 2, 3, 4}, {one, one, one, one, one}) ==
-        "duet: interpolate: 4 parameters, but 5 rows");
+        "duet: interpolate: 4 parameters, but 5 samples");
   CHECK(message_of<invalid_input>({1, 2, 3}, {one, one, one}, duet::not_a_knot{}) ==
-        "duet: interpolate: needs 4 rows or more with these ends, got 3");
+        "duet: interpolate: needs 4 samples or more with these end conditions, got 3");
   CHECK(message_of<invalid_input>({1, 2}, {one, one}, duet::periodic{}) ==
-        "duet: interpolate: needs 3 rows or more with these ends, got 2");
+        "duet: interpolate: needs 3 samples or more with these end conditions, got 2");
 }
 
-TEST_CASE("periodic ends that do not meet") {
-  const quaternion turned = normalized(quaternion(1, 0.001, 0, 0));
-  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, turned, turned}, duet::periodic{}) ==
-        "duet: row 2: periodic ends: differs from row 0 by 0.002 rad, but must repeat it");
-  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, turned, -one}, duet::periodic{}) ==
+TEST_CASE("interpolate: periodic ends require that the last sample repeats the first") {
+  const quaternion rotated = normalized(quaternion(1, 0.001, 0, 0));
+  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, rotated, rotated}, duet::periodic{}) ==
+        "duet: sample 2: periodic ends: differs from sample 0 by 0.002 rad, but must repeat it");
+  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, rotated, -one}, duet::periodic{}) ==
         "nothing was thrown");
 
   using pose = duet::dual_quaternion<double>;
-  const std::vector<pose> poses = {pose(one), duet::pose(turned, vector(1, 2, 3)),
+  const std::vector<pose> poses = {pose(one), duet::pose(rotated, vector(1, 2, 3)),
                                    duet::pose(one, vector(0, 0.003, 0.004))};
   try {
     static_cast<void>(duet::interpolate<duet::cumulative_bspline<pose::scalar_type>>(
         parameters{1, 2, 3}, poses, duet::periodic{}));
     FAIL("nothing was thrown");
   } catch (const duet::invalid_sample& e) {
-    CHECK(e.row() == 2);
+    CHECK(e.index() == 2);
     CHECK(e.reason() ==
-          "periodic ends: differs from row 0 by 0.005 in translation, but must repeat it");
+          "periodic ends: differs from sample 0 by 0.005 in translation, but must repeat it");
   }
 }
 
-TEST_CASE("rates that are not finite") {
+TEST_CASE("interpolate: errors name end rates that are not finite") {
   const duet::vector6<double> twist(0, 0, 1, infinity, 0, 0);
   CHECK_THROWS_WITH_AS(
       (duet::curve_ends<duet::screw_dual<double>>(
@@ -130,18 +133,20 @@ TEST_CASE("rates that are not finite") {
         "duet: clamped: the rate at the end, (inf, 0, 0), is not finite");
 }
 
-TEST_CASE("cubics cannot be told velocities and accelerations") {
+TEST_CASE("interpolate: cubics reject velocities and accelerations at the same end") {
   const vector zero = vector::Zero();
   const duet::fully_clamped both{duet::clamped{zero, zero}, duet::end_acceleration{zero, zero}};
   CHECK(message_of<duet::invalid_input>({0, 1, 2}, {one, one, one}, both) ==
-        "duet: interpolate: a cubic's ends take velocities or accelerations, not both");
+        "duet: interpolate: fully_clamped ends need a quintic (a cubic can meet velocities or "
+        "accelerations, not both)");
 }
 
-TEST_CASE("neighbours far apart at uneven parameters: a curve, or a word why not") {
+TEST_CASE("interpolate: rotations of 3.1 rad at uneven parameters give a curve or an error with "
+          "the reason") {
   int failures = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     CAPTURE(seed);
-    const table q = duet_test::turned_by(3.1, 20, seed);
+    const table q = duet_test::rotated_by(3.1, 20, seed);
     duet_test::random_source random(seed + 1000);
     parameters u = {0};
     while (u.size() < q.size()) {
@@ -152,11 +157,11 @@ TEST_CASE("neighbours far apart at uneven parameters: a curve, or a word why not
       continue;
     }
     ++failures;
-    CHECK(message.starts_with("duet: interpolate: with all steps between rows turning by no more "
-                              "than 0."));
-    CHECK(message.find(" of their angles there is a curve, but none was found that goes on from "
-                       "there; after ") != std::string::npos);
-    CHECK(message.find(" iterations. The largest step is 3.1 rad, from row ") != std::string::npos);
+    CHECK(message.starts_with(
+        "duet: interpolate: a curve exists for the rotations between samples scaled by 0."));
+    CHECK(message.find(", but continuation from it fails after ") != std::string::npos);
+    CHECK(message.find(" iterations; the largest rotation is 3.1 rad, from sample ") !=
+          std::string::npos);
   }
   CHECK(failures > 0);
   CHECK(failures <= 4);

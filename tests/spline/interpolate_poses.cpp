@@ -158,7 +158,7 @@ TEST_CASE("poses far apart: 2.8 rad and 3 units of length a step, on random axes
     duet_test::random_source random(seed);
     std::vector<pose> poses;
     parameters u;
-    for (const quaternion& q : duet_test::turned_by(2.8, 20, seed)) {
+    for (const quaternion& q : duet_test::rotated_by(2.8, 20, seed)) {
       const auto n = random.direction<3>();
       const vector before = poses.empty() ? vector(0, 0, 0) : translation(poses.back());
       poses.push_back(duet::pose(q, vector(before + 3 * vector(n[0], n[1], n[2]))));

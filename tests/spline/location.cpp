@@ -20,7 +20,7 @@
 namespace test_spline_location {
 namespace {
 
-const std::string and_clamp =
+const std::string clamp_advice =
     "; set_out_of_domain(out_of_domain::clamp) makes a curve stay at its end";
 
 using duet::out_of_domain;
@@ -32,9 +32,9 @@ const spline s(knots, duet_test::random_orientations(knots.size() - 4, 1));
 const std::vector<double> parameters = duet_test::parameters_on(knots, 4);
 const double first = s.basis().front(), last = s.basis().back();
 
-spline that(out_of_domain way) {
+spline with_behaviour(out_of_domain behaviour) {
   spline t = s;
-  t.set_out_of_domain(way);
+  t.set_out_of_domain(behaviour);
   return t;
 }
 
@@ -44,7 +44,7 @@ std::string message_of(const spline& t, double u) {
 
 } // namespace
 
-TEST_CASE("a hint changes nothing but the way to the span") {
+TEST_CASE("curve: a span hint does not affect results") {
   duet::span_hint forward, backward, random{99};
   duet_test::random_source source(1);
   const auto check = [](double u, duet::span_hint& hint) {
@@ -63,26 +63,27 @@ TEST_CASE("a hint changes nothing but the way to the span") {
   CHECK_THROWS_AS(static_cast<void>(s(last + 1, at_end)), duet::invalid_input);
 }
 
-TEST_CASE("outside the domain: an error by default, with the value") {
+TEST_CASE("curve outside its domain: by default an error with the parameter") {
   const std::vector<double> round = {0, 0, 0, 0, 1, 2, 2, 2, 2};
   spline t(round, duet_test::random_orientations(5, 1));
   CHECK(t.behaviour_out_of_domain() == out_of_domain::error);
   CHECK(message_of(t, 2.5) ==
-        "duet: spline evaluated at 2.5, outside its domain [0, 2]" + and_clamp);
-  CHECK(message_of(t, -1) == "duet: spline evaluated at -1, outside its domain [0, 2]" + and_clamp);
-  for (const out_of_domain way :
+        "duet: spline evaluated at 2.5, outside its domain [0, 2]" + clamp_advice);
+  CHECK(message_of(t, -1) ==
+        "duet: spline evaluated at -1, outside its domain [0, 2]" + clamp_advice);
+  for (const out_of_domain behaviour :
        {out_of_domain::error, out_of_domain::clamp, out_of_domain::extrapolate}) {
-    t.set_out_of_domain(way);
+    t.set_out_of_domain(behaviour);
     CHECK(message_of(t, std::numeric_limits<double>::quiet_NaN()) ==
           "duet: spline evaluated at nan, outside its domain [0, 2]");
   }
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK(message_of(t, infinity) ==
-        "duet: spline evaluated at inf, outside its domain [0, 2]" + and_clamp);
+        "duet: spline evaluated at inf, outside its domain [0, 2]" + clamp_advice);
 }
 
-TEST_CASE("clamp: the curve rests at its ends") {
-  const spline t = that(out_of_domain::clamp);
+TEST_CASE("out_of_domain::clamp: the curve is at rest at its ends") {
+  const spline t = with_behaviour(out_of_domain::clamp);
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double far : {1e-9, 0.5, 100.0, infinity}) {
     for (const double end : {first, last}) {
@@ -102,11 +103,11 @@ TEST_CASE("clamp: the curve rests at its ends") {
   CHECK(t.motion(last, duet::frame::body).velocity == s.motion(last, duet::frame::body).velocity);
 }
 
-TEST_CASE("extrapolate: the last piece goes on, and so do its derivatives") {
-  const spline t = that(out_of_domain::extrapolate);
+TEST_CASE("out_of_domain::extrapolate: the last segment and its derivatives continue") {
+  const spline t = with_behaviour(out_of_domain::extrapolate);
   for (const double end : {first, last}) {
     const double out = end == first ? -1 : 1;
-    // Its Taylor series about the end, of a curve whose third derivative does not jump there.
+    // The Taylor series of the curve about its end, where the third derivative is continuous.
     for (const double far : {1e-4, 1e-3}) {
       const double u = end + out * far;
       const auto at_end = s.motion(end, duet::frame::spatial);
@@ -122,15 +123,16 @@ TEST_CASE("extrapolate: the last piece goes on, and so do its derivatives") {
   }
 }
 
-TEST_CASE("ω = δu̇, ω̇ = δ′u̇² + δü, ω̈ = δ″u̇³ + 3δ′u̇ü + δu⃛: a curve driven by u(t)") {
-  // u(t) as a Taylor number gives the same rates by time without any formula.
+TEST_CASE("apply_time_scaling: ω = δu̇, ω̇ = δ′u̇² + δü, ω̈ = δ″u̇³ + 3δ′u̇ü + δu⃛ agree with Taylor "
+          "numbers u(t)") {
+  // With u(t) as a Taylor number the rates with respect to time follow without these formulas.
   const double middle = (first + last) / 2;
   for (const double u : {middle, first + 0.1, last - 0.2}) {
     const double rates[] = {0.7, -1.3, 0.4};
     const auto by_u = s.motion(u, duet::frame::spatial);
     const auto m = duet::apply_time_scaling(by_u, rates[0], rates[1], rates[2]);
-    const duet::taylor<double, 3> drive({u, rates[0], rates[1] / 2, rates[2] / 6});
-    const auto q = s(drive);
+    const duet::taylor<double, 3> scaling({u, rates[0], rates[1] / 2, rates[2] / 6});
+    const auto q = s(scaling);
     const auto derivative = [&](int k) {
       return duet::quaternion<double>(q.w().derivative(k), q.x().derivative(k), q.y().derivative(k),
                                       q.z().derivative(k));
@@ -146,7 +148,7 @@ TEST_CASE("ω = δu̇, ω̇ = δ′u̇² + δü, ω̈ = δ″u̇³ + 3δ′u̇ü
   }
 }
 
-TEST_CASE("increments of any length: the long way round, and several times") {
+TEST_CASE("cumulative_bspline: increments of any length give longer arcs and several full turns") {
   const std::vector<double> round = {0, 0, 1, 2, 2};
   using line = duet::cumulative_bspline<double, 2>;
   const duet::quaternion<double> one(1);
@@ -157,10 +159,11 @@ TEST_CASE("increments of any length: the long way round, and several times") {
   CHECK((t.motion(0.5, duet::frame::body).velocity - 4 * pi * axis).norm() < 1e-14);
   CHECK((t.motion(1.5, duet::frame::body).velocity + 6 * pi * axis).norm() < 1e-14);
   CHECK_THROWS_WITH_AS(line(round, {one, one, one}, {axis, 2 * pi * axis, -3 * pi * axis}),
-                       "duet: row 2: the increment does not lead here from the control before",
+                       "duet: sample 2: the increment does not lead to it from the control point "
+                       "before",
                        duet::invalid_sample);
   CHECK_THROWS_WITH_AS(line(round, {one, one, one}, {axis, axis}),
-                       "duet: cumulative_bspline: 5 knots of order 2 take 3 increments, got 2",
+                       "duet: cumulative_bspline: 5 knots of order 2 need 3 increments, got 2",
                        duet::invalid_input);
 }
 

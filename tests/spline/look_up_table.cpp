@@ -24,13 +24,13 @@ using pose_type = duet::dual_quaternion<double>;
 using rotation_curve = duet::cumulative_bspline<double>;
 using pose_curve = duet::cumulative_bspline<screw>;
 
-/// Slow turning with a fast piece around u = 1.
-rotation turning(double u) {
+/// Slow rotation with a fast section around u = 1.
+rotation rotating(double u) {
   return duet::from_rotation_vector(
       vector3<double>(0.3 * u, 0.2 * std::sin(u), 0.1 * std::tanh(20 * (u - 1))));
 }
 pose_type moving(double u) {
-  return duet::pose(turning(u), vector3<double>(std::cos(u), std::sin(2 * u), 0.1 * u));
+  return duet::pose(rotating(u), vector3<double>(std::cos(u), std::sin(2 * u), 0.1 * u));
 }
 
 template <class Spline, class F>
@@ -44,10 +44,10 @@ double largest_error(const Spline& s, const F& f) {
 }
 
 template <class T, class F>
-duet::lookup_table<T> uniform_table(const F& f, int rows) {
+duet::lookup_table<T> uniform_table(const F& f, int intervals) {
   duet::lookup_table<T> table;
-  for (int i = 0; i <= rows; ++i) {
-    table.parameters.push_back(3.0 * i / rows);
+  for (int i = 0; i <= intervals; ++i) {
+    table.parameters.push_back(3.0 * i / intervals);
     table.elements.push_back(f(table.parameters.back()));
   }
   return table;
@@ -55,23 +55,24 @@ duet::lookup_table<T> uniform_table(const F& f, int rows) {
 
 } // namespace
 
-TEST_CASE("a table is as dense as its error bound asks for") {
+TEST_CASE(
+    "adaptive_table: the error is within the bound, with fewer samples than a uniform table") {
   for (const double tolerance : {1e-3, 1e-5, 1e-6}) {
-    const auto result = duet::adaptive_table<rotation_curve>(turning, 0.0, 3.0, tolerance);
+    const auto result = duet::adaptive_table<rotation_curve>(rotating, 0.0, 3.0, tolerance);
     CHECK(result.error <= tolerance);
-    CHECK(largest_error(result.curve, turning) <= 1.1 * tolerance);
+    CHECK(largest_error(result.curve, rotating) <= 1.1 * tolerance);
   }
-  const auto result = duet::adaptive_table<rotation_curve>(turning, 0.0, 3.0, 1e-6);
-  const auto rows = int(result.table.parameters.size());
-  const auto uniform = uniform_table<double>(turning, rows - 1);
+  const auto result = duet::adaptive_table<rotation_curve>(rotating, 0.0, 3.0, 1e-6);
+  const auto samples = int(result.table.parameters.size());
+  const auto uniform = uniform_table<double>(rotating, samples - 1);
   const auto s =
       duet::interpolate<rotation_curve>(uniform.parameters, uniform.elements, duet::not_a_knot{});
-  CHECK(largest_error(s, turning) > 20e-6); // as many rows, evenly spread
+  CHECK(largest_error(s, rotating) > 20e-6); // for as many samples in equal steps
   CHECK(result.table.parameters.front() == 0.0);
   CHECK(result.table.parameters.back() == 3.0);
 }
 
-TEST_CASE("a table of poses weighs shifts by the length") {
+TEST_CASE("adaptive_table: the characteristic length changes the number of samples of poses") {
   const auto near = duet::adaptive_table<pose_curve>(moving, 0.0, 3.0, 1e-5);
   CHECK(largest_error(near.curve, moving) <= 1.1e-5);
   const auto coarse = duet::adaptive_table<pose_curve>(moving, 0.0, 3.0, 1e-5, duet::not_a_knot{},
@@ -79,24 +80,24 @@ TEST_CASE("a table of poses weighs shifts by the length") {
   CHECK(coarse.table.parameters.size() != near.table.parameters.size());
 }
 
-TEST_CASE("the error of a table is estimated from the table alone") {
-  for (const int rows : {400, 401, 800}) {
-    const auto table = uniform_table<double>(turning, rows);
+TEST_CASE("estimated_errors: within a factor of 3 of the error, largest where the motion is fast") {
+  for (const int intervals : {400, 401, 800}) {
+    const auto table = uniform_table<double>(rotating, intervals);
     const auto errors = duet::estimated_errors<rotation_curve>(table);
     CHECK(errors.size() == table.parameters.size() - 2);
     const auto s =
         duet::interpolate<rotation_curve>(table.parameters, table.elements, duet::not_a_knot{});
     const double estimate = *std::max_element(errors.begin(), errors.end());
-    const double reference = largest_error(s, turning);
+    const double reference = largest_error(s, rotating);
     CHECK(estimate > reference / 3);
     CHECK(estimate < reference * 3);
-    // Largest where the motion is fast.
+    // The motion is fast near u = 1.
     const auto worst = std::max_element(errors.begin(), errors.end()) - errors.begin() + 1;
     CHECK(std::abs(table.parameters[std::size_t(worst)] - 1) < 0.15);
   }
 }
 
-TEST_CASE_TEMPLATE("estimated_errors: never below the error, with steps of every kind", Spline,
+TEST_CASE_TEMPLATE("estimated_errors: not below the error, for even and uneven steps", Spline,
                    rotation_curve, duet::rotation_vector_spline<double, 4>) {
   const auto rotated = [](double x, double y, double z) {
     return duet::from_rotation_vector(vector3<double>(x, y, z));
@@ -109,15 +110,15 @@ TEST_CASE_TEMPLATE("estimated_errors: never below the error, with steps of every
            : kind == 4 ? rotated(0, 0, std::exp(-8 * (u - 1.5) * (u - 1.5)))
                        : rotated(0, .2 * std::exp(u), 0) * rotated(0, 0, u);
   };
-  for (const int rows : {60, 61}) {
+  for (const int intervals : {60, 61}) {
     for (int steps = 0; steps < 4; ++steps) {
       for (int kind = 0; kind < 6; ++kind) {
         duet::lookup_table<double> table;
-        for (int i = 0; i <= rows; ++i) {
-          const double x = double(i) / rows;
+        for (int i = 0; i <= intervals; ++i) {
+          const double x = double(i) / intervals;
           const double u = steps == 0   ? x
                            : steps == 1 ? x + .0267 * std::sin(18.85 * x)
-                           : steps == 2 ? (i % 2 == 0 ? i : i + .4) / double(rows + 1)
+                           : steps == 2 ? (i % 2 == 0 ? i : i + .4) / double(intervals + 1)
                                         : (std::exp(2 * x) - 1) / (std::exp(2.) - 1);
           table.parameters.push_back(3 * u);
           table.elements.push_back(motion(kind, 3 * u));
@@ -130,7 +131,7 @@ TEST_CASE_TEMPLATE("estimated_errors: never below the error, with steps of every
           const double u = table.parameters.back() * i / 1000;
           reference = std::max(reference, duet::detail::miss(s(u), motion(kind, u), 1.0));
         }
-        CAPTURE(rows);
+        CAPTURE(intervals);
         CAPTURE(steps);
         CAPTURE(kind);
         const double estimate = *std::max_element(errors.begin(), errors.end());
@@ -141,7 +142,8 @@ TEST_CASE_TEMPLATE("estimated_errors: never below the error, with steps of every
   }
 }
 
-TEST_CASE("adaptive_table: ripples stay within the bound, what is not finite is named") {
+TEST_CASE("adaptive_table: ripples are within the bound; errors name values that are not finite or "
+          "not units") {
   for (const double size : {1e-2, 1e-4}) {
     for (const double frequency : {8., 16., 12.566, 50.26}) {
       const auto ripple = [&](double u) {
@@ -160,10 +162,10 @@ TEST_CASE("adaptive_table: ripples stay within the bound, what is not finite is 
       }
     }
   }
-  const auto message = [](double bad, const rotation& there) {
+  const auto message = [](double bad, const rotation& value) {
     try {
       static_cast<void>(duet::adaptive_table<rotation_curve>(
-          [&](double u) { return std::abs(u - bad) < .01 ? there : rotation(1.0); }, 0.0, 1.0,
+          [&](double u) { return std::abs(u - bad) < .01 ? value : rotation(1.0); }, 0.0, 1.0,
           1e-3));
     } catch (const duet::invalid_input& error) {
       return std::string(error.what());
@@ -177,23 +179,23 @@ TEST_CASE("adaptive_table: ripples stay within the bound, what is not finite is 
   CHECK(message(.3, rotation(.5, 0, 0, 0)).ends_with(" has norm 0.5, not 1"));
 }
 
-TEST_CASE("bad bounds are named") {
-  const auto message = [](double first, double last, double tolerance, std::size_t most) {
+TEST_CASE("adaptive_table, estimated_errors: errors name invalid bounds and too few samples") {
+  const auto message = [](double first, double last, double tolerance, std::size_t max_samples) {
     try {
       static_cast<void>(duet::adaptive_table<rotation_curve>(
-          turning, first, last, tolerance, duet::not_a_knot{}, {.max_samples = most}));
+          rotating, first, last, tolerance, duet::not_a_knot{}, {.max_samples = max_samples}));
     } catch (const std::exception& error) {
       return std::string(error.what());
     }
     return std::string("nothing");
   };
   CHECK(message(1, 1, 1e-3, 100) ==
-        "duet: adaptive_table: from 1 to 1 with tolerance 0.001: the range must not be empty, the "
-        "tolerance positive");
-  CHECK(message(0, 1, 0, 100).find("tolerance 0:") != std::string::npos);
-  CHECK(message(0, 3, 1e-9, 100).find("more than 100 are not allowed") != std::string::npos);
+        "duet: adaptive_table: the range is from 1 to 1 and the tolerance 0.001 (expected a range "
+        "that is not empty and a positive tolerance)");
+  CHECK(message(0, 1, 0, 100).find("tolerance 0 (expected") != std::string::npos);
+  CHECK(message(0, 3, 1e-9, 100).ends_with(", and options.max_samples is 100"));
   CHECK_THROWS_AS(
-      static_cast<void>(duet::estimated_errors<rotation_curve>(uniform_table<double>(turning, 7))),
+      static_cast<void>(duet::estimated_errors<rotation_curve>(uniform_table<double>(rotating, 7))),
       duet::invalid_input);
 }
 

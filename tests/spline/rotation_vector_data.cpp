@@ -27,9 +27,10 @@ const std::vector<double> knots{0, 0.3, 0.5, 1.1, 1.3, 1.9, 2, 2.4};
 
 } // namespace
 
-TEST_CASE_TEMPLATE("derivatives with respect to the data", order, std::integral_constant<int, 4>,
-                   std::integral_constant<int, 6>) {
-  // Row 3 is turned by t about (1, −2, 2)/3: derivative duals through the solve against central
+TEST_CASE_TEMPLATE(
+    "rotation_vector_spline: derivatives with respect to a sample agree with differences", order,
+    std::integral_constant<int, 4>, std::integral_constant<int, 6>) {
+  // Sample 3 is rotated by t about (1, −2, 2)/3: derivative duals through the solve against central
   // differences.
   const auto data = duet_test::random_orientations(knots.size(), 1.4, 6);
   const auto value = [&](const auto& t) {
@@ -50,7 +51,7 @@ TEST_CASE_TEMPLATE("derivatives with respect to the data", order, std::integral_
   CHECK(std::abs(automatic.z().epsilon() - difference.z()) < 1e-9);
 }
 
-TEST_CASE("parameters that rates overflow over") {
+TEST_CASE("rotation_vector_spline: parameters too close or too far apart for finite rates throw") {
   using duet_test::message_of;
   using curve = duet::rotation_vector_spline<double>;
   const duet::quaternion<double> one(1);
@@ -68,17 +69,17 @@ TEST_CASE("parameters that rates overflow over") {
         "duet: rotation_vector_spline: the distance from -1.7e+308 to 1.7e+308 overflows");
 }
 
-TEST_CASE("rates are finite") {
+TEST_CASE("rotation_vector_spline: rates that are not finite throw, with the sample") {
   using quintic = duet::rotation_vector_spline<double, 6>;
   const duet::quaternion<double> one(1);
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   for (const double x : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-    for (const std::size_t row : {0, 1}) {
+    for (const std::size_t i : {0, 1}) {
       std::vector<std::array<Eigen::Vector3d, 2>> rates(2, {still, still});
-      rates[row][1 - row][2] = x;
+      rates[i][1 - i][2] = x;
       CHECK(duet_test::message_of([&] {
               quintic({0, 1}, {one, one}, rates);
-            }) == "duet: row " + std::to_string(row) + ": a rate is not finite");
+            }) == "duet: sample " + std::to_string(i) + ": a rate is not finite");
     }
   }
 }

@@ -70,14 +70,15 @@ std::array<std::array<vector, 5>, 2> both_sides(const spline<Order>& s, std::siz
   return result;
 }
 
-/// The curve meets the data, and its derivatives up to the k-2-th are continuous inside; the next
-/// one is not, but at joints.
+/// Checks that the curve passes through the data, that its derivatives up to the (k−2)-th are
+/// continuous at inner knots, and that the next one is continuous only at the `joints` outermost
+/// inner knots.
 template <int Order>
 void check_curve(const spline<Order>& s, const parameters& u, const table& q, int joints) {
   constexpr std::size_t smooth = std::size_t(Order) - 2;
   std::array<double, 5> size{};
   std::vector<std::array<std::array<vector, 5>, 2>> sides;
-  // The terms of a piece's polynomial are as large as the rates at its ends.
+  // The terms of the polynomial of a segment are as large as the rates at its ends.
   double fastest = 0;
   for (const double knot : u) {
     fastest = std::max(fastest, s.motion(knot, duet::frame::body).velocity.norm());
@@ -121,7 +122,7 @@ void check_all_ends(const parameters& u, const table& q) {
     check_curve(s, u, q, 0);
     CHECK(at(s, true).acceleration.norm() < 1e-11);
     CHECK(at(s, false).acceleration.norm() < 1e-11);
-    if constexpr (Order == 6) { // no snap at the end, which is where the last side is
+    if constexpr (Order == 6) { // no snap at the end
       CHECK(both_sides(s, u.size() - 1)[0][3].norm() < 1e-8);
     }
   }
@@ -165,8 +166,9 @@ void check_all_ends(const parameters& u, const table& q) {
 
 } // namespace
 
-TEST_CASE_TEMPLATE("the curve passes through the data, C^(k−2), and meets its ends", order,
-                   std::integral_constant<int, 4>, std::integral_constant<int, 6>) {
+TEST_CASE_TEMPLATE("interpolate, rotation vectors: the curve is C^(k−2), passes through the data "
+                   "and meets its end conditions",
+                   order, std::integral_constant<int, 4>, std::integral_constant<int, 6>) {
   for (const std::size_t rows : {2, 3, 4, 6, 13}) {
     for (const double step : {1e-9, 0.003, 0.3, 1.2}) {
       CAPTURE(rows);
@@ -176,14 +178,15 @@ TEST_CASE_TEMPLATE("the curve passes through the data, C^(k−2), and meets its 
   }
 }
 
-TEST_CASE("no motion at all") {
+TEST_CASE("interpolate, quintic: equal samples give a curve at rest") {
   const table q(7, quaternion(0.6, 0, 0.8, 0));
   const auto s = interpolate<spline<6>>(uneven(7), q, duet::not_a_knot{});
   CHECK(s.motion(0.5, duet::frame::body).velocity.norm() == 0);
   CHECK(max_abs_difference(s(0.5), q[0]) < 1e-15);
 }
 
-TEST_CASE("about one axis polynomials of the spline's degree come back") {
+TEST_CASE("interpolate, rotation vectors: about one axis polynomials of the degree of the spline "
+          "are reproduced") {
   const vector axis(2.0 / 3, -1.0 / 3, 2.0 / 3);
   const auto angle = [](double u, int degree) {
     return 0.3 + u - 0.4 * std::pow(u, 3) + (degree == 5 ? 0.1 * std::pow(u, 5) : 0.0);
@@ -207,12 +210,13 @@ TEST_CASE("about one axis polynomials of the spline's degree come back") {
   }
 }
 
-TEST_CASE("far neighbours on random axes: a curve through the data or a clear error") {
-  int found = 0;
+TEST_CASE("interpolate, rotation vectors: rotations of up to 2.8 rad about random axes give a "
+          "curve or an error with the largest rotation") {
+  int converged = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     CAPTURE(seed);
-    for (const double turn : {2.0, 2.8}) {
-      const table q = duet_test::turned_by(turn, 20, seed);
+    for (const double angle : {2.0, 2.8}) {
+      const table q = duet_test::rotated_by(angle, 20, seed);
       parameters u;
       for (int i = 0; i < 20; ++i) {
         u.push_back(i);
@@ -221,16 +225,16 @@ TEST_CASE("far neighbours on random axes: a curve through the data or a clear er
       check_curve(interpolate<spline<4>>(u, q, duet::not_a_knot{}), u, q, 1);
       try {
         check_curve(interpolate<spline<6>>(u, q, duet::natural{}), u, q, 0);
-        ++found;
+        ++converged;
       } catch (const duet::no_convergence& error) {
-        CHECK(std::string(error.what()).find("rad, from row") != std::string::npos);
+        CHECK(std::string(error.what()).find("rad, from sample") != std::string::npos);
       }
     }
   }
-  CHECK(found >= 23);
+  CHECK(converged >= 23);
 }
 
-TEST_CASE("how it went") {
+TEST_CASE("interpolation_report: iterations, residual and largest step of a quintic") {
   duet::interpolation_report report;
   const table q = duet_test::random_orientations(30, 0.003, 4);
   static_cast<void>(interpolate<spline<6>>(uneven(30), q, duet::natural{}, report));

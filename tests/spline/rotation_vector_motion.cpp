@@ -70,7 +70,7 @@ void check_motion(const spline<Order>& s) {
 
 } // namespace
 
-TEST_CASE("closed-form rates are those of automatic differentiation") {
+TEST_CASE("rotation_vector_spline: closed-form rates agree with automatic differentiation") {
   for (const double step : {0.0, 1e-9, 0.01, 1.0, 2.5}) {
     CAPTURE(step);
     check_motion(curve<4>(step));
@@ -78,7 +78,7 @@ TEST_CASE("closed-form rates are those of automatic differentiation") {
   }
 }
 
-TEST_CASE("Hermite curves take the rates they are given") {
+TEST_CASE("rotation_vector_spline: Hermite curves have the given rates at the knots") {
   const auto q = duet_test::random_orientations(3, 1.4, 8);
   const std::vector<double> u{0, 0.5, 2};
   const vector w[] = {{0.2, 0.1, -0.6}, {1, -0.3, 0.2}, {0, 0, 0.4}};
@@ -96,21 +96,23 @@ TEST_CASE("Hermite curves take the rates they are given") {
   }
 }
 
-TEST_CASE("a copy from pieces is the same curve") {
+TEST_CASE("rotation_vector_spline::from_pieces: a copy is the same curve, invalid pieces throw") {
   const auto s = curve<4>(1.2);
   const auto copy = spline<4>::from_pieces(s.knots(), s.elements(), s.pieces());
   CHECK(copy.motion(0.3, duet::frame::body).jerk == s.motion(0.3, duet::frame::body).jerk);
   auto pieces = s.pieces();
   pieces[2][1] += vector(0.1, 0, 0);
-  CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>::from_pieces(s.knots(), s.elements(), pieces)),
-                       doctest::Contains("row 3: the piece before does not lead here"),
-                       duet::invalid_sample);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(spline<4>::from_pieces(s.knots(), s.elements(), pieces)),
+      doctest::Contains("sample 3: the polynomial piece before does not end at it"),
+      duet::invalid_sample);
   pieces.pop_back();
   CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>::from_pieces(s.knots(), s.elements(), pieces)),
-                       doctest::Contains("7 rows need 6 pieces, got 5"), duet::invalid_input);
+                       doctest::Contains("7 samples need 6 pieces, got 5"), duet::invalid_input);
 }
 
-TEST_CASE("hints change nothing; outside its domain the curve does as told") {
+TEST_CASE("rotation_vector_spline: hints do not affect results; out_of_domain sets the behaviour "
+          "outside the domain") {
   auto s = curve<6>(1.2);
   duet::span_hint hint{77};
   for (const double u : {0.3, 0.31, 0.5, 2.9, -0.5, 1.4}) {
@@ -134,29 +136,31 @@ TEST_CASE("hints change nothing; outside its domain the curve does as told") {
   CHECK(duet_test::max_abs_difference(s(2.9 + h), expected) < 1e-9);
 }
 
-TEST_CASE("what no curve goes through") {
+TEST_CASE("rotation_vector_spline: errors name invalid samples, parameters and end conditions") {
   using duet::interpolate;
   const auto q = duet_test::random_orientations(7, 1, 3);
-  const auto rows = [&](std::size_t n) {
+  const auto samples = [&](std::size_t n) {
     return std::vector<quaternion>(q.begin(), q.begin() + long(n));
   };
   const auto us = [&](std::size_t n) {
     return std::vector<double>(knots.begin(), knots.begin() + long(n));
   };
   const vector zero = vector::Zero();
-  CHECK_THROWS_AS(static_cast<void>(interpolate<spline<4>>(us(1), rows(1))), duet::invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(interpolate<spline<4>>(us(3), rows(4))), duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(interpolate<spline<4>>(us(1), samples(1))),
+                  duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(interpolate<spline<4>>(us(3), samples(4))),
+                  duet::invalid_input);
   CHECK_THROWS_WITH_AS(
-      static_cast<void>(interpolate<spline<4>>(us(3), rows(3), duet::not_a_knot{})),
-      doctest::Contains("needs 4 rows"), duet::invalid_input);
+      static_cast<void>(interpolate<spline<4>>(us(3), samples(3), duet::not_a_knot{})),
+      doctest::Contains("needs 4 samples"), duet::invalid_input);
   CHECK_THROWS_WITH_AS(
-      static_cast<void>(interpolate<spline<6>>(us(5), rows(5), duet::not_a_knot{})),
-      doctest::Contains("needs 6 rows"), duet::invalid_input);
+      static_cast<void>(interpolate<spline<6>>(us(5), samples(5), duet::not_a_knot{})),
+      doctest::Contains("needs 6 samples"), duet::invalid_input);
   CHECK_THROWS_WITH_AS(
-      static_cast<void>(interpolate<spline<6>>(us(3), rows(3), duet::clamped{zero, zero})),
-      doctest::Contains("needs 4 rows"), duet::invalid_input);
+      static_cast<void>(interpolate<spline<6>>(us(3), samples(3), duet::clamped{zero, zero})),
+      doctest::Contains("needs 4 samples"), duet::invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<4>>(us(7), q, duet::periodic{})),
-                       doctest::Contains("row 6: periodic ends"), duet::invalid_sample);
+                       doctest::Contains("sample 6: periodic ends"), duet::invalid_sample);
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<4>>(
                            us(7), q, duet::clamped{zero, vector(0, infinity, 0)})),
@@ -164,14 +168,14 @@ TEST_CASE("what no curve goes through") {
   auto repeated = knots;
   repeated[3] = repeated[2];
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<6>>(repeated, q)),
-                       doctest::Contains("row 3: parameter 0.4 does not increase"),
+                       doctest::Contains("sample 3: parameter 0.4 does not increase"),
                        duet::invalid_sample);
   auto half_turn = q;
   half_turn[4] = half_turn[3] * quaternion(0, 0, 1, 0);
   CHECK_THROWS_WITH_AS(static_cast<void>(interpolate<spline<4>>(knots, half_turn)),
-                       doctest::Contains("row 4: half a turn"), duet::invalid_sample);
-  CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>(us(3), rows(3), {{zero}, {zero}})),
-                       doctest::Contains("3 rows need 3 rates, got 2"), duet::invalid_input);
+                       doctest::Contains("sample 4: half a turn"), duet::invalid_sample);
+  CHECK_THROWS_WITH_AS(static_cast<void>(spline<4>(us(3), samples(3), {{zero}, {zero}})),
+                       doctest::Contains("3 samples need 3 rates, got 2"), duet::invalid_input);
 }
 
 } // namespace test_spline_rotation_vector_motion

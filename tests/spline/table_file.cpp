@@ -34,7 +34,7 @@ using screw = duet::screw_dual<double>;
 using rotations = duet::lookup_table<double>;
 using poses = duet::lookup_table<screw>;
 
-/// A file of its own, gone at last.
+/// Temporary file that is removed at the end.
 class scratch_file {
 public:
   explicit scratch_file(const char* name) : path(std::string("test_spline_table_file_") + name) {}
@@ -48,7 +48,7 @@ public:
   const std::string path;
 };
 
-/// As T would be read of such a text.
+/// Table over T that is read from a file with this text.
 template <class T>
 duet::lookup_table<T> loaded(const std::string& text) {
   const scratch_file file("loaded.txt", text);
@@ -68,8 +68,8 @@ poses random_poses(std::size_t count, double first, double step) {
   return table;
 }
 
-/// The largest difference of places, where quaternions have the same bits.
-double distance_of_places(const poses& a, const poses& b) {
+/// Largest difference of positions. Checks that the quaternions have the same bits.
+double difference_of_positions(const poses& a, const poses& b) {
   REQUIRE(a.elements.size() == b.elements.size());
   double largest = 0;
   for (std::size_t i = 0; i < a.elements.size(); ++i) {
@@ -87,7 +87,7 @@ const std::string header_of_euroc =
 
 } // namespace
 
-TEST_CASE("rotations are saved and loaded with all bits") {
+TEST_CASE("save_table, load_table: rotations have the same bits when read back") {
   const scratch_file file("rotations.csv");
   rotations table;
   const poses source = random_poses(50, -1.5, 0.1);
@@ -112,7 +112,8 @@ TEST_CASE("rotations are saved and loaded with all bits") {
   CHECK(timed.elements == table.elements);
 }
 
-TEST_CASE("poses are saved and loaded in every format") {
+TEST_CASE("save_table, load_table: poses in every format have the same parameters and rotations "
+          "when read back") {
   const scratch_file file("poses.txt"), times("times.txt");
   for (const double first : {0.0, -3.25, 1403636580.8385556}) {
     const poses table = random_poses(100, first, 0.005);
@@ -122,11 +123,11 @@ TEST_CASE("poses are saved and loaded in every format") {
       CHECK(file.text().starts_with("t [s],x,y,z,") == (format == table_format::csv_seconds));
       const poses again = duet::load_table<screw>(file.path);
       CHECK(again.parameters == table.parameters);
-      CHECK(distance_of_places(again, table) < 2e-14);
+      CHECK(difference_of_positions(again, table) < 2e-14);
       CHECK(duet::load_table<duet::dual_quaternion<double>>(file.path).elements == again.elements);
     }
   }
-  // Nearest doubles to whole nanoseconds, and any doubles from 2^23 s on.
+  // Nearest doubles to integer nanoseconds, and any doubles from 2^23 s on.
   poses table = random_poses(100, 0, 0);
   for (const double first : {-1.0, 0.0, 12345.0, 8388608.0, 1403636580.8385556, 9.19e9}) {
     for (std::size_t i = 0; i < table.parameters.size(); ++i) {
@@ -138,7 +139,7 @@ TEST_CASE("poses are saved and loaded in every format") {
     duet::save_table(file.path, table, table_format::euroc);
     const poses again = duet::load_table<screw>(file.path);
     CHECK(again.parameters == table.parameters);
-    CHECK(distance_of_places(again, table) < 2e-14);
+    CHECK(difference_of_positions(again, table) < 2e-14);
   }
   duet::save_table(file.path, table, table_format::kitti, times.path);
   const poses again = duet::load_table<screw>(file.path, times.path);
@@ -153,7 +154,7 @@ TEST_CASE("poses are saved and loaded in every format") {
   CHECK(duet::load_table<screw>(file.path).parameters[99] == 99);
 }
 
-TEST_CASE("what files hold, to the letter") {
+TEST_CASE("save_table: the files of every format, character by character") {
   const scratch_file file("letter.txt"), times("letter_times.txt");
   poses table;
   table.parameters = {-0.5, 1403636580.25};
@@ -174,7 +175,7 @@ TEST_CASE("what files hold, to the letter") {
   CHECK(times.text() == "-0.5\n1403636580.25\n");
 }
 
-TEST_CASE("what cannot be saved says why, and nothing is written") {
+TEST_CASE("save_table: errors name the reason, and no file is written") {
   const scratch_file file("unsaved.txt");
   const auto error_message = [&](const auto& table, table_format format, const char* times = "") {
     return duet_test::message_of([&] { duet::save_table(file.path, table, format, times); });
@@ -187,23 +188,25 @@ TEST_CASE("what cannot be saved says why, and nothing is written") {
   CHECK(error_message(table, table_format::kitti, file.path.c_str()) ==
         "duet: " + file.path + ": is the same file as " + file.path);
   CHECK(error_message(table, table_format::tum, "times.txt") ==
-        "duet: save_table: only KITTI files have times in a file of their own");
+        "duet: save_table: only KITTI files have times in a separate file");
   table.parameters = {0, 1e-3, 1.0000002e-3};
   CHECK(error_message(table, table_format::euroc) ==
-        "duet: save_table: row 2 at 0.0010000002 s is not a nanosecond after the row before");
+        "duet: save_table: sample 2 at 0.0010000002 s is less than a nanosecond after the sample "
+        "before");
   table.parameters[2] = 1e10;
   CHECK(error_message(table, table_format::euroc) ==
-        "duet: save_table: 1e+10 s are beyond 9.2e18 nanoseconds");
+        "duet: save_table: the time 1e+10 s is beyond 9.2e18 nanoseconds");
   table.parameters[2] = std::nan("");
   CHECK(error_message(table, table_format::euroc) ==
-        "duet: save_table: nan s are beyond 9.2e18 nanoseconds");
+        "duet: save_table: the time nan s is beyond 9.2e18 nanoseconds");
   table.parameters.pop_back();
   CHECK(error_message(table, table_format::csv) == "duet: save_table: 2 parameters for 3 elements");
   CHECK(file.text().empty());
 }
 
-TEST_CASE("files of others: blanks, line ends, byte order marks, comments, commas at ends") {
-  // TUM's, and its numbers as a German locale has them are no numbers (below).
+TEST_CASE("load_table: files of other programs with blanks, line ends, byte order marks, comments "
+          "and trailing commas") {
+  // A file of TUM's. (Decimal commas are rejected, see below.)
   const std::string tum =
       "# ground truth trajectory\r\n# timestamp tx ty tz qx qy qz qw\r\n"
       "  1305031098.6659 1.3563 0.6305\t1.6380 0.6132 0.5962 -0.3311 -0.3986 \r\n"
@@ -217,7 +220,7 @@ TEST_CASE("files of others: blanks, line ends, byte order marks, comments, comma
   CHECK(loaded<screw>("\xef\xbb\xbf" + bare).elements == a.elements);
   CHECK(loaded<double>(bare).elements[1] == duet::rotation(a.elements[1]));
 
-  // EuRoC's, with the further columns of its ground truth, and what ORB-SLAM writes for it.
+  // EuRoC's, with the further columns of its ground truth, and the format that ORB-SLAM writes.
   const poses b = loaded<screw>(
       "\xef\xbb\xbf#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], "
       "q_RS_y [], q_RS_z [], v_RS_R_x [m s^-1]\r\n"
@@ -236,7 +239,7 @@ TEST_CASE("files of others: blanks, line ends, byte order marks, comments, comma
     CHECK(same.elements == b.elements);
   }
 
-  // KITTI's, of seven digits.
+  // KITTI's, with seven digits.
   const std::string kitti =
       "1.000000e+00 9.043680e-12 2.326809e-11 5.551115e-17 9.043683e-12 1.000000e+00 2.392370e-10 "
       "3.330669e-16 2.326810e-11 2.392370e-10 9.999999e-01 -4.440892e-16\n"
@@ -260,7 +263,7 @@ TEST_CASE("files of others: blanks, line ends, byte order marks, comments, comma
         std::vector<double>{0, 0.1037359});
 }
 
-TEST_CASE("columns apart by semicolons") {
+TEST_CASE("load_table: columns separated by semicolons") {
   const auto expected = loaded<screw>("u,x,y,z,qw,qx,qy,qz\n0.5,1,2,3,0.6,0,0,0.8\n");
   for (const char* text :
        {"u;x;y;z;qw;qx;qy;qz\r\n0.5;1;2;3;0.6;0;0;0.8\r\n",
@@ -276,7 +279,8 @@ TEST_CASE("columns apart by semicolons") {
   CHECK(euroc.elements == expected.elements);
 }
 
-TEST_CASE("Euler angles, where the caller says which") {
+TEST_CASE("load_table with euler_columns: Euler angles of every sequence and unit; errors name the "
+          "column") {
   using duet::angle_unit, duet::euler_columns;
   const double degree = std::acos(-1.0) / 180;
   const scratch_file file("angles.csv");
@@ -286,7 +290,7 @@ TEST_CASE("Euler angles, where the caller says which") {
   };
   const euler_columns aircraft(duet::zyx, {"yaw", "pitch", "roll"}, angle_unit::degree);
   const auto max_abs_difference = [](const rotation& a, const rotation& b) { return norm(a - b); };
-  const rotation turned = duet::from_euler<duet::zyx>(30 * degree, -20 * degree, 10 * degree);
+  const rotation expected = duet::from_euler<duet::zyx>(30 * degree, -20 * degree, 10 * degree);
   for (const char* text : {"t,roll,pitch,yaw\n0.5,10,-20,30\n",
                            "Yaw [deg];Roll [degrees];Pitch [\u00b0];t\n30;10;-20;0.5\n",
                            "# t roll pitch yaw\n0.5 10 -20 30\n",
@@ -294,9 +298,9 @@ TEST_CASE("Euler angles, where the caller says which") {
                            "t,qw,qx,qy,qz,roll,pitch,yaw\n0.5,1,0,0,0,10,-20,30\n"}) {
     const rotations table = read(text, aircraft);
     CHECK(table.parameters == std::vector<double>{0.5});
-    CHECK(max_abs_difference(table.elements[0], turned) < 4e-16);
+    CHECK(max_abs_difference(table.elements[0], expected) < 4e-16);
   }
-  // Every sequence, in radians; whole turns are kept: the sign of the quaternion is theirs.
+  // Every sequence, in radians; full turns determine the sign of the quaternion.
   const std::string text = "t,a,b,c\n0,0.3,-1.2,7\n";
   const auto of = [&](duet::euler_sequence s) {
     return read(text, euler_columns(s, {"a", "b", "c"}, angle_unit::radian)).elements[0];
@@ -304,7 +308,7 @@ TEST_CASE("Euler angles, where the caller says which") {
   CHECK(max_abs_difference(of(duet::xyz), duet::from_euler<duet::xyz>(0.3, -1.2, 7.0)) < 4e-16);
   CHECK(max_abs_difference(of(duet::zxz), duet::from_euler<duet::zxz>(0.3, -1.2, 7.0)) < 4e-16);
   CHECK(max_abs_difference(of(duet::yzx), duet::from_euler<duet::yzx>(0.3, -1.2, 7.0)) < 4e-16);
-  // Poses, and recordings with a row that is left out.
+  // Poses, in a recording with an omitted row.
   file.write("time [ms],x,y,z,roll,pitch,yaw\n0,1,2,3,0,0,90\n5,1,2,3,0,nan,90\n");
   const auto recorded = duet::load_recording<screw>(file.path, aircraft);
   CHECK(recorded.left_out == 1);
@@ -324,46 +328,49 @@ TEST_CASE("Euler angles, where the caller says which") {
   CHECK(error_message("t,roll,pitch\n0,1,2\n", aircraft) ==
         std::string("1: the header names no column yaw: ") + duet::detail::known_columns);
   CHECK(error_message("t,roll,pitch,yaw [rad]\n0,1,2,3\n", aircraft) ==
-        "1: the header has yaw [rad], euler_columns other angles: degrees");
+        "1: the header has the column yaw [rad], but euler_columns expects degrees");
   CHECK(error_message("t,a,b [deg],c\n0,1,2,3\n",
                       euler_columns(duet::zyx, {"a", "b", "c"}, angle_unit::radian)) ==
-        "1: the header has b [deg], euler_columns other angles: radians");
+        "1: the header has the column b [deg], but euler_columns expects radians");
   CHECK(error_message("t,roll,pitch,yaw,Yaw\n0,1,2,3,3\n", aircraft) ==
         "1: the header has both 'yaw' and 'Yaw'");
   CHECK(error_message("0 1 2 3 0 0 0 1\n", aircraft) ==
-        "1: no header before the first row names the columns of angles");
+        "1: there is no header before the first row (expected names of the columns of angles)");
   CHECK(error_message("1 0 0 0 0 1 0 0 0 0 1 0\n", aircraft) ==
-        "1: no header before the first row names the columns of angles");
+        "1: there is no header before the first row (expected names of the columns of angles)");
   CHECK(error_message("t,roll,pitch,yaw\n0,1,2,north\n", aircraft) ==
         "2: yaw is not a number: 'north'");
-  // Without the caller's word they are refused.
+  // Without `euler_columns` Euler angles are rejected.
   file.write("t,roll,pitch,yaw\n0,1,2,3\n");
   const std::string message = duet_test::message_of<duet::file_error>(
       [&] { static_cast<void>(duet::load_table<double>(file.path)); });
   CHECK(message.find("names no column qw") != message.npos);
-  CHECK(message.ends_with("Euler angles where `euler_columns` names them"));
+  CHECK(message.ends_with("Euler angles need `euler_columns`"));
 
-  const auto refusal = [](duet::euler_sequence s, const char* third) {
+  const auto rejection = [](duet::euler_sequence s, const char* third) {
     return duet_test::message_of<duet::invalid_input>([&] {
       static_cast<void>(euler_columns(s, {"a", "b", third}, angle_unit::radian));
     });
   };
-  CHECK(refusal({0, 0, 1}, "c") ==
-        "duet: euler_columns: axes 0, 0, 1: each is 0, 1 or 2, and no two neighbours are equal");
-  CHECK(!refusal({0, 1, 3}, "c").empty());
-  CHECK(!refusal({0, 1, 1}, "c").empty());
-  CHECK(refusal(duet::zyx, "a") ==
-        "duet: euler_columns: the names 'a' and 'a': each angle has a column of its own");
-  CHECK(!refusal(duet::zyx, "").empty());
+  CHECK(rejection({0, 0, 1}, "c") ==
+        "duet: euler_columns: the axes are 0, 0, 1 (expected 0, 1 or 2 each, neighbours "
+        "different)");
+  CHECK(!rejection({0, 1, 3}, "c").empty());
+  CHECK(!rejection({0, 1, 1}, "c").empty());
+  CHECK(rejection(duet::zyx, "a") ==
+        "duet: euler_columns: the columns of two angles are 'a' and 'a' (expected three different "
+        "names)");
+  CHECK(!rejection(duet::zyx, "").empty());
 }
 
-TEST_CASE("what rostopic echo -p writes") {
+TEST_CASE(
+    "load_table: files of rostopic echo -p for PoseStamped, Pose, Odometry and TransformStamped") {
   const std::string pose = "field.pose.position.x,field.pose.position.y,field.pose.position.z,"
                            "field.pose.orientation.x,field.pose.orientation.y,"
                            "field.pose.orientation.z,field.pose.orientation.w\n";
   const std::string header =
       "%time,field.header.seq,field.header.stamp,field.header.frame_id," + pose;
-  // Of PoseStamped: the message's own time, whatever its size, in the file's digits.
+  // PoseStamped: the time in the header of the message, of any size, with all digits of the file.
   const poses a = loaded<screw>(header + "1403636580900000000,7,1403636580868555648,world,1,2,3,"
                                          "0,0,0.8,0.6\n1403636580900000001,8,1403636580873555648,"
                                          "world,1,2,4,0,0,0.8,0.6\n");
@@ -373,13 +380,13 @@ TEST_CASE("what rostopic echo -p writes") {
   const poses simulated = loaded<screw>(header + "12500000000,7,12000000000,,1,2,3,0,0,0.8,0.6\n"
                                                  "12700000000,8,12000000001,,1,2,3,0,0,0.8,0.6\n");
   CHECK(simulated.parameters == std::vector<double>{12, 12.000000001});
-  // Of Pose: the time of arrival, in nanoseconds from a bag, else in seconds.
+  // Pose: the time of arrival, in nanoseconds from a bag, otherwise in seconds.
   const std::string bare = "%time,field.position.x,field.position.y,field.position.z,"
                            "field.orientation.x,field.orientation.y,field.orientation.z,"
                            "field.orientation.w\n";
   CHECK(loaded<screw>(bare + "1500000000,1,2,3,0,0,0.8,0.6\n").parameters[0] == 1.5);
   CHECK(loaded<screw>(bare + "1403636580.87,1,2,3,0,0,0.8,0.6\n").parameters[0] == 1403636580.87);
-  // Of Odometry and TransformStamped.
+  // Odometry and TransformStamped.
   CHECK(loaded<screw>("%time,field.child_frame_id,field.pose.pose.position.x,"
                       "field.pose.pose.position.y,field.pose.pose.position.z,"
                       "field.pose.pose.orientation.x,field.pose.pose.orientation.y,"
@@ -397,40 +404,41 @@ TEST_CASE("what rostopic echo -p writes") {
     return duet_test::message_of<duet::file_error>(
         [&] { static_cast<void>(duet::load_table<screw>(file.path)); });
   };
-  CHECK(error_message().find(":3: field.header.stamp 0.5 is no whole number of nanoseconds") !=
-        std::string::npos);
+  CHECK(
+      error_message().find(":3: field.header.stamp 0.5 is not an integer number of nanoseconds") !=
+      std::string::npos);
   file.write("%time,stamp," + pose);
   CHECK(error_message().ends_with(":1: the header has both '%time' and 'stamp'"));
   file.write("time,field.header.stamp," + pose);
   CHECK(error_message().ends_with(":1: the header has both 'time' and 'field.header.stamp'"));
 }
 
-TEST_CASE("of a matrix of few digits, the nearest rotation") {
-  // The nearest of all: no small turn leads nearer.
+TEST_CASE("read_rotation: the rotation nearest to a matrix of few digits") {
+  // It is the nearest if every small rotation increases the distance.
   const rotation q = normalized(rotation(0.3, -0.5, 0.7, 0.2));
   duet::matrix3<double> m = duet::rotation_matrix(q);
   m(0, 1) += 2e-4;
   m(2, 0) -= 3e-4;
-  rotation found;
-  CHECK(duet::detail::read_rotation(m, found).empty());
-  CHECK(norm(found - q) > 2e-5);
+  rotation nearest;
+  CHECK(duet::detail::read_rotation(m, nearest).empty());
+  CHECK(norm(nearest - q) > 2e-5);
   const auto distance = [&](const rotation& p) {
     return (duet::rotation_matrix(p) - m).squaredNorm();
   };
   for (int axis = 0; axis < 3; ++axis) {
-    const vector3<double> turn = 1e-4 * vector3<double>::Unit(axis);
-    const double there = distance(duet::from_rotation_vector(turn) * found);
-    const double back = distance(duet::from_rotation_vector(vector3<double>(-turn)) * found);
-    CHECK(std::abs(there - back) < 1e-14); // its derivative along the turn: 2e-4 times that, and 0
-    CHECK(std::min(there, back) > distance(found));
+    const vector3<double> step = 1e-4 * vector3<double>::Unit(axis);
+    const double forward = distance(duet::from_rotation_vector(step) * nearest);
+    const double backward = distance(duet::from_rotation_vector(vector3<double>(-step)) * nearest);
+    CHECK(std::abs(forward - backward) < 1e-14); // the derivative along the step is zero
+    CHECK(std::min(forward, backward) > distance(nearest));
   }
 }
 
-TEST_CASE("times keep their digits") {
+TEST_CASE("load_table: times have all digits of the file in every unit") {
   const auto time_of = [](const std::string& cell, const std::string& unit) {
     return loaded<double>("t [" + unit + "],qw,qx,qy,qz\n" + cell + ",1,0,0,0\n").parameters.at(0);
   };
-  // Divided by 1e9, the double nearest to these nanoseconds is another one.
+  // Division by 1e9 would give a double other than the nearest one.
   CHECK(time_of("1403636580868555648", "ns") == 1403636580.868555648);
   CHECK(time_of("1403636580868555648", "ns") != 1403636580868555648.0 / 1e9);
   CHECK(time_of("-1403636580868555648", "ns") == -1403636580.868555648);
@@ -453,14 +461,14 @@ TEST_CASE("times keep their digits") {
   CHECK(time_of("0." + std::string(320, '0') + "4", "s") == 4e-321);
   CHECK(time_of("0." + std::string(320, '0') + "4", "ns") == 0);
   CHECK(std::signbit(time_of("-0", "ns")));
-  // What is named u is no time, whatever its size and its unit.
+  // Columns named u or tau are not times, whatever their size and unit.
   CHECK(loaded<double>("u [ns],qw,qx,qy,qz\n1403636580868555648,1,0,0,0\n").parameters.at(0) ==
         1403636580868555648.0);
   CHECK(loaded<double>("tau,qw,qx,qy,qz\n2.5,1,0,0,0\n").parameters.at(0) == 2.5);
   CHECK(loaded<double>("time,qw,qx,qy,qz\n1403636580868555648,1,0,0,0\n").parameters.at(0) ==
         1403636580.868555648);
 
-  // Whole numbers that are no seconds, and what comes just before.
+  // Integers too large for seconds, and those just below the bound.
   const auto taken = [](const std::string& cell) {
     return loaded<double>("time,qw,qx,qy,qz\n" + cell + ",1,0,0,0\n").parameters.at(0);
   };
@@ -486,7 +494,7 @@ TEST_CASE("times keep their digits") {
   CHECK(file_time("-1.75", 0) < file_time("-1.5", 0));
 }
 
-TEST_CASE("the names in a header tell the columns; doubt is an error") {
+TEST_CASE("load_table: columns are identified by the names in a header; ambiguous ones throw") {
   const auto path = std::string("test_spline_table_file_names.csv");
   const auto write = [&](const std::string& text) { std::ofstream(path) << text; };
   const rotation q(.1, .3, .9, .3);
@@ -520,29 +528,29 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
     return duet_test::message_of<duet::file_error>(
         [&] { static_cast<void>(duet::load_table<double>(path)); });
   };
-  const auto is_told = [](const std::string& message) {
+  const auto names_known_columns = [](const std::string& message) {
     return message.ends_with(duet::detail::known_columns);
   };
-  // A table without names, and that of a recording without its comment: w last or first?
+  // Without names, w may be first or last.
   for (const char* unnamed :
        {"0,.3,.9,.3,.1\n", "1305031098.6659,1.3563,0.6305,1.6380,0.6132,0.5962,"
                            "-0.3311,-0.3986\n"}) {
     const std::string message = error_message(unnamed);
-    CHECK(message.find(" columns, and no header before the first row says which is which") !=
-          message.npos);
-    CHECK(is_told(message));
+    CHECK(message.find(" columns without a header before the first row") != message.npos);
+    CHECK(names_known_columns(message));
   }
   CHECK(error_message("t,q0,q1,q2,q3\n0,.1,.3,.9,.3\n")
-            .starts_with("duet: " + path + ":1: the header names no column qw: known are u "));
-  CHECK(is_told(error_message("u,w,x,y,z\n0,.1,.3,.9,.3\n")));
-  CHECK(is_told(error_message("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
+            .starts_with("duet: " + path +
+                         ":1: the header names no column qw: known columns are u "));
+  CHECK(names_known_columns(error_message("u,w,x,y,z\n0,.1,.3,.9,.3\n")));
+  CHECK(names_known_columns(error_message("# t q0 q1 q2 q3\n0 .1 .3 .9 .3\n")));
   CHECK(error_message("qw,qx,qy,qz\n.1,.3,.9,.3\n")
             .starts_with("duet: " + path + ":1: the header names no column u"));
   CHECK(error_message("t,u,qw,qx,qy,qz\n0,0,.1,.3,.9,.3\n") ==
         "duet: " + path + ":1: the header has both 't' and 'u'");
   CHECK(error_message("# t qx qy qz qw norm\n0 .3 .9 .3 .1\n") ==
-        "duet: " + path + ":1: the comment names 6 columns, the rows have 5");
-  // A comment whose names fit nothing is none that TUM's rows need.
+        "duet: " + path + ":1: the comment names 6 columns, but the rows have 5");
+  // TUM's rows need no header: a comment whose names do not fit them is ignored.
   for (const char* comment :
        {"# timestamp tx ty tz qx qy qz qw norm\n", "# time a b c d e f g\n",
         "# timestamp px py pz rx ry rz rw\n", "# time of day is UTC in whole seconds\n",
@@ -559,11 +567,11 @@ TEST_CASE("the names in a header tell the columns; doubt is an error") {
               .starts_with("duet: " + path + ":1: the "));
   }
   CHECK(error_message("# t qx qy qz qw\n1 0 0 0 0 1 0 0 0 0 1 0\n") ==
-        "duet: " + path + ":1: the comment names 5 columns, the rows have 12");
+        "duet: " + path + ":1: the comment names 5 columns, but the rows have 12");
   std::remove(path.c_str());
 }
 
-TEST_CASE("bad files are named, with line, column and value") {
+TEST_CASE("load_table: errors name the line, the column and the value") {
   const scratch_file file("bad.txt");
   const auto error_message = [&](const std::string& text) {
     file.write(text);
@@ -598,31 +606,31 @@ TEST_CASE("bad files are named, with line, column and value") {
   CHECK(error_message("u,x,y,qw,qx,qy,qz\n0,1,2,1,0,0,0\n") ==
         std::string("1: the header names no column z: ") + duet::detail::known_columns);
   CHECK(error_message("t [h],x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
-        "2: timestamps in 'h': s, ms, us or ns expected");
+        "2: the unit of timestamps is 'h' (expected s, ms, us or ns)");
   CHECK(error_message("t,x [m],y [m],z [mm],qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
-        "2: positions in 'mm': m expected");
+        "2: the unit of positions is 'mm' (expected m)");
   CHECK(error_message(header_of_euroc + "0.5,0,0,0,1,0,0,0\n") ==
-        "2: timestamp 0.5 is no whole number of nanoseconds: a header with its unit, as in "
-        "`timestamp [s]`, is needed");
+        "2: timestamp 0.5 is not an integer number of nanoseconds (other units need a header, as "
+        "in `timestamp [s]`)");
   // Decimal commas.
   CHECK(error_message("0,5 1,0 2 3 0 0 0 1\n")
-            .starts_with("1: 3 columns, and no header before the "));
+            .starts_with("1: 3 columns without a header before the "));
   CHECK(error_message(header_of_euroc + "1,1,2,3,0,5,0,0,1\n") ==
-        "1: the comment names 8 columns, the rows have 9");
+        "1: the comment names 8 columns, but the rows have 9");
   CHECK(error_message("u;x;y;z;qw;qx;qy;qz\n0;1;2,5;3;1;0;0;0\n") ==
         "2: y is not a number: '2,5' (expected a decimal point, not a comma)");
-  CHECK(error_message("0,5;1,0;2,5;3,5;1,0;0,0;0,0;0,0\n").find(" 8 columns, and no header") !=
+  CHECK(error_message("0,5;1,0;2,5;3,5;1,0;0,0;0,0;0,0\n").find(" 8 columns without a header") !=
         std::string::npos);
 
   const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   CHECK(error_message(identity + "1 0 0 0 0 1 0 0 0 0 -1 0\n") ==
         "2: the matrix is a reflection: det R = -1");
   CHECK(error_message(identity + "1 0 0 0 0 1.5 0 0 0 0 1 0\n") ==
-        "2: the matrix is no rotation: |R R^T - 1| = 1.25");
+        "2: the matrix is not a rotation: |R R^T - 1| = 1.25");
   CHECK(error_message(identity + "0 0 0 0 0 0 0 0 0 0 0 0\n") ==
-        "2: the matrix is no rotation: |R R^T - 1| = 1");
+        "2: the matrix is not a rotation: |R R^T - 1| = 1");
   CHECK(error_message(identity + "1e200 1e200 0 0 1e200 -1e200 0 0 0 0 1 0\n") ==
-        "2: the matrix is no rotation: |R R^T - 1| = inf");
+        "2: the matrix is not a rotation: |R R^T - 1| = inf");
   CHECK(error_message(identity + "1 0 0 nan 0 1 0 0 0 0 1 0\n") == "2: column 4 is nan");
   CHECK(error_message(identity + "1 0 0 0 0 1 0 0 0 0 1 0,\n") == "2: 12 columns expected, got 1");
 
@@ -632,7 +640,7 @@ TEST_CASE("bad files are named, with line, column and value") {
         "duet: no/file.txt: cannot be read");
 }
 
-TEST_CASE("times and rows of different numbers") {
+TEST_CASE("load_table, KITTI: errors for a file of times that does not match the rows") {
   const std::string identity = "1 0 0 0 0 1 0 0 0 0 1 0\n";
   const scratch_file file("rows.txt", "# poses\n" + identity + identity), times("rows_times.txt");
   const auto error_message = [&](const std::string& text) {
@@ -641,28 +649,28 @@ TEST_CASE("times and rows of different numbers") {
         [&] { static_cast<void>(duet::load_table<screw>(file.path, times.path)); });
   };
   CHECK(error_message("0\n") ==
-        "duet: " + file.path + ":3: a row beyond the 1 times of " + times.path);
+        "duet: " + file.path + ":3: more rows than the 1 times of " + times.path);
   CHECK(error_message("0\n1\n\n2\n") ==
-        "duet: " + times.path + ":4: a time beyond the 2 rows of " + file.path);
+        "duet: " + times.path + ":4: more times than the 2 rows of " + file.path);
   CHECK(error_message("0\n0\n") ==
         "duet: " + file.path + ":3: parameter 0 does not increase, the row before has 0");
   CHECK(error_message("0 1\n") == "duet: " + times.path + ":1: 1 numbers expected, got 2");
   CHECK(error_message("0\nnan\n") == "duet: " + times.path + ":2: column 1 is nan");
   CHECK(error_message("1403636580838\n1403636580838.5\n") ==
         "duet: " + times.path +
-            ":2: time 1403636580838.5 is no whole number of milliseconds: a header with its unit, "
-            "as in `timestamp [s]`, is needed");
+            ":2: time 1403636580838.5 is not an integer number of milliseconds (other units need a "
+            "header, as in `timestamp [s]`)");
   CHECK(error_message("t [h]\n0\n1\n") ==
-        "duet: " + times.path + ":1: timestamps in 'h': s, ms, us or ns expected");
+        "duet: " + times.path + ":1: the unit of timestamps is 'h' (expected s, ms, us or ns)");
   times.write("t [ms]\n1500\n2500.5\n");
   CHECK(duet::load_table<screw>(file.path, times.path).parameters == std::vector{1.5, 2.5005});
   CHECK(error_message("") == "duet: " + times.path + ": holds no rows");
   file.write("0 1 2 3 0 0 0 1\n");
   CHECK(error_message("0\n") ==
-        "duet: " + file.path + ":1: has times of its own besides those of " + times.path);
+        "duet: " + file.path + ":1: the rows have times, and so does " + times.path);
 }
 
-TEST_CASE("decimal commas of a locale change nothing") {
+TEST_CASE("save_table, load_table: a locale with decimal commas has no effect") {
   struct commas : std::numpunct<char> {
     char do_decimal_point() const override { return ','; }
     char do_thousands_sep() const override { return '.'; }
@@ -671,10 +679,10 @@ TEST_CASE("decimal commas of a locale change nothing") {
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new commas));
   std::ostringstream stream;
   stream << 1.5;
-  REQUIRE(stream.str() == "1,5"); // it is in force
+  REQUIRE(stream.str() == "1,5"); // the locale is in force
   for (const char* name : {"de_DE.UTF-8", "de_DE.utf8", "de_DE"}) {
     if (std::setlocale(LC_ALL, name) != nullptr) {
-      break; // where there is one
+      break; // if it is installed
     }
   }
   const scratch_file file("german.txt"), times("german_times.txt");

@@ -74,9 +74,9 @@ template <class T, class F, class R>
   return q;
 }
 
-/// Largest distance from f inside an interval, as far as it matters to the tolerance: at eight
-/// points, and if the largest is not far below the tolerance, at 24 more, the worst of which is
-/// refined. Points are spread unevenly, because a ripple may vanish at even ones.
+/// Largest distance from f inside an interval, sampled at eight points. If it is not far below the
+/// tolerance, 24 more points follow, and the worst one is refined. Points are spread unevenly,
+/// because a ripple may vanish at even ones.
 template <class Spline, class F, class R>
 [[nodiscard]] double miss_between(const Spline& s, const F& f, const R& low, const R& high,
                                   double tolerance, double characteristic_length) {
@@ -85,25 +85,25 @@ template <class Spline, class F, class R>
   };
   double largest = 0;
   R worst = low;
-  const auto look = [&](int count, double seed) {
+  const auto evaluate_at = [&](int count, double seed) {
     for (int k = 0; k < count; ++k) {
       const double spread = seed + 0.6180339887498949 * k;
       const R u = low + (high - low) * R((k + spread - std::floor(spread)) / count);
-      if (const double here = miss_at(u); here > largest) {
-        largest = here;
+      if (const double error = miss_at(u); error > largest) {
+        largest = error;
         worst = u;
       }
     }
   };
-  look(8, .25);
+  evaluate_at(8, .25);
   if (largest <= tolerance && largest > tolerance / 16) {
-    look(24, .75);
+    evaluate_at(24, .75);
     R step = (high - low) / R(24);
     for (int k = 0; k < 6; ++k, step /= R(2)) {
       for (const R& u : {R(worst - step), R(worst + step)}) {
-        const double here = u > low && u < high ? miss_at(u) : 0;
-        if (here > largest) {
-          largest = here;
+        const double error = u > low && u < high ? miss_at(u) : 0;
+        if (error > largest) {
+          largest = error;
           worst = u;
           break;
         }
@@ -141,14 +141,15 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
                 "pose, dual_quaternion<T>");
   std::ostringstream message;
   if (!(first < last) || !(tolerance > 0)) {
-    message << "duet: adaptive_table: from " << first << " to " << last << " with tolerance "
-            << tolerance << ": the range must not be empty, the tolerance positive";
+    message << "duet: adaptive_table: the range is from " << first << " to " << last
+            << " and the tolerance " << tolerance
+            << " (expected a range that is not empty and a positive tolerance)";
     detail::raise(invalid_input(message.str()));
   }
   lookup_table<T> table;
-  const std::size_t rows = std::max<std::size_t>(4, options.initial_samples);
-  for (std::size_t i = 0; i < rows; ++i) {
-    const R u = i + 1 < rows ? R(first + (last - first) * R(i) / R(rows - 1)) : last;
+  const std::size_t count = std::max<std::size_t>(4, options.initial_samples);
+  for (std::size_t i = 0; i < count; ++i) {
+    const R u = i + 1 < count ? R(first + (last - first) * R(i) / R(count - 1)) : last;
     table.parameters.push_back(u);
     table.elements.push_back(detail::sample_of<T>(f, u));
   }
@@ -176,9 +177,9 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
     finer.parameters.push_back(table.parameters.back());
     finer.elements.push_back(table.elements.back());
     if (finer.parameters.size() > options.max_samples) {
-      message << "duet: adaptive_table: " << table.parameters.size() << " rows reach an error of "
-              << worst << ", not " << tolerance << ", and more than " << options.max_samples
-              << " are not allowed";
+      message << "duet: adaptive_table: the error with " << table.parameters.size()
+              << " samples is " << worst << ", above the tolerance " << tolerance
+              << ", and options.max_samples is " << options.max_samples;
       detail::raise(no_convergence(message.str()));
     }
     table = std::move(finer);
@@ -188,11 +189,11 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
 /// Estimates the error of the curve through a lookup table without further knowledge of the motion:
 /// element i − 1 is the error near sample i.
 ///
-/// The curves through every other sample miss the samples left out by about 2^p times the error of
-/// the whole table's curve between its samples, p = `Spline::convergence`; uneven steps are
-/// accounted for. If the table resolves the motion, the largest estimate is not below the largest
-/// error. For cubic curves it is mostly up to five times as large; for quintic ones and for steps
-/// of very different lengths it may be far larger.
+/// A curve through every other sample misses the omitted samples by about 2^p times the error of
+/// the curve through all samples, p = `Spline::convergence`; uneven steps are accounted for. If the
+/// table resolves the motion, the largest estimate is not below the largest error. For cubic curves
+/// it is mostly up to five times as large; for quintic ones and for steps of very different lengths
+/// it may be far larger.
 ///
 /// \throws invalid_input for fewer than nine samples
 /// \throws invalid_sample and others as `interpolate`
@@ -201,39 +202,39 @@ template <CurveType Spline>
 estimated_errors(const lookup_table<typename Spline::scalar_type>& table,
                  const curve_ends<typename Spline::scalar_type>& ends = not_a_knot{},
                  double characteristic_length = 1) {
-  const std::size_t rows = table.parameters.size();
-  if (rows < 9 || rows != table.elements.size()) {
+  const std::size_t count = table.parameters.size();
+  if (count < 9 || count != table.elements.size()) {
     std::ostringstream message;
-    message << "duet: estimated_errors: needs nine rows or more, got " << rows << " parameters and "
-            << table.elements.size() << " elements";
+    message << "duet: estimated_errors: needs nine samples or more, got " << count
+            << " parameters and " << table.elements.size() << " elements";
     detail::raise(invalid_input(message.str()));
   }
   const auto elements = normalized_quaternions(table.elements);
   const auto& u = table.parameters;
-  std::vector<double> misses(rows, 0.);
+  std::vector<double> misses(count, 0.);
   for (const std::size_t parity : {std::size_t(0), std::size_t(1)}) { // of the samples kept
     lookup_table<typename Spline::scalar_type> half;
-    for (std::size_t i = 0; i < rows; ++i) {
-      if (i % 2 == parity || i == 0 || i + 1 == rows) {
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i % 2 == parity || i == 0 || i + 1 == count) {
         half.parameters.push_back(u[i]);
         half.elements.push_back(elements[i]);
       }
     }
     const auto s = interpolate<Spline>(half.parameters, half.elements, ends);
-    for (std::size_t i = 1 + parity; i + 1 < rows; i += 2) {
+    for (std::size_t i = 1 + parity; i + 1 < count; i += 2) {
       // Between samples errors grow as t²(1 − t)², and with a power of the longer of the two steps.
       const double left = double(u[i] - u[i - 1]), right = double(u[i + 1] - u[i]);
       const double t = left / (left + right), longest = std::max(t, 1 - t);
       const double shape = std::max(.1, 4 * t * (1 - t));
       // Near the ends curves converge more slowly.
-      const bool is_regular = i >= 6 && i + 6 < rows && longest < .6;
+      const bool is_regular = i >= 6 && i + 6 < count && longest < .6;
       const double safety = Spline::convergence > 4 ? 5 : is_regular ? 1.2 : 2.2;
       misses[i] = safety * std::pow(longest, Spline::convergence) / (shape * shape) *
                   double(detail::miss(s(u[i]), elements[i], characteristic_length));
     }
   }
-  std::vector<double> errors(rows - 2);
-  for (std::size_t i = 1; i + 1 < rows; ++i) {
+  std::vector<double> errors(count - 2);
+  for (std::size_t i = 1; i + 1 < count; ++i) {
     errors[i - 1] = std::max({misses[i - 1], misses[i], misses[i + 1]});
   }
   return errors;

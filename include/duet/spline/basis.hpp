@@ -53,9 +53,9 @@ public:
     }
   }
 
-  /// Knots, each as often as it was given.
+  /// Knots, repeated knots included.
   [[nodiscard]] const std::vector<R>& knots() const { return knots_; }
-  /// Number of basis functions, equal to that of the control points.
+  /// Number of basis functions, equal to the number of control points.
   [[nodiscard]] std::size_t size() const { return knots_.size() - std::size_t(Order); }
   /// Index of the first of the k functions that do not vanish on a span.
   [[nodiscard]] std::size_t first_function(std::size_t span) const { return spans_[span].first; }
@@ -86,7 +86,7 @@ public:
   }
 
   /// Increments B̃_j(to) − B̃_j(from) of the varying functions of a span. Relative to the largest
-  /// of them they are as accurate as `to − from`, however close the two parameters.
+  /// increment they are as accurate as `to − from`, even for adjacent parameters.
   [[nodiscard]] std::array<R, std::size_t(Order) - 1> changes(std::size_t span, const R& from,
                                                               const R& to) const {
     const R a = from - spans_[span].middle;
@@ -117,7 +117,7 @@ private:
     return result;
   }
 
-  /// Derivatives 0 … k−1 at the middle of the span. About the middle no term of the Taylor series
+  /// Derivatives 0 … k−1 at the midpoint of the span, about which no term of the Taylor series
   /// exceeds the sum by much.
   template <class S>
   using polynomial = std::array<S, std::size_t(Order)>;
@@ -171,9 +171,9 @@ private:
   /// Cumulative functions on the span [u_i, u_{i+1}): the Cox–de Boor recurrence (P1) and its
   /// derivative (P4),
   ///   (B_i^r)′ = (r−1) [B_i^{r−1}/(u_{i+r−1} − u_i) − B_{i+1}^{r−1}/(u_{i+r} − u_{i+1})],
-  /// at the middle of the span, where all values are positive. Then P3,
+  /// at the midpoint of the span, where all values are positive. Then P3,
   ///   B̃_i′ = (k−1)/(u_{i+k−1} − u_i) B_i^{k−1}.
-  /// The factors (k−1)(k−2)… are applied at the end, where they are one exact number.
+  /// The factors (k−1)(k−2)… are applied at the end, as one exact number.
   [[nodiscard]] span_data<R> make_span(std::size_t i) const {
     constexpr auto k = std::size_t(Order);
     const R middle = knots_[i] + (knots_[i + 1] - knots_[i]) / 2;
@@ -189,9 +189,9 @@ private:
         next[0][j] += b[0][j] * (right - middle) / (right - left);
         next[0][j + 1] += b[0][j] * (middle - left) / (right - left);
         for (std::size_t d = 1; d < r; ++d) {
-          const R slope = b[d - 1][j] / (right - left);
-          next[d][j] -= slope;
-          next[d][j + 1] += slope;
+          const R quotient = b[d - 1][j] / (right - left);
+          next[d][j] -= quotient;
+          next[d][j + 1] += quotient;
         }
       }
       b = next;

@@ -51,7 +51,7 @@ public:
   /// \throws invalid_sample as `align_quaternion_signs`
   cumulative_bspline(basis_type basis, std::vector<quaternion<T>> controls)
       : basis_(std::move(basis)), controls_(align_quaternion_signs(std::move(controls))) {
-    check_count("control elements", controls_.size());
+    check_count("control points", controls_.size());
     increments_.reserve(controls_.size());
     increments_.push_back(vector3<T>::Zero());
     for (std::size_t i = 1; i < controls_.size(); ++i) {
@@ -63,8 +63,8 @@ public:
   cumulative_bspline(std::vector<real_type> knots, std::vector<quaternion<T>> controls)
       : cumulative_bspline(basis_type(std::move(knots)), std::move(controls)) {}
 
-  /// Constructs the curve from control points with signs as they are and increments of any length:
-  /// for longer arcs, also several full turns, and for copies from another curve's
+  /// Constructs the curve from control points, whose signs are not changed, and increments of any
+  /// length: for longer arcs and several full turns, and for copies from another curve's
   /// `control_points()` and `increments()`. ω_0 has no effect.
   ///
   /// \throws invalid_input for counts that do not match
@@ -73,14 +73,14 @@ public:
                      std::vector<vector3<T>> increments)
       : basis_(std::move(basis)), controls_(normalized_quaternions(std::move(controls))),
         increments_(std::move(increments)) {
-    check_count("control elements", controls_.size());
+    check_count("control points", controls_.size());
     check_count("increments", increments_.size());
     for (std::size_t i = 1; i < controls_.size(); ++i) {
       const auto step = conj(controls_[i - 1]) * controls_[i];
       const auto miss = detail::innermost_of(step - duet::exp(increments_[i]));
       if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
         detail::raise(
-            invalid_sample(i, "the increment does not lead here from the control before"));
+            invalid_sample(i, "the increment does not lead to it from the control point before"));
       }
     }
     increments_.front() = vector3<T>::Zero();
@@ -98,7 +98,7 @@ private:
 
   void check_count(const char* what, std::size_t count) const {
     detail::require(count == basis_.size(), "duet: cumulative_bspline: ", basis_.knots().size(),
-                    " knots of order ", Order, " take ", basis_.size(), " ", what, ", got ", count);
+                    " knots of order ", Order, " need ", basis_.size(), " ", what, ", got ", count);
   }
 
   [[nodiscard]] const basis_type& spans() const { return basis_; }

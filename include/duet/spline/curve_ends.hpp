@@ -13,7 +13,7 @@
 #include <cstddef>
 
 /// \file
-/// End conditions as data, so that equations are not compiled for each of them.
+/// End conditions as data, so that the equations are compiled once for all kinds.
 
 namespace duet {
 namespace detail {
@@ -87,7 +87,8 @@ struct curve_ends {
   template <class Other>
   curve_ends(const Other&) {
     static_assert(refused<Other>,
-                  "duet: interpolate: the ends are natural{}, clamped{velocity, velocity}, "
+                  "duet: interpolate: the end conditions are natural{}, clamped{velocity, "
+                  "velocity}, "
                   "end_acceleration{…}, fully_clamped{…}, not_a_knot{} or periodic{}");
   }
 

@@ -25,7 +25,7 @@ template <class V = Eigen::Matrix<double, 3, 1>>
 struct clamped {
   /// ω or [v; ω] at the first data point, spatial axes, per unit of u.
   V start = detail::zero_initialized<V>();
-  /// ω or [v; ω] at the last data point, likewise.
+  /// ω or [v; ω] at the last data point, spatial axes, per unit of u.
   V end = detail::zero_initialized<V>();
 };
 
@@ -34,21 +34,21 @@ template <class V = Eigen::Matrix<double, 3, 1>>
 struct end_acceleration {
   /// ω̇ or [v̇; ω̇] at the first data point, spatial axes, per unit of u².
   V start = detail::zero_initialized<V>();
-  /// ω̇ or [v̇; ω̇] at the last data point, likewise.
+  /// ω̇ or [v̇; ω̇] at the last data point, spatial axes, per unit of u².
   V end = detail::zero_initialized<V>();
 };
 
 /// Given angular velocities and accelerations, or twists and their derivatives, at both ends: all
-/// conditions that a quintic can meet there. (If only one of them is given, continuity of the fifth
-/// derivative at the second knot replaces the other.)
+/// end conditions that a quintic can meet. (If only velocities or only accelerations are given,
+/// continuity of the fifth derivative at the second knot replaces the other condition.)
 template <class V = Eigen::Matrix<double, 3, 1>>
 struct fully_clamped {
   clamped<V> velocity;              ///< velocities at both ends
   end_acceleration<V> acceleration; ///< accelerations at both ends
 };
 
-/// Not-a-knot ends: the first two pieces are one polynomial, and so are the last two; for motions
-/// of which nothing is known at the ends.
+/// Not-a-knot ends: the first two segments are one polynomial, and so are the last two; for motions
+/// with unknown rates at the ends.
 struct not_a_knot {};
 
 /// Periodic curve: the motion and its rates close on themselves; the last data point repeats the

@@ -30,16 +30,17 @@ template <class T>
 concept QuickInLanes = std::same_as < real_type_t<T>,
 double > &&(std::same_as<T, double> || std::same_as<T, screw_dual<double>>);
 
-/// Repeats the error of f with the first parameter from i on that causes one, found one by one;
-/// rethrows the original error if none does. To be called in its handler.
+/// Rethrows the error of f with the index of the first parameter from i on that causes it, found by
+/// evaluating one parameter after the other; rethrows the original error if none does. To be called
+/// in the handler of the original error.
 template <class R, class F>
-[[noreturn]] void rethrow_with_row(std::span<const R> parameters, std::size_t i, const F& f) {
+[[noreturn]] void rethrow_with_index(std::span<const R> parameters, std::size_t i, const F& f) {
   span_hint hint;
   for (; i < parameters.size(); ++i) {
     catching<invalid_input>(
         [&] { static_cast<void>(f(parameters[i], hint)); },
         [&](const auto& error) {
-          const std::string_view reason = error.what(); // begins as that of invalid_sample does
+          const std::string_view reason = error.what(); // starts with the prefix of invalid_sample
           raise(invalid_sample(i, std::string(reason.substr(std::string_view("duet: ").size()))));
         });
   }
@@ -79,7 +80,7 @@ void evaluate_blocks(const char* function, std::span<const R> parameters, std::s
                 }
               }
             },
-            [&](const auto&) { rethrow_with_row(parameters, i, f); });
+            [&](const auto&) { rethrow_with_index(parameters, i, f); });
       },
       how);
 }

@@ -55,13 +55,13 @@ struct fit_result {
 namespace detail {
 
 /// \throws invalid_input unless there are no weights, or one for each sample, positive and finite
-inline void require_fit_weights(const std::vector<double>& weights, std::size_t rows) {
-  require(weights.empty() || weights.size() == rows, "duet: fit: ", weights.size(), " weights for ",
-          rows, " rows");
+inline void require_fit_weights(const std::vector<double>& weights, std::size_t samples) {
+  require(weights.empty() || weights.size() == samples, "duet: fit: ", weights.size(),
+          " weights for ", samples, " samples");
   for (std::size_t i = 0; i < weights.size(); ++i) {
     require(weights[i] > 0 && weights[i] <= std::numeric_limits<double>::max(),
             "duet: fit: weight ", i, " is ", weights[i],
-            ", not a positive number: a row that does not count is left out");
+            " (expected a finite positive number; omit samples that should not count)");
   }
 }
 
@@ -69,12 +69,14 @@ inline void require_fit_weights(const std::vector<double>& weights, std::size_t 
 /// basis function is not zero, or it would be arbitrary.
 ///
 /// \param counts  counts(i) is true if sample i counts
+/// \param advice  remedy, for the message
 /// \throws invalid_input if the condition is violated
 template <int Order, Real R, class Counts>
-void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
-                               const Counts& counts, const char* advice) {
+void require_samples_for_control_points(const bspline_basis<Order, R>& basis,
+                                        const std::vector<R>& u, const Counts& counts,
+                                        const char* advice) {
   const std::vector<R>& knots = basis.knots();
-  std::size_t row = 0;
+  std::size_t sample = 0;
   for (std::size_t i = 0; i < basis.size(); ++i) {
     const R low = knots[i];
     const R high = knots[i + std::size_t(Order)];
@@ -83,16 +85,17 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
       return counts(k) && ((x > low && x < high) || (x == low && i == 0) ||
                            (x == high && i + 1 == basis.size()));
     };
-    while (row < u.size() && u[row] < high && !is_inside(row)) {
-      ++row;
+    while (sample < u.size() && u[sample] < high && !is_inside(sample)) {
+      ++sample;
     }
-    if (row == u.size() || !is_inside(row)) {
+    if (sample == u.size() || !is_inside(sample)) {
       std::ostringstream message;
-      message << "duet: fit: too few rows for control element " << i
-              << ", which acts on parameters from " << low << " to " << high << ": " << advice;
+      message << "duet: fit: there are too few samples for control point " << i
+              << ", which acts on parameters from " << low << " to " << high << " (" << advice
+              << ")";
       raise(invalid_input(message.str()));
     }
-    ++row;
+    ++sample;
   }
 }
 
@@ -115,21 +118,21 @@ void require_rows_for_controls(const bspline_basis<Order, R>& basis, const std::
 /// characteristic length or weight that is not positive, a negative outlier threshold, or a
 /// covariance that is not positive definite
 /// \throws no_convergence if the iteration does not converge
-template <CurveType Spline, class R, detail::RowOf<Spline> T>
-[[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> rows,
+template <CurveType Spline, class R, detail::SampleOf<Spline> T>
+[[nodiscard]] fit_result<Spline> fit(std::vector<R> parameters, std::vector<quaternion<T>> samples,
                                      std::vector<R> knots, const fit_options& options = {}) {
   static_assert(std::is_same_v<Spline, cumulative_bspline<T, Spline::order>> &&
                     std::is_same_v<R, real_type_t<T>>,
                 "duet: fit makes cumulative_bspline<T, Order> from quaternion<T>");
   std::ostringstream message;
-  detail::check_rows("fit", parameters, rows.size(), 0);
+  detail::check_samples("fit", parameters, samples.size(), 0);
   if (!(options.characteristic_length > 0) || !(options.outlier_threshold >= 0)) {
     message << "duet: fit: characteristic_length is " << options.characteristic_length
             << " and outlier_threshold is " << options.outlier_threshold
             << " (expected a positive length and a non-negative threshold)";
     detail::raise(invalid_input(message.str()));
   }
-  detail::require_fit_weights(options.weights, rows.size());
+  detail::require_fit_weights(options.weights, samples.size());
   const bspline_basis<Spline::order, R> basis(std::move(knots));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (!basis.contains(parameters[i])) {
@@ -138,23 +141,23 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
     if (!basis.contains(parameters[i])) {
       message << "parameter " << detail::all_digits(parameters[i])
               << " is outside the knots' domain, " << detail::all_digits(basis.front()) << " to "
-              << detail::all_digits(basis.back()) << ": clamped_knots of parameters from "
-              << parameters.front() << " to " << parameters.back() << " hold all rows";
+              << detail::all_digits(basis.back()) << " (clamped_knots of parameters from "
+              << parameters.front() << " to " << parameters.back() << " have all samples in it)";
       detail::raise(invalid_sample(i, message.str()));
     }
   }
-  detail::require_rows_for_controls(
+  detail::require_samples_for_control_points(
       basis, parameters, [](std::size_t) { return true; }, "use fewer knots there");
-  detail::bspline_fit<T, Spline::order> problem(basis, parameters,
-                                                normalized_quaternions(std::move(rows)), options);
-  detail::require_rows_for_controls(
+  detail::bspline_fit<T, Spline::order> problem(
+      basis, parameters, normalized_quaternions(std::move(samples)), options);
+  detail::require_samples_for_control_points(
       basis, parameters, [&](std::size_t i) { return problem.counts(i); },
       "the others are outliers; use fewer knots there");
   const int iterations = problem.solve();
   const std::vector<R> residuals = problem.residuals();
   using std::sqrt;
   const R largest = *std::max_element(residuals.begin(), residuals.end());
-  R squares(0), weights(0); // relative to the largest, so that they do not overflow
+  R squares(0), weights(0); // of residuals relative to the largest, so that they do not overflow
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const R ratio = largest > 0 ? R(residuals[i] / largest) : R(0);
     const R weight = options.weights.empty() ? R(1) : R(options.weights[i]);
@@ -167,18 +170,19 @@ template <CurveType Spline, class R, detail::RowOf<Spline> T>
 
 /// Rejected: rotations for a curve of poses, or poses for a curve of rotations.
 template <CurveType Spline, class R, class T, class... More>
-  requires(!detail::RowOf<T, Spline>)
-DUET_REFUSED("fit: the curve is over another scalar than the rows: rotations make a "
+  requires(!detail::SampleOf<T, Spline>)
+DUET_REFUSED("fit: the scalar of the curve differs from that of the samples: rotations make a "
              "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
 fit_result<Spline> fit(const std::vector<R>&, const std::vector<quaternion<T>>&,
                        const std::vector<R>&, const More&...);
-DUET_REFUSES_ROWS(fit, fit_result, "(parameters, rows, knots)")
+DUET_REFUSES_ROWS(fit, fit_result, "(parameters, samples, knots)")
 template <CurveType Spline, class U, class T>
-DUET_REFUSED("fit: with which knots? fit<Curve>(parameters, rows, clamped_knots(breaks, 4))")
+DUET_REFUSED("fit: the knots are missing: fit<Curve>(parameters, samples, clamped_knots(breaks, "
+             "4))")
 fit_result<Spline> fit(const U&, const std::vector<quaternion<T>>&);
 template <CurveType Spline, class U, class T>
-DUET_REFUSED("fit: with which knots? fit<Curve>(parameters, rows, clamped_knots(breaks, 4), "
-             "options)")
+DUET_REFUSED("fit: the knots are missing: fit<Curve>(parameters, samples, clamped_knots(breaks, "
+             "4), options)")
 fit_result<Spline> fit(const U&, const std::vector<quaternion<T>>&, const fit_options&);
 
 #ifdef DUET_COMPILED

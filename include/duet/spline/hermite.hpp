@@ -24,7 +24,7 @@ namespace duet {
 /// exp(x_i(u − u_i)) with cubic x_i. No equations are solved. For smooth motion it is fourth-order
 /// accurate in value, third in velocity.
 ///
-/// \param rows        data points Q_i, unit quaternions or poses; signs are aligned first
+/// \param samples     data points Q_i, unit quaternions or poses; signs are aligned first
 /// \param velocities  angular velocities, for poses twists [v; ω], per unit of the parameter
 /// \param frame       axes of the velocities: `frame::spatial` or `frame::body`
 /// \return `rotation_vector_spline<T, 4>`
@@ -33,13 +33,14 @@ namespace duet {
 /// \throws invalid_input for fewer than two data points or counts that differ
 template <class Q, class V, FrameConstant Frame>
 [[nodiscard]] auto hermite_spline(const std::vector<real_type_t<Q>>& parameters,
-                                  const std::vector<quaternion<Q>>& rows,
+                                  const std::vector<quaternion<Q>>& samples,
                                   const std::vector<V>& velocities, Frame frame) {
   using T = promote_t<Q, typename V::Scalar>;
-  detail::check_rows("hermite_spline", parameters, rows.size(), 2);
-  detail::require(velocities.size() == rows.size(), "duet: hermite_spline: ", rows.size(),
-                  " rows, but ", velocities.size(), " velocities");
-  auto elements = align_quaternion_signs(std::vector<quaternion<T>>(rows.begin(), rows.end()));
+  detail::check_samples("hermite_spline", parameters, samples.size(), 2);
+  detail::require(velocities.size() == samples.size(), "duet: hermite_spline: ", samples.size(),
+                  " samples, but ", velocities.size(), " velocities");
+  auto elements =
+      align_quaternion_signs(std::vector<quaternion<T>>(samples.begin(), samples.end()));
   std::vector<std::array<vector3<T>, 1>> rates;
   rates.reserve(velocities.size());
   for (std::size_t i = 0; i < velocities.size(); ++i) {

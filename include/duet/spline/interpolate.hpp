@@ -52,8 +52,9 @@ struct interpolation_report {
 
 namespace detail {
 
-/// Solution over T, lifted from that over the real numbers: one Newton step with the real Jacobian
-/// for each order of infinitesimals, and one more that removes the round-off of the last.
+/// Solution over T, lifted from the solution over the real numbers: one Newton step with the real
+/// Jacobian for each order of infinitesimals, and one more that removes the round-off of the last
+/// step.
 template <class Equations, class Newton>
 [[nodiscard]] typename Equations::unknowns lifted_solution(const Equations& equations,
                                                            Newton& newton) {
@@ -91,8 +92,8 @@ closed(std::vector<quaternion<T>> q) {
     using R = real_type_t<T>;
     const R off = 2 * length(vector3<R>(innermost(x[0]), innermost(x[1]), innermost(x[2])));
     if (!(off <= tolerance)) {
-      raise(invalid_sample(q.size() - 1, message("periodic ends: differs from row 0 by ", off, unit,
-                                                 ", but must repeat it")));
+      raise(invalid_sample(q.size() - 1, message("periodic ends: differs from sample 0 by ", off,
+                                                 unit, ", but must repeat it")));
     }
   };
   if constexpr (contains_tag<T, screw_tag>()) {
@@ -121,15 +122,15 @@ using scalar_of_curve_t = typename scalar_of_curve<Spline, T>::type;
 /// True if samples over T fit a curve of type `Spline`: T is its scalar, or its scalar has
 /// derivatives and T holds constants.
 template <class T, class Spline>
-concept RowOf =
+concept SampleOf =
     std::same_as<promote_t<scalar_of_curve_t<Spline, T>, T>, scalar_of_curve_t<Spline, T>> &&
     contains_tag<scalar_of_curve_t<Spline, T>, screw_tag>()
 == contains_tag<T, screw_tag>() &&
     std::same_as<real_type_t<scalar_of_curve_t<Spline, T>>, real_type_t<T>>;
 
 template <class Spline, class T>
-[[nodiscard]] auto over_scalar_of_curve(const std::vector<quaternion<T>>& rows) {
-  return std::vector<quaternion<scalar_of_curve_t<Spline, T>>>(rows.begin(), rows.end());
+[[nodiscard]] auto over_scalar_of_curve(const std::vector<quaternion<T>>& samples) {
+  return std::vector<quaternion<scalar_of_curve_t<Spline, T>>>(samples.begin(), samples.end());
 }
 
 /// Interpolates the samples by a curve of type `Spline`; reports if `report` is not null.
@@ -146,9 +147,10 @@ template <CurveType Spline, class T>
     static_assert(CurveEquations<equations>);
     if (Spline::order < 6 && ends.kind == end_condition_kind::velocity_and_acceleration) {
       raise(invalid_input(
-          "duet: interpolate: a cubic's ends take velocities or accelerations, not both"));
+          "duet: interpolate: fully_clamped ends need a quintic (a cubic can meet velocities or "
+          "accelerations, not both)"));
     }
-    check_rows("interpolate", parameters, q.size(), equations::min_samples(ends.kind));
+    check_samples("interpolate", parameters, q.size(), equations::min_samples(ends.kind));
     q = align_quaternion_signs(std::move(q));
     if (ends.kind == end_condition_kind::periodic) {
       q = closed(std::move(q));
@@ -222,10 +224,10 @@ curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<doub
 /// |---|---|---|
 /// | `natural` | no acceleration | no acceleration, no snap |
 /// | `clamped` | given velocity | given velocity; fifth derivative continuous at the next knot |
-/// | `end_acceleration` | given acceleration | given acceleration; fifth derivative likewise |
-/// | `fully_clamped` | | given velocity and acceleration |
-/// | `not_a_knot` | jerk continuous at the next knot | fifth derivative at the next two |
-/// | `periodic` | as smooth as inside | as smooth as inside |
+/// | `end_acceleration` | given acceleration | given acceleration; fifth derivative as for
+/// `clamped` | | `fully_clamped` | | given velocity and acceleration | | `not_a_knot` | jerk
+/// continuous at the next knot | fifth derivative at the next two | | `periodic` | as smooth as
+/// inside | as smooth as inside |
 ///
 /// The unknowns are the increments of P2, or the rates at the knots. Their real parts are found by
 /// Newton's method, O(n) per step, and if neighbouring data points are far apart, by continuation
@@ -241,7 +243,7 @@ curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<doub
 /// acceleration that is not finite
 /// \throws no_convergence if no curve was found: neighbours very far apart, or parameters too
 /// uneven for the end conditions
-template <CurveType Spline, detail::RowOf<Spline> T>
+template <CurveType Spline, detail::SampleOf<Spline> T>
 [[nodiscard]] Spline
 interpolate(const std::vector<real_type_t<T>>& parameters,
             const std::vector<quaternion<T>>& orientations,
@@ -251,7 +253,7 @@ interpolate(const std::vector<real_type_t<T>>& parameters,
       parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, nullptr);
 }
 /// Interpolates as above, with a report of the iteration.
-template <CurveType Spline, detail::RowOf<Spline> T>
+template <CurveType Spline, detail::SampleOf<Spline> T>
 [[nodiscard]] Spline
 interpolate(const std::vector<real_type_t<T>>& parameters,
             const std::vector<quaternion<T>>& orientations,
@@ -263,12 +265,13 @@ interpolate(const std::vector<real_type_t<T>>& parameters,
 
 /// Rejected: rotations for a curve of poses, or poses for a curve of rotations.
 template <CurveType Spline, class T, class... More>
-  requires(!detail::RowOf<T, Spline>)
-DUET_REFUSED("interpolate: the curve is over another scalar than the rows: rotations make a "
-             "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
+  requires(!detail::SampleOf<T, Spline>)
+DUET_REFUSED(
+    "interpolate: the scalar of the curve differs from that of the samples: rotations make a "
+    "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
 Spline interpolate(const std::vector<real_type_t<T>>&, const std::vector<quaternion<T>>&,
                    const More&...);
 
-DUET_REFUSES_ROWS(interpolate, detail::itself, "(parameters, rows)")
+DUET_REFUSES_ROWS(interpolate, detail::itself, "(parameters, samples)")
 
 } // namespace duet

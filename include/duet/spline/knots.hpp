@@ -23,12 +23,12 @@ void check_knots(const std::vector<R>& knots, int order) {
   };
   const auto k = std::size_t(order);
   if (knots.size() < 2 * k) {
-    fail("order ", order, " needs at least ", 2 * k, " of them, got ", knots.size(),
-         ": clamped_knots(parameters, ", order, ") makes enough");
+    fail("order ", order, " needs at least ", 2 * k, " knots, got ", knots.size(),
+         " (clamped_knots(parameters, ", order, ") makes enough)");
   }
   for (std::size_t i = 0; i < knots.size(); ++i) {
     if (!(knots[i] - knots[i] == 0)) {
-      fail("knot ", i, " is ", knots[i]);
+      fail("knot ", i, " is ", knots[i], " (expected a finite number)");
     }
     if (i > 0 && knots[i] < knots[i - 1]) {
       fail("knot ", i, " = ", knots[i], " is less than knot ", i - 1, " = ", knots[i - 1]);
@@ -38,7 +38,7 @@ void check_knots(const std::vector<R>& knots, int order) {
     }
   }
   if (!(knots[k - 1] < knots[knots.size() - k])) {
-    fail("the domain is empty");
+    fail("the domain from ", knots[k - 1], " to ", knots[knots.size() - k], " is empty");
   }
   if (const R width = knots.back() - knots.front(); !(width - width == 0)) {
     fail("the distance from ", knots.front(), " to ", knots.back(), " overflows");
@@ -48,8 +48,8 @@ void check_knots(const std::vector<R>& knots, int order) {
 } // namespace detail
 
 /// Clamped knot vector of a spline of this order through data points at the given parameters: each
-/// once, the first and the last `order` times, so that the curve ends at its first and last control
-/// points.
+/// parameter once, the first and the last `order` times, so that the curve ends at its first and
+/// last control points.
 template <Real R>
 [[nodiscard]] std::vector<R> clamped_knots(const std::vector<R>& parameters, int order) {
   const std::size_t more = std::size_t(order) - 1, last = parameters.size() - 1;
@@ -64,13 +64,14 @@ template <Real R>
 /// every n-th sample, so that knots are dense where samples are, and at the first and the last,
 /// repeated as by `clamped_knots`. The last inner knot is n to 2 n − 1 samples before the end.
 ///
-/// \param n  samples per knot: more smooth more, fewer follow faster motion
+/// \param n  number of samples per knot: larger numbers smooth more, smaller ones follow faster
+///           motion
 /// \throws invalid_input for n = 0 and fewer than two samples
 template <Real R>
 [[nodiscard]] std::vector<R> knots_every(const std::vector<R>& parameters, std::size_t n,
                                          int order = 4) {
-  detail::require(n > 0 && parameters.size() > 1, "duet: knots_every: n = ", n, " and ",
-                  parameters.size(), " rows: n must be positive, and at least two rows there");
+  detail::require(n > 0 && parameters.size() > 1, "duet: knots_every: n is ", n, " with ",
+                  parameters.size(), " parameters (expected n > 0 and two parameters or more)");
   std::vector<R> breaks{parameters.front()};
   for (std::size_t i = n; i < parameters.size() - 1 && n <= parameters.size() - 1 - i; i += n) {
     breaks.push_back(parameters[i]);
@@ -83,14 +84,15 @@ template <Real R>
 /// parameters: no knots at the first order/2 − 1 inner parameters, nor at the last ones.
 template <Real R>
 [[nodiscard]] std::vector<R> not_a_knot_knots(std::vector<R> parameters, int order) {
-  const std::ptrdiff_t left_out = order / 2 - 1;
-  parameters.erase(parameters.end() - 1 - left_out, parameters.end() - 1);
-  parameters.erase(parameters.begin() + 1, parameters.begin() + 1 + left_out);
+  const std::ptrdiff_t skipped = order / 2 - 1;
+  parameters.erase(parameters.end() - 1 - skipped, parameters.end() - 1);
+  parameters.erase(parameters.begin() + 1, parameters.begin() + 1 + skipped);
   return clamped_knots(parameters, order);
 }
 
 /// Knot vector of a periodic spline of this order through data points at the given parameters, the
-/// last of which is one period after the first: each once, continued periodically on both sides.
+/// last of which is one period after the first: each parameter once, continued periodically on both
+/// sides.
 template <Real R>
 [[nodiscard]] std::vector<R> periodic_knots(const std::vector<R>& parameters, int order) {
   const std::size_t n = parameters.size() - 1;

@@ -22,12 +22,12 @@
 
 namespace duet {
 
-/// Behaviour of a curve outside its domain. Parameters up to 8 ulp beyond an end, of the end of
-/// larger magnitude, count as that end: sums of steps may be off by as much.
+/// Behaviour of a curve outside its domain. Parameters up to 8 ulp beyond an end count as that end,
+/// with the ulp of the end of larger magnitude: sums of steps may be off by as much.
 enum class out_of_domain {
   error,      ///< throws invalid_input
   clamp,      ///< keeps the value at the end, with zero rates
-  extrapolate ///< continues the first or last piece
+  extrapolate ///< continues the first or last segment
 };
 
 /// Span of the caller's last parameter, for parameters that change little from one evaluation to
@@ -57,7 +57,7 @@ template <Real R>
 
 namespace duet {
 
-/// Non-empty spans of a curve's domain, with a search for the span that holds a parameter.
+/// Non-empty spans of a curve's domain, with a search for the span that contains a parameter.
 template <Real R>
 class knot_spans {
 public:
@@ -88,20 +88,20 @@ public:
     return u >= breaks_.front() && u <= breaks_.back();
   }
 
-  /// Returns u, or the end of the domain if u is beyond it by round-off only, see `outside`.
+  /// Returns u, or the end of the domain if u is beyond it by round-off only, see `out_of_domain`.
   [[nodiscard]] R rounded_into_domain(const R& u) const {
     return detail::clamp_rounding(u, breaks_.front(), breaks_.back());
   }
 
-  /// Index of the span that holds u. Spans are half-open, the last one closed. Beyond an end by
-  /// round-off only, the span at that end.
+  /// Index of the span that contains u. Spans are half-open, the last one closed. A parameter that
+  /// is beyond an end by round-off only belongs to the span at that end.
   ///
   /// \throws invalid_input outside the domain
   [[nodiscard]] DUET_ALWAYS_INLINE std::size_t find_span(const R& u) const {
     if (!contains(u)) [[unlikely]] {
       return adjacent_span(u);
     }
-    // If knots are about uniform the guess is right; otherwise a binary search finds the span.
+    // The guess is right if knots are about uniform; otherwise a binary search finds the span.
     const std::size_t guess = guessed_span(u);
     if (breaks_[guess] <= u && u < breaks_[guess + 1]) [[likely]] {
       return guess;
@@ -109,8 +109,8 @@ public:
     const auto above = std::upper_bound(breaks_.begin(), breaks_.end(), u) - breaks_.begin();
     return std::min(static_cast<std::size_t>(above), span_count()) - 1;
   }
-  /// Index of the span that holds u. Unless knots are about uniform, the span of the hint and the
-  /// next one are tried first. Updates the hint.
+  /// Index of the span that contains u. Unless knots are about uniform, the span of the hint and
+  /// the next one are tried first. Updates the hint.
   [[nodiscard]] DUET_ALWAYS_INLINE std::size_t find_span(const R& u, span_hint& hint) const {
     return hint.span = is_about_uniform_ ? find_span(u) : span_near(u, hint.span);
   }

@@ -117,32 +117,32 @@ DUET_ALWAYS_INLINE void take_in_factor(half_motion<T>& m, std::size_t i, const q
     [[maybe_unused]] const real_type_t<T> two(2);
     three_vector<T> w_hat, a_hat, j_hat;
     if (i == 1) { // all rates are multiples of one vector, which e* … e rotates once
-      const three_vector<T> turned = rotated(back, components(omega[0]));
-      w_hat = b[1][0] * turned;
+      const three_vector<T> omega_hat = rotated(back, components(omega[0]));
+      w_hat = b[1][0] * omega_hat;
       if constexpr (Rates >= 2) {
-        a_hat = b[2][0] * turned;
+        a_hat = b[2][0] * omega_hat;
       }
       if constexpr (Rates >= 3) {
-        j_hat = b[3][0] * turned;
+        j_hat = b[3][0] * omega_hat;
       }
     } else {
       if constexpr (Rates == 1) {
         w_hat = rotated(back, m.velocity);
       } else {
-        const rotation_of_many turn(back);
-        w_hat = turn(m.velocity);
-        a_hat = turn(m.acceleration);
+        const rotation_of_many rotate_back(back);
+        w_hat = rotate_back(m.velocity);
+        a_hat = rotate_back(m.acceleration);
         if constexpr (Rates >= 3) {
-          j_hat = turn(m.jerk);
+          j_hat = rotate_back(m.jerk);
         }
       }
     }
     m.velocity = w_hat + times_omega(b[1][i]);
     if constexpr (Rates >= 2) {
-      const auto turn = cross(w_hat, times_omega(b[1][i]));
-      m.acceleration = a_hat + times_omega(b[2][i]) + two * turn;
+      const auto w_hat_cross_rate = cross(w_hat, times_omega(b[1][i]));
+      m.acceleration = a_hat + times_omega(b[2][i]) + two * w_hat_cross_rate;
       if constexpr (Rates >= 3) {
-        const auto sum = b[2][i] * w_hat + two * (b[1][i] * (a_hat + turn));
+        const auto sum = b[2][i] * w_hat + two * (b[1][i] * (a_hat + w_hat_cross_rate));
         m.jerk = j_hat + times_omega(b[3][i]) + two * cross(sum, components(omega[i]));
       }
     }
@@ -170,14 +170,14 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
     return exp_of_multiple(weights[0][i], increments[i]);
   };
   if constexpr (sizeof(D) <= 4 * sizeof(real_type_t<D>)) {
-    // All exponentials first: then no other values are alive that calls could spill to memory.
+    // All exponentials are computed first: then calls have no other values to spill to memory.
     [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
       const std::array<quaternion<D>, Factors> e{factor(I)...};
       m.value = start * e[0];
       (take_in_factor<Rates>(m, I, e[I], increments, weights), ...);
     }
     (std::make_index_sequence<Factors>{});
-  } else { // unrolled, larger numbers would take the compiler too long
+  } else { // unrolled code of larger numbers would take the compiler too long
     for (std::size_t i = 0; i < Factors; ++i) {
       const quaternion<D> e = factor(i);
       if (i == 0) {
@@ -189,21 +189,21 @@ product_of_exponentials(const quaternion<T>& start, const vector3<T>* increments
   return m;
 }
 
-/// Converts twists in body axes to the motion of the body's origin, ṫ = R v, and to fixed axes.
-/// There is no cancellation, however far out the body is:
+/// Converts twists in body axes to the motion of the body's origin, ṫ = R v, and to fixed axes,
+/// without cancellation at any distance of the body from the origin:
 ///   ẗ = R(v̇ + ω × v),   t⃛ = R(v̈ + ω̇ × v + 2ω × v̇ + ω × (ω × v)).
 template <class T>
 void follow_origin(motion<T>& m) {
   using rate = typename motion<T>::rate_type;
   using vector = three_vector<typename rate::Scalar>;
-  const rotation_of_many turn(rotation(m.value));
+  const rotation_of_many to_fixed_axes(rotation(m.value));
   const auto linear = [](const rate& r) { return vector{r[0], r[1], r[2]}; };
   const auto angular = [](const rate& r) { return vector{r[3], r[4], r[5]}; };
   const vector v = linear(m.velocity), omega = angular(m.velocity);
   const vector v_dot = linear(m.acceleration), alpha = angular(m.acceleration);
   const vector across = cross(omega, v);
   const auto set = [&](rate& r, const vector& along, const vector& about) {
-    r << turn(along).eigen(), turn(about).eigen();
+    r << to_fixed_axes(along).eigen(), to_fixed_axes(about).eigen();
   };
   set(m.jerk, linear(m.jerk) + cross(alpha, v) + 2 * cross(omega, v_dot) + cross(omega, across),
       angular(m.jerk) + cross(omega, alpha));
@@ -217,7 +217,7 @@ template <class T, class Frame>
 [[nodiscard]] DUET_ALWAYS_INLINE motion<T> motion_of(half_motion<T> m, Frame) {
   constexpr bool is_pose = contains_tag<T, screw_tag>();
   constexpr bool is_hybrid = is_pose && std::is_same_v<Frame, hybrid_frame>;
-  constexpr bool is_turned = [] {
+  constexpr bool is_rotated = [] {
     if constexpr (is_hybrid) {
       return false; // rotated by the rotation alone, below
     } else {
@@ -225,7 +225,7 @@ template <class T, class Frame>
     }
   }();
   const real_type_t<T> two(2);
-  if constexpr (is_turned) {
+  if constexpr (is_rotated) {
     m.jerk = m.jerk + two * cross(m.velocity, m.acceleration);
     m.velocity = rotated(m.value, m.velocity);
     m.acceleration = rotated(m.value, m.acceleration);

@@ -25,38 +25,40 @@ namespace duet {
 /// Sample that no curve can pass through.
 class invalid_sample : public invalid_input {
 public:
-  DUET_COLD invalid_sample(std::size_t row, const std::string& reason)
-      : invalid_input(detail::message("duet: row ", row, ": ", reason)), row_(row),
+  DUET_COLD invalid_sample(std::size_t sample, const std::string& reason)
+      : invalid_input(detail::message("duet: sample ", sample, ": ", reason)), index_(sample),
         reason_(reason) {}
 
   /// Index of the sample, counted from 0.
-  [[nodiscard]] std::size_t row() const { return row_; }
+  [[nodiscard]] std::size_t index() const { return index_; }
   /// Reason why it is invalid.
   [[nodiscard]] const std::string& reason() const { return reason_; }
 
 private:
-  std::size_t row_;
+  std::size_t index_;
   std::string reason_;
 };
 
 namespace detail {
 
-/// \throws invalid_input unless there are as many parameters as elements, and enough
+/// \param samples  number of samples
+/// \param minimum  number of samples that the caller needs
+/// \throws invalid_input unless there are as many parameters as samples, and enough of them
 /// \throws invalid_sample unless the parameters are finite and increase
 template <Real R>
-void check_rows(const char* caller, const std::vector<R>& parameters, std::size_t elements,
-                std::size_t minimum) {
-  require(parameters.size() == elements, "duet: ", caller, ": ", parameters.size(),
-          " parameters, but ", elements, " rows");
-  require(elements >= minimum, "duet: ", caller, ": needs ", minimum, " rows or more",
-          minimum > 2 ? " with these ends" : "", ", got ", elements);
-  for (std::size_t i = 0; i < elements; ++i) {
+void check_samples(const char* caller, const std::vector<R>& parameters, std::size_t samples,
+                   std::size_t minimum) {
+  require(parameters.size() == samples, "duet: ", caller, ": ", parameters.size(),
+          " parameters, but ", samples, " samples");
+  require(samples >= minimum, "duet: ", caller, ": needs ", minimum, " samples or more",
+          minimum > 2 ? " with these end conditions" : "", ", got ", samples);
+  for (std::size_t i = 0; i < samples; ++i) {
     const R& u = parameters[i];
     if (!(u - u == 0)) {
       raise(invalid_sample(i, message("parameter ", u, " is not finite")));
     }
     if (i > 0 && !(u > parameters[i - 1])) {
-      raise(invalid_sample(i, message("parameter ", u, " does not increase, the row before has ",
+      raise(invalid_sample(i, message("parameter ", u, " does not increase, the sample before has ",
                                       parameters[i - 1])));
     }
   }
@@ -137,7 +139,7 @@ template <class T>
   for (std::size_t i = 1; i < q.size(); ++i) {
     if (differs_by_half_turn(q[i - 1], q[i])) {
       detail::raise(
-          invalid_sample(i, "half a turn from the row before: either way round is as short"));
+          invalid_sample(i, "half a turn from the sample before: both arcs are equally short"));
     }
     if (innermost(dot(q[i - 1], q[i])) < 0) {
       q[i] = -q[i];

@@ -23,9 +23,9 @@ namespace duet {
 
 /// Curve Q(u) over the spans of a basis.
 ///
-/// \tparam Curve  derived class with `spans()`, the basis, and `on_span<Rates>(span, u)`, Q with
-///                that many of its rates in body axes, halved; for a batch of parameters with an
-///                array of spans, one for each lane
+/// \tparam Curve  derived class with `spans()`, the basis, and `on_span<Rates>(span, u)`, which
+///                returns Q and the given number of its rates in body axes, halved; for a batch of
+///                parameters with an array of spans, one for each lane
 /// \tparam R      real type of the parameter
 template <class Curve, class R>
 class piecewise_curve {
@@ -33,9 +33,9 @@ public:
   /// Parameters at which the pieces meet, and the ends of the domain, increasing.
   [[nodiscard]] const std::vector<R>& breaks() const { return curve().spans().breaks(); }
   /// Behaviour of the curve outside its domain; default `out_of_domain::error`.
-  [[nodiscard]] out_of_domain behaviour_out_of_domain() const { return outside_; }
+  [[nodiscard]] out_of_domain behaviour_out_of_domain() const { return behaviour_; }
   /// Sets the behaviour of the curve outside its domain.
-  void set_out_of_domain(out_of_domain behaviour) { outside_ = behaviour; }
+  void set_out_of_domain(out_of_domain behaviour) { behaviour_ = behaviour; }
 
   /// Value Q(u).
   ///
@@ -112,10 +112,10 @@ private:
     std::size_t span = 0;
     bool is_at_rest = false;
     if (!spans.contains(value)) [[unlikely]] {
-      const place there = clamp_to_domain(value);
-      span = there.span;
-      is_at_rest = there.is_at_rest;
-      u = is_at_rest ? P(there.u) : P(u + (there.u - value));
+      const evaluation_point point = clamp_to_domain(value);
+      span = point.span;
+      is_at_rest = point.is_at_rest;
+      u = is_at_rest ? P(point.u) : P(u + (point.u - value));
     } else if constexpr (std::is_same_v<Hint, span_hint>) {
       span = spans.find_span(value, hint);
     } else {
@@ -137,32 +137,32 @@ private:
     std::array<std::size_t, std::size_t(reals::lanes)> span;
     bool is_inside = true;
     for (int k = 0; k < reals::lanes; ++k) {
-      const auto here = static_cast<R>(value[k]);
+      const auto in_lane = static_cast<R>(value[k]);
       std::size_t& i = span[std::size_t(k)];
-      if (!spans.contains(here)) [[unlikely]] {
-        i = clamp_to_domain(here).span;
+      if (!spans.contains(in_lane)) [[unlikely]] {
+        i = clamp_to_domain(in_lane).span;
         is_inside = false;
       } else if constexpr (std::is_same_v<Hint, span_hint>) {
-        i = spans.find_span(here, hint);
+        i = spans.find_span(in_lane, hint);
       } else {
-        i = spans.find_span(here);
+        i = spans.find_span(in_lane);
       }
     }
     if (is_inside) [[likely]] {
       return curve().template on_span<Rates>(span, u);
     }
     typename reals::mask_type is_at_rest(false);
-    reals there(R(0)), rounding(R(0));
+    reals end(R(0)), rounding(R(0));
     for (int k = 0; k < reals::lanes; ++k) {
-      const auto here = static_cast<R>(value[k]);
-      if (!spans.contains(here)) {
-        const place at = clamp_to_domain(here);
-        is_at_rest.set(k, at.is_at_rest);
-        there.set(k, at.u);
-        rounding.set(k, at.is_at_rest ? R(0) : R(at.u - here));
+      const auto in_lane = static_cast<R>(value[k]);
+      if (!spans.contains(in_lane)) {
+        const evaluation_point point = clamp_to_domain(in_lane);
+        is_at_rest.set(k, point.is_at_rest);
+        end.set(k, point.u);
+        rounding.set(k, point.is_at_rest ? R(0) : R(point.u - in_lane));
       }
     }
-    u = blended(is_at_rest, P(there), P(u + rounding));
+    u = blended(is_at_rest, P(end), P(u + rounding));
     auto m = curve().template on_span<Rates>(span, u);
     if constexpr (Rates > 0) {
       for (auto* rate : {&m.velocity, &m.acceleration, &m.jerk}) {
@@ -175,13 +175,13 @@ private:
   }
 
   /// Point of evaluation for a parameter outside the domain.
-  struct place {
+  struct evaluation_point {
     std::size_t span; ///< first or last span
     R u;
     bool is_at_rest;
   };
-  /// \throws invalid_input if the curve is not defined there
-  [[nodiscard]] DUET_COLD place clamp_to_domain(const R& u) const {
+  /// \throws invalid_input if the curve is not defined at u
+  [[nodiscard]] DUET_COLD evaluation_point clamp_to_domain(const R& u) const {
     const auto& spans = curve().spans();
     const bool is_before = u < spans.front();
     const std::size_t span = is_before ? 0 : spans.breaks().size() - 2;
@@ -189,14 +189,14 @@ private:
     if (spans.rounded_into_domain(u) == end) {
       return {span, end, false};
     }
-    const bool is_usable = outside_ == out_of_domain::clamp ? u == u : u - u == 0;
-    if (outside_ == out_of_domain::error || !is_usable) {
+    const bool is_usable = behaviour_ == out_of_domain::clamp ? u == u : u - u == 0;
+    if (behaviour_ == out_of_domain::error || !is_usable) {
       static_cast<void>(spans.find_span(u)); // throws
     }
-    return {span, outside_ == out_of_domain::clamp ? end : u, outside_ == out_of_domain::clamp};
+    return {span, behaviour_ == out_of_domain::clamp ? end : u, behaviour_ == out_of_domain::clamp};
   }
 
-  out_of_domain outside_ = out_of_domain::error;
+  out_of_domain behaviour_ = out_of_domain::error;
 };
 
 } // namespace duet

@@ -12,9 +12,8 @@
 /// comparison. They are not the derivatives of the curve.
 ///
 /// The paper writes q_{−1}, but never B_{−1}. If the functions over the knots are its B_{−1}, B_0
-/// …, as many as control points, the curve's first control point is q_{−1}; duet counts so. If they
-/// are its B_0, B_1 …, then B̃_0 = 1, the curve's first control point is q_0, and q_{−1} has no
-/// effect.
+/// …, as many as control points, the curve's first control point is q_{−1}, as in duet. If they are
+/// its B_0, B_1 …, then B̃_0 = 1, the curve's first control point is q_0, and q_{−1} has no effect.
 
 namespace duet {
 

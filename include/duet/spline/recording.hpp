@@ -54,41 +54,41 @@ struct recording {
 
 namespace detail {
 
-/// Valid rows in order of time, each time once; the others are added to `faults`.
+/// Valid rows in order of time, each time once; the others are added to `issues`.
 ///
 /// \throws file_error if differences of times overflow
 [[nodiscard]] inline std::vector<table_row> in_order(const std::string& path,
                                                      std::vector<table_row> rows,
-                                                     std::vector<recording_issue>& faults) {
+                                                     std::vector<recording_issue>& issues) {
   std::sort(rows.begin(), rows.end(), [](const table_row& a, const table_row& b) {
     return a.time < b.time || (!(b.time < a.time) && a.line < b.line);
   });
-  const auto fault = [&](const table_row& row, const std::string& what) {
-    faults.push_back({row.line, printable("timestamp " + to_text(row.time.seconds()) + what)});
+  const auto add_issue = [&](const table_row& row, const std::string& problem) {
+    issues.push_back({row.line, printable("timestamp " + to_text(row.time.seconds()) + problem)});
   };
   std::vector<table_row> once;
   for (const table_row& row : rows) {
     const double since = row.time.since(rows.front().time);
     if (!(since - since == 0)) {
       raise(file_error(path, row.line,
-                       "timestamp " + to_text(row.time.seconds()) + ", and line " +
-                           std::to_string(rows.front().line) + " has " +
-                           to_text(rows.front().time.seconds()) + ": too far apart"));
+                       "the difference of timestamp " + to_text(row.time.seconds()) + " from " +
+                           to_text(rows.front().time.seconds()) + " in line " +
+                           std::to_string(rows.front().line) + " overflows"));
     }
     if (!once.empty() && !(since > once.back().time.since(rows.front().time))) {
-      fault(row, " repeats line " + std::to_string(once.back().line) + ": left out");
+      add_issue(row, " repeats line " + std::to_string(once.back().line) + ": left out");
     } else {
       once.push_back(row);
     }
   }
-  std::size_t earliest = once.empty() ? 0 : once.back().line; // of the rows later in time
+  std::size_t earliest = once.empty() ? 0 : once.back().line; // first line of the later rows
   for (auto row = once.rbegin(); row != once.rend(); ++row) {
     if (row->line > earliest) {
-      fault(*row, " is out of order: sorted in");
+      add_issue(*row, " is out of order: sorted in");
     }
     earliest = std::min(earliest, row->line);
   }
-  std::sort(faults.begin(), faults.end(),
+  std::sort(issues.begin(), issues.end(),
             [](const auto& a, const auto& b) { return a.line < b.line; });
   return once;
 }
@@ -102,10 +102,10 @@ template <class T>
   result.remark =
       for_each_table_row(path, times, !is_rotation_scalar<T>, angles, [&](const table_row& row) {
         ++count;
-        if (row.fault.empty()) {
+        if (row.issue.empty()) {
           rows.push_back(row);
         } else {
-          result.faults.push_back({row.line, printable(row.fault + ": left out")});
+          result.faults.push_back({row.line, printable(row.issue + ": left out")});
         }
       });
   if (rows.empty()) {

@@ -34,21 +34,22 @@ inline constexpr bool is_standard_vector<std::vector<X, Allocator>> = true;
     requires(!detail::ForeignRows<Rows> &&                                                         \
              (!detail::is_standard_vector<U> || !detail::is_standard_vector<Rows>))                \
   DUET_REFUSED(#function " takes standard vectors: std::vector<double> of parameters, "            \
-                         "std::vector<quaternion<double>> of rows")                                \
+                         "std::vector<quaternion<double>> of samples")                             \
   result<Spline> function(const U&, const Rows&, const More&...);                                  \
   template <CurveType Spline, class T>                                                             \
-  DUET_REFUSED(#function ": at which parameters, times say? " #function "<Curve>" arguments)       \
+  DUET_REFUSED(#function ": the parameters are missing: " #function "<Curve>" arguments)           \
   result<Spline> function(const std::vector<quaternion<T>>&);                                      \
   template <CurveType Spline, class T, class Other, class... More>                                 \
-  DUET_REFUSED(#function ": first the parameters, times say: " #function "<Curve>" arguments)      \
+  DUET_REFUSED(#function ": the parameters come first: " #function "<Curve>" arguments)            \
   result<Spline> function(const std::vector<quaternion<T>>&, const Other&, const More&...);        \
   template <class U, class T, class... More>                                                       \
     requires(!CurveType<U>)                                                                        \
-  DUET_REFUSED(#function ": which curve? " #function "<cumulative_bspline<double>>" arguments)     \
+  DUET_REFUSED(#function ": the type of the curve is missing: " #function                          \
+                         "<cumulative_bspline<double>>" arguments)                                 \
   result<cumulative_bspline<T>> function(const U&, const std::vector<quaternion<T>>&,              \
                                          const More&...);                                          \
   template <template <class, int> class Spline, class... X>                                        \
-  DUET_REFUSED(#function ": a curve over which scalar? " #function                                 \
+  DUET_REFUSED(#function ": the scalar of the curve is missing: " #function                        \
                          "<cumulative_bspline<double>>" arguments)                                 \
   result<cumulative_bspline<double>>                                                               \
   function(const X&...);

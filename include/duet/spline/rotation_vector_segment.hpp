@@ -15,7 +15,7 @@
 #include <utility>
 
 /// \file
-/// One piece of a rotation-vector spline, exp(x(t)) with a polynomial x of half-angle vectors from
+/// Segment of a rotation-vector spline, exp(x(t)) with a polynomial x of half-angle vectors from
 /// zero to a given one, and the relations between its rates at both ends.
 
 namespace duet::detail {
@@ -43,8 +43,8 @@ template <std::size_t Count, class T, std::size_t Size, class S>
   return result;
 }
 
-/// Part of a piece that is constant while its rates are solved for: its length h in the parameter
-/// and its end exp(d), d over the scalar T.
+/// Data of a segment that are constant while its rates are solved for: its length h in the
+/// parameter and its end exp(d), d over the scalar T.
 ///
 /// The rates at a knot are Taylor coefficients of w, Q′ = Q w: the halved angular velocity in body
 /// axes, its derivative, half its second derivative … The polynomial of order k (degree k − 1)
@@ -57,8 +57,8 @@ class rotation_vector_segment {
 public:
   using real = real_type_t<T>;
   /// Number of rates given at each knot.
-  static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
-  using knot_rates = std::array<vector3<T>, own>;
+  static constexpr std::size_t rates_per_knot = std::size_t(Order) / 2 - 1;
+  using knot_rates = std::array<vector3<T>, rates_per_knot>;
   using coefficients = std::array<vector3<T>, std::size_t(Order)>;
 
   rotation_vector_segment(const real& h, const vector3<T>& d)
@@ -97,9 +97,9 @@ public:
     return x;
   }
 
-  /// Coefficients of the cubic from its ends and ẍ there, for known velocities and accelerations at
-  /// the knots that agree with each other. Differences of velocities are not divided by h, however
-  /// short the piece: accelerations and velocities are met to round-off.
+  /// Coefficients of the cubic from its ends and ẍ at both ends, for consistent velocities and
+  /// accelerations at the knots. Differences of velocities are not divided by h, so that even a
+  /// short segment has its accelerations and velocities to round-off.
   [[nodiscard]] coefficients
   polynomial_of_accelerations(const std::array<vector3<T>, 2>& start,
                               const std::array<vector3<T>, 2>& end) const {
@@ -141,7 +141,7 @@ public:
     w[0][1] = real(2) * components(x[2]);
     if (count < 3) {
       w[1][0] = times_jacobian(y[1]);
-      w[1][1] = components(bend(y[1])) + real(2) * components(times_jacobian(y[2]));
+      w[1][1] = components(times_jacobian_rate(y[1])) + real(2) * components(times_jacobian(y[2]));
     } else {
       w[0][2] = real(3) * components(x[3]) - cross(components(x[1]), components(x[2]));
       w[1] = rates_at_end<3>({y[1], y[2], y[3]});
@@ -185,22 +185,22 @@ public:
     rate_gradients result;
     result[0][0] = {one, none};
     result[1][0] = {none, one};
-    // w_1 is 2 x_2 at the start and 2 J y_2 + J̇ v at the end, of which J̇ v changes by 2 (J̇ + ŵ
-    // J) δv.
+    // w_1 is 2 x_2 at the start and 2 J y_2 + J̇ v at the end; the term J̇ v changes by 2 (J̇ + ŵ J)
+    // δv.
     const vector3<T> v = times_inverse(end);
-    const T turn = 2 * dot(components(d_), components(v));
-    matrix3<T> slope =
-        axial_matrix<T>(turn * at_end_.a[1], -turn * at_end_.b[1], turn * at_end_.c[1], d_);
-    add_axial(slope, T(-at_end_.b[0]), v);
+    const T square_rate = 2 * dot(components(d_), components(v)); // of |x|²
+    matrix3<T> jacobian_rate = axial_matrix<T>(
+        square_rate * at_end_.a[1], -square_rate * at_end_.b[1], square_rate * at_end_.c[1], d_);
+    add_axial(jacobian_rate, T(-at_end_.b[0]), v);
     for (int i = 0; i < 9; ++i) {
-      slope(i / 3, i % 3) += at_end_.c[0] * (d_[i / 3] * v[i % 3] + v[i / 3] * d_[i % 3]);
+      jacobian_rate(i / 3, i % 3) += at_end_.c[0] * (d_[i / 3] * v[i % 3] + v[i / 3] * d_[i % 3]);
     }
     result[0][1] = result[1][1] = {none, none};
     add_multiple(result[0][1][0], real(-4) * per_h, one);
     add_multiple(result[0][1][1], real(-2) * per_h, inverse_);
     add_multiple(result[1][1][0], 2 * per_h,
                  axial_matrix<T>(at_end_.a[0], -at_end_.b[0], at_end_.c[0], d_));
-    add_product(result[1][1][1], real(2), slope, inverse_);
+    add_product(result[1][1][1], real(2), jacobian_rate, inverse_);
     add_multiple(result[1][1][1], real(4) * per_h, one);
     add_axial(result[1][1][1], T(2), end);
     if (count > 2) {
@@ -230,18 +230,18 @@ private:
     return result;
   }
 
-  /// Computes each x_{k+1} from w_k minus the contribution of the coefficients before.
+  /// Computes each x_{k+1} from w_k minus the contribution of the coefficients x_1 … x_k.
   template <std::size_t Count, class Coefficients, class X, class Inverse>
   [[nodiscard]] static std::array<vector3<T>, Count>
   taylor_of_rates(const Coefficients& jacobian, const X& at, const std::array<vector3<T>, Count>& w,
                   const Inverse& inverse) {
     std::array<vector3<T>, Count> x;
     const auto next = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
-      std::array<vector3<T>, K + 1> so_far;
-      std::copy_n(x.begin(), K, so_far.begin());
-      so_far[K] = vector3<T>::Constant(T(real(0)));
-      const vector3<T> without = half_body_rates(jacobian, at, so_far)[K];
-      x[K] = inverse(vector3<T>(w[K] - without)) * (real(1) / real(K + 1));
+      std::array<vector3<T>, K + 1> lower;
+      std::copy_n(x.begin(), K, lower.begin());
+      lower[K] = vector3<T>::Constant(T(real(0)));
+      const vector3<T> contribution = half_body_rates(jacobian, at, lower)[K];
+      x[K] = inverse(vector3<T>(w[K] - contribution)) * (real(1) / real(K + 1));
     };
     [&]<std::size_t... K>(std::index_sequence<K...>) {
       (next(std::integral_constant<std::size_t, K>{}), ...);
@@ -252,22 +252,24 @@ private:
 
   /// Second derivative ẍ at the end for given w and its derivative.
   [[nodiscard]] vector3<T> second_at_end(const std::array<vector3<T>, 2>& end) const {
-    return times_inverse(components(end[1]) - components(bend(times_inverse(end[0]))));
+    return times_inverse(components(end[1]) -
+                         components(times_jacobian_rate(times_inverse(end[0]))));
   }
 
-  /// J v at the end, and J̇ v there with ẋ = v.
+  /// Product J v at the end.
   [[nodiscard]] vector3<T> times_jacobian(const vector3<T>& v) const {
     const three_vector<T> d = components(d_), x = components(v);
     return at_end_.a[0] * x - at_end_.b[0] * cross(d, x) + T(at_end_.c[0] * dot(d, x)) * d;
   }
-  [[nodiscard]] vector3<T> bend(const vector3<T>& v) const {
+  /// Product J̇ v at the end, for ẋ = v.
+  [[nodiscard]] vector3<T> times_jacobian_rate(const vector3<T>& v) const {
     const three_vector<T> d = components(d_), x = components(v);
     const T p = dot(d, x), twice = p + p;
     return T(twice * at_end_.a[1] + p * at_end_.c[0]) * x - T(twice * at_end_.b[1]) * cross(d, x) +
            T(twice * p * at_end_.c[1] + dot(x, x) * at_end_.c[0]) * d;
   }
 
-  /// m + factor v̂
+  /// Adds factor · v̂ to m, in place.
   static void add_axial(matrix3<T>& m, const T& factor, const vector3<T>& v) {
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3, k = (i + 2) % 3;

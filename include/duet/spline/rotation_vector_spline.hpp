@@ -106,7 +106,7 @@ public:
       const auto step = conj(result.elements_[i]) * result.elements_[i + 1];
       const auto miss = detail::innermost_of(step - duet::exp(x[0]));
       if (!(norm(miss) <= real_type(unit_norm_tolerance))) {
-        detail::raise(invalid_sample(i + 1, "the piece before does not lead here"));
+        detail::raise(invalid_sample(i + 1, "the polynomial piece before does not end at it"));
       }
     }
     return result;
@@ -138,9 +138,9 @@ private:
   static const std::vector<real_type>& checked(const std::vector<real_type>& parameters,
                                                const Elements& elements, const Parts& parts,
                                                const char* what, std::size_t missing) {
-    detail::check_rows("rotation_vector_spline", parameters, elements.size(), 2);
+    detail::check_samples("rotation_vector_spline", parameters, elements.size(), 2);
     detail::require(parts.size() + missing == elements.size(),
-                    "duet: rotation_vector_spline: ", elements.size(), " rows need ",
+                    "duet: rotation_vector_spline: ", elements.size(), " samples need ",
                     elements.size() - missing, " ", what, ", got ", parts.size());
     return parameters;
   }

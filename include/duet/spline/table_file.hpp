@@ -34,7 +34,7 @@ enum class table_format {
   csv,         ///< `u,x,y,z,qw,qx,qy,qz`, for rotations `u,qw,qx,qy,qz`, under a header
   csv_seconds, ///< as `csv`, with `t [s]` for `u`: for recordings, whose parameters are times
   tum,         ///< `timestamp tx ty tz qx qy qz qw`, in seconds and metres
-  euroc,       ///< `timestamp,x,y,z,qw,qx,qy,qz` under the data set's header, whole nanoseconds
+  euroc,       ///< `timestamp,x,y,z,qw,qx,qy,qz` under the data set's header, integer nanoseconds
   kitti        ///< matrix [R t] row by row, 12 numbers; the parameters in a separate file
 };
 
@@ -62,7 +62,7 @@ template <class T>
   if constexpr (is_rotation_scalar<T>) {
     return row.rotation;
   } else {
-    return pose(row.rotation, row.place);
+    return pose(row.rotation, row.position);
   }
 }
 
@@ -81,12 +81,12 @@ template <class T>
   return line;
 }
 
-/// Nearest whole number of nanoseconds. (Seconds to 2^63 ns.)
+/// Nearest integer number of nanoseconds, for times below 2^63 ns.
 [[nodiscard]] inline std::int64_t nanoseconds_of(double seconds) {
-  require(std::abs(seconds) < 9.2e9, "duet: save_table: ", to_text(seconds),
-          " s are beyond 9.2e18 nanoseconds");
-  const double whole = std::floor(seconds);
-  return std::int64_t(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9);
+  require(std::abs(seconds) < 9.2e9, "duet: save_table: the time ", to_text(seconds),
+          " s is beyond 9.2e18 nanoseconds");
+  const double integral = std::floor(seconds);
+  return std::int64_t(integral) * 1'000'000'000 + std::llround((seconds - integral) * 1e9);
 }
 
 /// Header and rows of a file of poses.
@@ -111,8 +111,8 @@ template <class T>
       text += blank_line({u, x[0], x[1], x[2], x[4], x[5], x[6], x[3]});
     } else if (format == table_format::euroc) {
       const std::int64_t now = nanoseconds_of(u);
-      require(i == 0 || now > last, "duet: save_table: row ", i, " at ", to_text(u),
-              " s is not a nanosecond after the row before");
+      require(i == 0 || now > last, "duet: save_table: sample ", i, " at ", to_text(u),
+              " s is less than a nanosecond after the sample before");
       last = now;
       text += std::to_string(now) + "," + csv_line({x[0], x[1], x[2], x[3], x[4], x[5], x[6]});
     } else {
@@ -140,13 +140,13 @@ template <class T>
 } // namespace detail
 
 /// Writes a lookup table of rotations or poses with all digits and independently of the locale.
-/// Writes the whole file or nothing, of two files both or neither. Parameters are seconds in TUM
-/// and EuRoC files and in `csv_seconds`; EuRoC files round them to whole nanoseconds, KITTI files
-/// have no parameters.
+/// Writes atomically: the complete file or nothing, and both files or neither. Parameters are
+/// seconds in TUM and EuRoC files and in `csv_seconds`; EuRoC files round them to integer
+/// nanoseconds, KITTI files have no parameters.
 ///
 /// Read back, parameters and quaternions have the same bits, and positions differ by round-off, as
 /// a dual quaternion holds half the product of both. For EuRoC files this holds for parameters from
-/// 2^23 s on and for the nearest doubles to whole nanoseconds; KITTI matrices hold quaternions to
+/// 2^23 s on and for the nearest doubles to integer nanoseconds; KITTI matrices hold quaternions to
 /// round-off, without their sign.
 ///
 /// \param times  file for the parameters of KITTI's format, one a line; empty: not written
@@ -161,7 +161,7 @@ void save_table(const std::string& path, const lookup_table<T>& table,
                   "duet: save_table: ", table.parameters.size(), " parameters for ",
                   table.elements.size(), " elements");
   detail::require(times.empty() || format == table_format::kitti,
-                  "duet: save_table: only KITTI files have times in a file of their own");
+                  "duet: save_table: only KITTI files have times in a separate file");
   const std::string text = detail::text_of(table, format);
   if (times.empty()) {
     write_file(path, text);
@@ -181,8 +181,8 @@ template <class T>
                                            const euler_columns* angles) {
   lookup_table<T> table;
   for_each_table_row(path, times, !is_rotation_scalar<T>, angles, [&](const table_row& row) {
-    if (!row.fault.empty()) {
-      raise(file_error(path, row.line, row.fault));
+    if (!row.issue.empty()) {
+      raise(file_error(path, row.line, row.issue));
     }
     const double u = row.time.seconds();
     if (!table.parameters.empty() && !(u > table.parameters.back())) {

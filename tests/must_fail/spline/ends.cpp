@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (interpolate: the ends are natural|rates at the ends are vectors)
+// expect: duet: (interpolate: the end conditions are natural|rates at the ends are vectors)
 // forms: 3
 
 #include <duet/spline/interpolate.hpp>

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: [a-z]*: the curve is over another scalar than the rows
+// expect: duet: [a-z]*: the scalar of the curve differs from that of the samples
 // within: 5
 // forms: 4
 

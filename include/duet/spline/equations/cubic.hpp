@@ -31,8 +31,8 @@ namespace duet::detail {
 /// of its span,
 ///   S(u_i)⁻¹ S(u_{i+1}) = Q_i⁻¹ Q_{i+1},   i = 0 … n − 1,
 /// and, if the end conditions need it, one for the velocity or acceleration at either end. Every
-/// equation involves three increments, not as logarithms of control points but as vectors of any
-/// length. Unknown k is ω_{k+1}; for a periodic curve ω_{k+2}, counted cyclically.
+/// equation involves three increments, as vectors of any length instead of logarithms of control
+/// points. Unknown k is ω_{k+1}; for a periodic curve ω_{k+2}, counted cyclically.
 template <class T>
 class cubic_equations {
   using R = real_type_t<T>;
@@ -44,13 +44,13 @@ public:
   using matrix = block_tridiagonal<R>;
 
   cubic_equations(const std::vector<R>& u, std::vector<quaternion<T>> q, const curve_ends<T>& ends)
-      : kind_(ends.kind), basis_(knots(u, ends.kind)), data_(std::move(q)), turns_(u.size() - 1),
-        angles_(turns_.size()), arcs_(turns_.size()) {
-    const std::size_t n = turns_.size();
+      : kind_(ends.kind), basis_(knots(u, ends.kind)), data_(std::move(q)),
+        rotations_(u.size() - 1), angles_(rotations_.size()), arcs_(rotations_.size()) {
+    const std::size_t n = rotations_.size();
     R shortest = u[1] - u[0], longest = shortest;
     for (std::size_t i = 0; i < n; ++i) {
-      turns_[i] = relative_rotation(data_[i], data_[i + 1]);
-      angles_[i] = rotation_vector_between(turns_[i]);
+      rotations_[i] = relative_rotation(data_[i], data_[i + 1]);
+      angles_[i] = rotation_vector_between(rotations_[i]);
       const bool is_shifted = kind_ == end_condition_kind::not_a_knot;
       const std::size_t span = !is_shifted || i == 0 ? i : std::min(i - 1, n - 3);
       arc& a = arcs_[i];
@@ -72,7 +72,7 @@ public:
                                                   : 2;
   }
 
-  /// Number of equations, equal to that of the unknowns.
+  /// Number of equations, equal to the number of unknowns.
   [[nodiscard]] std::size_t size() const { return arcs_.size() + (has_end_rates() ? 2 : 0); }
   [[nodiscard]] corners corner_columns() const {
     return is_cyclic() ? corners{size() - 1, 0} : corners{2, size() - 3};
@@ -101,9 +101,9 @@ public:
   /// Changes the equations to those of a smaller motion: Q_i⁻¹ Q_{i+1} to the power λ, end rates
   /// times λ.
   void scale(const R& lambda) {
-    for (std::size_t i = 0; i < turns_.size(); ++i) {
+    for (std::size_t i = 0; i < rotations_.size(); ++i) {
       angles_[i] = lambda * components(angles_[i]);
-      turns_[i] = apply_rotation(angles_[i]);
+      rotations_[i] = apply_rotation(angles_[i]);
     }
     for (vector3<T>& rate : end_rates_) {
       rate = lambda * components(rate);
@@ -115,8 +115,8 @@ public:
     const std::size_t n = size();
     return is_cyclic() ? (row + n - 1 + j) % n : std::min(row - std::size_t(row > 0), n - 3) + j;
   }
-  /// Position of its block: 0 lower, 1 diagonal, 2 upper, corners included.
-  [[nodiscard]] std::size_t place(std::size_t row, std::size_t j) const {
+  /// Position of the block of this unknown: 0 lower, 1 diagonal, 2 upper, corners included.
+  [[nodiscard]] std::size_t block_position(std::size_t row, std::size_t j) const {
     return (j + (is_cyclic() ? 0 : row == 0 ? 1 : row == size() - 1 ? 2 : 0)) % 3;
   }
 
@@ -130,24 +130,24 @@ public:
       --row;
     }
     const arc& a = arcs_[row];
-    // Factors on both sides are left out: they rotate those between them. The rest is as small as
-    // the rotation, and keeps all its digits.
-    std::array<vector3<T>, 3> turned;
+    // Common factors on both sides cancel, except that they rotate the factors between them. The
+    // remaining vectors are as small as the rotation of the arc and have all its digits.
+    std::array<vector3<T>, 3> steps;
     for (std::size_t j = 0; j < 3; ++j) {
-      turned[j] = a.change[j] * components(omega[j]);
+      steps[j] = a.change[j] * components(omega[j]);
       if (j > 0 && a.from[j] != 0) {
         const quaternion<T> back = apply_rotation<T>(R(-a.from[j]) * components(omega[j]));
         for (std::size_t k = 0; k < j; ++k) {
-          turned[k] = rotate(back, turned[k]);
+          steps[k] = rotate(back, steps[k]);
         }
       }
     }
-    const quaternion<T> turn =
-        apply_rotation(turned[0]) * apply_rotation(turned[1]) * apply_rotation(turned[2]);
-    return rotation_vector_between(quaternion<T>(conj(turn) * turns_[row]));
+    const quaternion<T> along_arc =
+        apply_rotation(steps[0]) * apply_rotation(steps[1]) * apply_rotation(steps[2]);
+    return rotation_vector_between(quaternion<T>(conj(along_arc) * rotations_[row]));
   }
 
-  /// Equation Σ weights_j x_j = right for rotations so small that their order does not matter.
+  /// Equation Σ weights_j x_j = right for small rotations, which commute to first order.
   [[nodiscard]] small_angle_equation<T> small_angles(std::size_t row) const {
     if (has_end_rates()) {
       if (row == 0 || row + 1 == size()) {
@@ -175,7 +175,7 @@ public:
     for (std::size_t row = 0; row < x.size(); ++row) {
       const gradient_by_three<R> blocks = gradient(row, its_unknowns(row, x));
       for (std::size_t j = 0; j < 3; ++j) {
-        rows[row].at(place(row, j)) = blocks[j];
+        rows[row].at(block_position(row, j)) = blocks[j];
       }
     }
     return jacobian.factorise(corner_columns());
@@ -277,8 +277,9 @@ private:
     return result;
   }
 
-  /// Residual of an end equation. The weights are zero at the start, one at the end, and the last
-  /// rate there is that of the last increment alone: only this increment rotates the others.
+  /// Residual of an end equation. The weights are zero at the start and one at the end, where the
+  /// rate of the last factor is that of the last increment alone: only this increment rotates the
+  /// others.
   [[nodiscard]] vector3<T> end_residual(bool at_start,
                                         const std::array<vector3<T>, 3>& omega) const {
     const auto [b, right] = end_equation(at_start);
@@ -292,8 +293,8 @@ private:
   end_condition_kind kind_;
   bspline_basis<4, R> basis_;
   std::vector<quaternion<T>> data_;
-  std::vector<quaternion<T>> turns_;
-  std::vector<vector3<T>> angles_; ///< half-angle vectors of `turns_`
+  std::vector<quaternion<T>> rotations_;
+  std::vector<vector3<T>> angles_; ///< half-angle vectors of `rotations_`
   std::vector<arc> arcs_;
   R unevenness_;
   std::array<vector3<T>, 2> end_rates_;

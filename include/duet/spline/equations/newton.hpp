@@ -16,9 +16,9 @@
 
 namespace duet::detail {
 
-/// Newton's method on real equations, from their own initial guess. If the rotations are too large,
-/// by predictor–corrector continuation from smaller rotations, which also selects the solution that
-/// continues from them if there are several.
+/// Newton's method on real equations, from their own initial guess. If it fails because rotations
+/// are too large, predictor–corrector continuation from smaller rotations follows; among several
+/// solutions it selects the one that is continuous with small rotations.
 ///
 /// \tparam Equations  equations to be solved: `residuals`, `linearise`, and `scale` for smaller
 ///                    rotations
@@ -58,9 +58,9 @@ public:
 private:
   static constexpr double smallest_lambda = 1e-4;
 
-  /// Iterates from x_ to a nearby solution. The last Jacobian is kept while steps decrease fast,
-  /// and renewed otherwise. False if a step with a new Jacobian is more than half as long as the
-  /// one before.
+  /// Iterates from x_ to a nearby solution. The last Jacobian is reused while steps decrease fast,
+  /// and recomputed otherwise. False if a step with a new Jacobian is more than half as long as the
+  /// step before.
   ///
   /// Steps are measured relative to the values they change, so that different sizes of the
   /// equations or the unknowns do not matter.
@@ -71,7 +71,7 @@ private:
       return false;
     }
     bool is_new = true; // true if the Jacobian is new
-    R moved(0);         // change of x since then
+    R moved(0);         // change of x since the last Jacobian
     R before = std::numeric_limits<R>::max();
     for (;;) {
       matrix_.solve(residual_);
@@ -92,8 +92,8 @@ private:
         add_multiple(x_[k], R(-1), residual_[k]);
       }
       ++iterations_;
-      // The Jacobian is about as far off as x has moved: the next step would be less than
-      // round-off.
+      // The relative error of the Jacobian is about the distance that x has moved since: the next
+      // step would be below round-off.
       if (4 * moved * size <= epsilon) {
         return true;
       }
@@ -109,12 +109,12 @@ private:
     R lambda(0);
     R h(0.25);
     x_.assign(x_.size(), unknown::Zero());
-    unknowns slope = x_;
+    unknowns tangent = x_;
     while (lambda < 1) {
       const unknowns at = x_;
       h = std::min(h, R(1 - lambda));
       for (std::size_t k = 0; k < x_.size(); ++k) {
-        add_multiple(x_[k], h, slope[k]);
+        add_multiple(x_[k], h, tangent[k]);
       }
       const int before = iterations_;
       equations part = full_;
@@ -124,7 +124,7 @@ private:
       if (descend(part)) {
         for (std::size_t k = 0; k < x_.size(); ++k) {
           for (int j = 0; j < unknown::SizeAtCompileTime; ++j) {
-            slope[k][j] = (x_[k][j] - at[k][j]) / h;
+            tangent[k][j] = (x_[k][j] - at[k][j]) / h;
           }
         }
         lambda += h;
@@ -140,24 +140,22 @@ private:
   }
 
   [[noreturn]] DUET_COLD DUET_OUT_OF_LINE void fail(const R& lambda) const {
-    const auto [angle, row] = full_.max_rotation();
-    const std::string found =
+    const auto [angle, sample] = full_.max_rotation();
+    const std::string problem =
         lambda > 0
-            ? message(
-                  "with all steps between rows turning by no more than ", lambda,
-                  " of their angles there is a curve, but none was found that goes on from there")
-            : message(
-                  "no curve was found, though steps between rows were let turn by no more than ",
-                  smallest_lambda, " of their angles");
+            ? message("a curve exists for the rotations between samples scaled by ", lambda,
+                      ", but continuation from it fails")
+            : message("no curve was found, even with the rotations between samples scaled by ",
+                      smallest_lambda);
     const R ratio = full_.unevenness();
     const std::string uneven =
-        ratio >= 100 ? message("; for these ends the parameters may be too uneven, the longest "
-                               "interval is ",
+        ratio >= 100 ? message("; the parameters may be too uneven for these end conditions, the "
+                               "longest interval is ",
                                ratio, " times the shortest")
                      : "";
-    raise(no_convergence(message("duet: interpolate: ", found, "; after ", iterations_,
-                                 " iterations. The largest step is ", angle, " rad, from row ", row,
-                                 " to the next", uneven)));
+    raise(no_convergence(message("duet: interpolate: ", problem, " after ", iterations_,
+                                 " iterations; the largest rotation is ", angle,
+                                 " rad, from sample ", sample, " to the next", uneven)));
   }
 
   [[nodiscard]] bool linearise(const equations& f) { return f.linearise(x_, residual_, matrix_); }

@@ -13,12 +13,12 @@
 #include <cstddef>
 
 /// \file
-/// One piece of a quintic rotation-vector spline, described by all rates that it shares with its
+/// Segment of a quintic rotation-vector spline, described by all rates that it shares with its
 /// neighbours.
 
 namespace duet::detail {
 
-/// Equations of a piece of degree five and length h from zero to d. With the Taylor coefficients
+/// Equations of a segment of degree five and length h from zero to d. With the Taylor coefficients
 /// x_1 … x_4 about its start and y_1 … y_4 about its end, which give the rates w_0 … w_3 there,
 /// they are
 ///   x_1 + h x_2 + h² x_3 + h³ (4 x_4 + y_4)/5 = d/h
@@ -68,7 +68,7 @@ public:
              {o, R(-l), R(-3 * h * l), R(-4 * hh * l)},
              {o, o, R(-ll), R(-2 * h * ll)}}};
   }
-  /// Factors of y_1 … y_4, likewise.
+  /// Factors of y_1 … y_4 in the same equations.
   [[nodiscard]] factors factors_of_end(const R& l) const {
     const R h = h_, hh = h * h, ll = l * l, o(0);
     return {{{o, o, o, R(hh * h / 5)},
@@ -77,7 +77,7 @@ public:
              {o, o, ll, R(-2 * h * ll)}}};
   }
   /// Residuals of the equations for x and y.
-  [[nodiscard]] coefficients left(const ends& e, const R& l) const {
+  [[nodiscard]] coefficients residuals(const ends& e, const R& l) const {
     const factors a = factors_of_start(l), b = factors_of_end(l);
     coefficients result;
     for (std::size_t m = 0; m < count; ++m) {
@@ -100,11 +100,12 @@ public:
   [[nodiscard]] std::array<vector3<T>, 2> last_rate_at_end(const ends& e) const {
     const R per_h = 1 / h_;
     const vector3<T> w = segment_.template rates_at_end<count + 1>(with_zero(e.y))[count];
-    const auto turned = [&](const vector3<T>& x, const R& factor) {
+    const auto in_body_axes = [&](const vector3<T>& x, const R& factor) {
       return segment_.template rates_at_end<1>(
           std::array<vector3<T>, 1>{factor * components(x)})[0];
     };
-    return {turned(e.x[3], R(-per_h)), components(w) + components(turned(e.y[3], per_h))};
+    return {in_body_axes(e.x[3], R(-per_h)),
+            components(w) + components(in_body_axes(e.y[3], per_h))};
   }
   /// Derivatives of these two contributions, each with respect to the rates of its knot. For real
   /// T.
@@ -143,8 +144,9 @@ private:
   template <std::size_t Count>
   using rate_gradients = std::array<std::array<matrix3<R>, Count>, Count>;
 
-  /// Derivatives with respect to the rates of the own and the other knot; x_5 is `per_h` (own x_4 −
-  /// other x_4)/5.
+  /// Derivatives with respect to the rates at the same and at the other end of the segment, where
+  /// x_5 = `per_h` (x_4 − other x_4)/5. `own` are the derivatives of the coefficients at the same
+  /// end, `other` those of the fourth coefficient at the other end.
   [[nodiscard]] static std::array<gradient, 2>
   last_rate_gradients(const rate_gradients<count + 1>& of, const std::array<gradient, count>& own,
                       const gradient& other, const R& per_h) {
@@ -164,15 +166,15 @@ private:
                                                             const matrix3<R>& inverse) {
     std::array<gradient, count> result;
     for (std::size_t k = 0; k < count; ++k) {
-      gradient left = gradient::Zero();
+      gradient right_side = gradient::Zero();
       for (int i = 0; i < 3; ++i) {
-        left(i, 3 * int(k) + i) = R(1);
+        right_side(i, 3 * int(k) + i) = R(1);
       }
       for (std::size_t m = 0; m < k; ++m) {
-        add_product(left, R(-1), of[k][m], result[m]);
+        add_product(right_side, R(-1), of[k][m], result[m]);
       }
       result[k].setZero();
-      add_product(result[k], R(1) / R(k + 1), inverse, left);
+      add_product(result[k], R(1) / R(k + 1), inverse, right_side);
     }
     return result;
   }

@@ -19,13 +19,13 @@
 namespace duet::detail {
 
 /// Derivatives of the rates of exp(x(t)): element [k][m − 1] is ∂w_k/∂x_m of `half_body_rates` over
-/// a real R, for k < `count` and m ≤ k + 1. η = J(x) δx is to a change what w is to the rate, and
-/// δw = η̇ + 2 w × η. The last of the rates has no effect.
-template <std::size_t Count, std::size_t Given, class R>
+/// a real R, for k < `count` and m ≤ k + 1. With η = J(x) δx, the perturbation in body axes, δw = η̇
+/// + 2 w × η. The last of the rates has no effect.
+template <std::size_t Count, std::size_t Terms, class R>
 [[nodiscard]] std::array<std::array<matrix3<R>, Count>, Count>
-half_body_rate_gradients(const jacobian_coefficients<Given, R>& jacobian, const vector3<R>& at,
+half_body_rate_gradients(const jacobian_coefficients<Terms, R>& jacobian, const vector3<R>& at,
                          const std::array<vector3<R>, Count>& rates) {
-  static_assert(Count <= Given);
+  static_assert(Count <= Terms);
   std::array<vector3<R>, Count> x;
   x[0] = at;
   std::copy_n(rates.begin(), Count - 1, x.begin() + 1);
@@ -129,7 +129,7 @@ minus_product_gradient(const std::array<std::pair<std::size_t, R>, Factors>& fac
 /// ω_2; or without e.
 template <class R>
 [[nodiscard]] gradient_by_three<R>
-end_gradient(const std::array<R, 3>& b, const std::array<vector3<R>, 3>& omega, bool is_turned) {
+end_gradient(const std::array<R, 3>& b, const std::array<vector3<R>, 3>& omega, bool is_rotated) {
   gradient_by_three<R> by;
   by.fill(matrix3<R>::Zero());
   for (std::size_t j = 0; j < 3; ++j) {
@@ -137,17 +137,18 @@ end_gradient(const std::array<R, 3>& b, const std::array<vector3<R>, 3>& omega, 
       by[j](i, i) = b[j];
     }
   }
-  if (is_turned) { // ŵ = e* w e changes by 2 ŵ × J δω_2
+  if (is_rotated) { // ŵ = e* w e changes by 2 ŵ × J δω_2
     const rotation_factor<R> e(omega[2]);
-    vector3<R> turned = vector3<R>::Zero();
+    vector3<R> twice_rate = vector3<R>::Zero();
     for (std::size_t j = 0; j < 2; ++j) {
       by[j] = product(e.back, by[j]);
-      add_product(turned, R(2), by[j], omega[j]);
+      add_product(twice_rate, R(2), by[j], omega[j]);
     }
     for (int k = 0; k < 3; ++k) {
       const int next = (k + 1) % 3, other = (k + 2) % 3;
       for (int i = 0; i < 3; ++i) {
-        by[2](k, i) += turned[next] * e.jacobian(other, i) - turned[other] * e.jacobian(next, i);
+        by[2](k, i) +=
+            twice_rate[next] * e.jacobian(other, i) - twice_rate[other] * e.jacobian(next, i);
       }
     }
   }

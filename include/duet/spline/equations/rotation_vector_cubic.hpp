@@ -68,8 +68,8 @@ public:
     if (!ends_.is_cyclic) {
       const R scale = this->unit_to(ends_.equations[0].derivative + 1);
       for (int a = 0; a < 3; ++a) {
-        r.front()[a] -= ends_.given[0][0][a] * scale;
-        r.back()[a] -= ends_.given[1][0][a] * scale;
+        r.front()[a] -= ends_.values[0][0][a] * scale;
+        r.back()[a] -= ends_.values[1][0][a] * scale;
       }
     }
   }
@@ -89,7 +89,7 @@ public:
       for_each_term(i, [&](std::size_t row, int sign, std::size_t end, std::size_t derivative) {
         const std::size_t equation = ends_.is_cyclic && row < i ? i + 1 : row;
         for (const std::size_t k : {0U, 1U}) {
-          // The third block of an end equation is stored at the position of the one outside.
+          // The third block of an end equation is stored at the position of the corner block.
           add_multiple(rows[row].at((4 + i + k - equation) % 3), R(sign),
                        gradients[end][derivative][k]);
         }
@@ -100,7 +100,7 @@ public:
                                               : corners{1 + reach, last - 1 - reach});
   }
 
-  /// Curve of a solution. Pieces that meet at a knot are made from the same numbers there.
+  /// Curve of a solution. Segments that meet at a knot are computed from the same rates at it.
   [[nodiscard]] curve_type curve(const std::vector<R>& u, std::vector<quaternion<T>> q,
                                  const unknowns& x) const {
     std::vector<polynomial> pieces(pieces_.size());
@@ -112,8 +112,8 @@ public:
   }
 
 private:
-  /// Recomputes the polynomials from accelerations at the knots, each taken from the longer piece
-  /// at the knot, which determines it best.
+  /// Recomputes the polynomials from accelerations at the knots, each of which is evaluated on the
+  /// longer adjacent segment, where it is most accurate.
   void share_accelerations(std::vector<polynomial>& polynomials) const {
     const std::size_t knots = this->knots();
     std::vector<std::array<vector3<T>, 2>> rates(knots);

@@ -22,28 +22,28 @@ struct end_equation {
 };
 
 /// End conditions of a rotation-vector spline of order k: k/2 − 1 equations at each end, the same
-/// at both except for the given values; no equations if periodic. The highest derivative of w of a
-/// piece is the (k−2)-th.
+/// at both ends except for the given values; no equations if periodic. The highest derivative of w
+/// on a segment is the (k−2)-th.
 template <class T, int Order>
 struct rotation_vector_ends {
-  static constexpr std::size_t own = std::size_t(Order) / 2 - 1;
+  static constexpr std::size_t rates_per_end = std::size_t(Order) / 2 - 1;
   static constexpr std::size_t highest = std::size_t(Order) - 2;
 
   bool is_cyclic;
-  std::array<end_equation, own> equations;
+  std::array<end_equation, rates_per_end> equations;
   /// Values of the equations with joint 0: halved rates in body axes, at the start and at the end.
-  std::array<std::array<vector3<T>, own>, 2> given;
+  std::array<std::array<vector3<T>, rates_per_end>, 2> values;
 
   rotation_vector_ends(const curve_ends<T>& ends, const quaternion<T>& first,
                        const quaternion<T>& last)
       : is_cyclic(ends.kind == end_condition_kind::periodic), equations(equations_of(ends.kind)) {
-    for (std::size_t k = 0; k < own; ++k) {
+    for (std::size_t k = 0; k < rates_per_end; ++k) {
       for (const std::size_t end : {0U, 1U}) {
-        // A given third derivative is zero: no snap.
+        // The third derivative, if prescribed, is zero: no snap.
         const auto& rates = equations[k].derivative == 0 ? ends.velocity : ends.acceleration;
-        given[end][k] = equations[k].derivative < 2
-                            ? rotate(conj(end == 0 ? first : last), rates[end])
-                            : vector3<T>(vector3<T>::Constant(T(real_type_t<T>(0))));
+        values[end][k] = equations[k].derivative < 2
+                             ? rotate(conj(end == 0 ? first : last), rates[end])
+                             : vector3<T>(vector3<T>::Constant(T(real_type_t<T>(0))));
       }
     }
   }
@@ -57,9 +57,10 @@ struct rotation_vector_ends {
   }
 
 private:
-  [[nodiscard]] static std::array<end_equation, own> equations_of(end_condition_kind kind) {
-    // The cubic uses the first column. Natural ends have no snap: reflected there, the curve is
-    // smooth.
+  [[nodiscard]] static std::array<end_equation, rates_per_end>
+  equations_of(end_condition_kind kind) {
+    // The cubic uses the first column. Natural ends have no snap: a curve reflected at such an end
+    // is smooth.
     std::array<end_equation, 2> both{};
     switch (kind) {
     case end_condition_kind::natural:
@@ -80,11 +81,11 @@ private:
     case end_condition_kind::periodic:
       break;
     }
-    std::array<end_equation, own> result;
-    std::copy_n(both.begin(), own, result.begin());
+    std::array<end_equation, rates_per_end> result;
+    std::copy_n(both.begin(), rates_per_end, result.begin());
     return result;
   }
-  [[nodiscard]] static std::size_t reach(const std::array<end_equation, own>& equations) {
+  [[nodiscard]] static std::size_t reach(const std::array<end_equation, rates_per_end>& equations) {
     std::size_t result = 0;
     for (const end_equation& e : equations) {
       result = std::max(result, e.joint);

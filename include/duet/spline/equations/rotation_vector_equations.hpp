@@ -23,11 +23,11 @@
 namespace duet::detail {
 
 /// Samples of a rotation-vector spline, as steps and rotations between neighbours, and its end
-/// conditions. The parameter is counted in units of about one step, so that all derivatives have
-/// one size.
+/// conditions. The unit of the parameter is about one step, so that all derivatives are of similar
+/// size.
 ///
-/// \tparam Piece  made from a step and a rotation: the part that is constant while rates are solved
-///                for
+/// \tparam Piece  segment, constructed from a step and a rotation, which are constant while rates
+///                are solved for
 template <class T, int Order, class Piece>
 class rotation_vector_equations {
 protected:
@@ -50,10 +50,10 @@ public:
     static_cast<void>(frexp(R((u.back() - u.front()) / R(last)), &exponent));
     unit_ = ldexp(R(1), exponent);
     steps_.resize(last);
-    turns_.resize(last);
+    rotations_.resize(last);
     for (std::size_t i = 0; i < last; ++i) {
       steps_[i] = (u[i + 1] - u[i]) / unit_;
-      turns_[i] = rotation_vector_between(relative_rotation(q[i], q[i + 1]));
+      rotations_[i] = rotation_vector_between(relative_rotation(q[i], q[i + 1]));
     }
     make_pieces();
   }
@@ -65,10 +65,10 @@ public:
   /// Changes the equations to those of a smaller motion: rotations between samples and rates at the
   /// ends times λ.
   void scale(const R& lambda) {
-    for (vector3<T>& turn : turns_) {
-      turn = lambda * components(turn);
+    for (vector3<T>& half_angle : rotations_) {
+      half_angle = lambda * components(half_angle);
     }
-    for (auto& end : ends_.given) {
+    for (auto& end : ends_.values) {
       for (vector3<T>& rate : end) {
         rate = lambda * components(rate);
       }
@@ -87,8 +87,9 @@ public:
   [[nodiscard]] std::pair<R, std::size_t> max_rotation() const {
     using std::sqrt;
     std::pair<R, std::size_t> largest{R(-1), 0};
-    for (std::size_t i = 0; i < turns_.size(); ++i) {
-      const R angle = 2 * sqrt(R(innermost(dot(components(turns_[i]), components(turns_[i])))));
+    for (std::size_t i = 0; i < rotations_.size(); ++i) {
+      const R angle =
+          2 * sqrt(R(innermost(dot(components(rotations_[i]), components(rotations_[i])))));
       if (angle > largest.first) {
         largest = {angle, i};
       }
@@ -99,11 +100,11 @@ public:
   /// Size of a step from x relative to the values it changes. For real T.
   template <class Unknowns>
   [[nodiscard]] R relative_step(const Unknowns& x, const Unknowns& step) const {
-    return relative_step_of_rates(x, step, turns_, steps_);
+    return relative_step_of_rates(x, step, rotations_, steps_);
   }
 
 protected:
-  /// Number of knots; the last one of a closed curve is the first again.
+  /// Number of knots; the first and the last knot of a closed curve count once.
   [[nodiscard]] std::size_t knots() const { return steps_.size() + (ends_.is_cyclic ? 0 : 1); }
 
   /// Velocity and acceleration at a sample of the parabola through it and its neighbours, as for
@@ -115,14 +116,15 @@ protected:
     const R h = steps_[left] + steps_[right];
     std::pair<vector3<T>, vector3<T>> result;
     for (int k = 0; k < 3; ++k) {
-      const T before = turns_[left][k] / steps_[left], after = turns_[right][k] / steps_[right];
+      const T before = rotations_[left][k] / steps_[left],
+              after = rotations_[right][k] / steps_[right];
       result.first[k] = (before * steps_[right] + after * steps_[left]) / h;
       result.second[k] = (after - before) * (2 / h);
     }
     return result;
   }
 
-  /// Power of the unit.
+  /// Power of the unit of the parameter.
   [[nodiscard]] R unit_to(std::size_t exponent) const {
     R result(1);
     for (std::size_t i = 0; i < exponent; ++i) {
@@ -132,7 +134,7 @@ protected:
   }
 
   using curve = rotation_vector_spline<T, Order>;
-  /// Curve with these polynomials, whose parameter is in units.
+  /// Curve with these polynomials, whose parameter is in multiples of the unit.
   [[nodiscard]] curve made_of(const std::vector<R>& u, std::vector<quaternion<T>> q,
                               std::vector<typename curve::polynomial> polynomials) const {
     for (auto& each : polynomials) {
@@ -147,8 +149,8 @@ protected:
 
   ends_type ends_;
   R unit_;
-  std::vector<R> steps_;          ///< steps of the parameter, in units
-  std::vector<vector3<T>> turns_; ///< rotations between samples, half-angle vectors
+  std::vector<R> steps_;              ///< steps of the parameter, in multiples of the unit
+  std::vector<vector3<T>> rotations_; ///< rotations between samples, half-angle vectors
   std::vector<Piece> pieces_;
 
 private:
@@ -156,7 +158,7 @@ private:
     pieces_.clear();
     pieces_.reserve(steps_.size());
     for (std::size_t i = 0; i < steps_.size(); ++i) {
-      pieces_.emplace_back(steps_[i], turns_[i]);
+      pieces_.emplace_back(steps_[i], rotations_[i]);
     }
   }
 };

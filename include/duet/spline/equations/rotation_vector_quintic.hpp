@@ -24,9 +24,9 @@
 
 namespace duet::detail {
 
-/// Equations for all rates w_0 … w_3 that the pieces share at each knot: those of every piece, and
-/// two at each end. With fewer unknowns, w_0 and w_1, the others would be differences over powers
-/// of h, which lose all digits for a piece much shorter than its neighbours.
+/// Equations for all rates w_0 … w_3 that the segments share at each knot: those of every segment,
+/// and two at each end. With w_0 and w_1 as the only unknowns, w_2 and w_3 would be differences
+/// divided by powers of h, which lose all digits for a segment much shorter than its neighbours.
 template <class T>
 class rotation_vector_quintic_equations : public rotation_vector_equations<T, 6, quintic_piece<T>> {
   using piece = quintic_piece<T>;
@@ -68,22 +68,23 @@ public:
   void residuals(const unknowns& x, unknowns& r) const {
     r.assign(x.size(), unknown::Constant(T(R(0))));
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      const auto left = pieces_[i].left(taylor(i, x), scale_of(i));
+      const auto of_piece = pieces_[i].residuals(taylor(i, x), scale_of(i));
       for (std::size_t m = 0; m < count; ++m) {
-        r[i].template segment<3>(3 * int(m)) = left[m];
+        r[i].template segment<3>(3 * int(m)) = of_piece[m];
       }
     }
     for_each_end_equation([&](std::size_t end, std::size_t k, std::size_t knot, const R& scale) {
-      vector3<T> left;
+      vector3<T> of_end;
       const auto [joint, derivative] = ends_.equations[k];
       if (joint == 0) {
-        left = rates(x[knot])[derivative] - ends_.given[end][k] * T(this->unit_to(derivative + 1));
+        of_end =
+            rates(x[knot])[derivative] - ends_.values[end][k] * T(this->unit_to(derivative + 1));
       } else {
         const auto before = pieces_[knot - 1].last_rate_at_end(taylor(knot - 1, x));
         const auto after = pieces_[knot].last_rate_at_start(taylor(knot, x));
-        left = before[0] + before[1] - after[0] - after[1];
+        of_end = before[0] + before[1] - after[0] - after[1];
       }
-      r.back().template segment<3>(end_row(end, k)) = (scale * components(left)).eigen();
+      r.back().template segment<3>(end_row(end, k)) = (scale * components(of_end)).eigen();
     });
   }
 
@@ -180,8 +181,8 @@ private:
     return pieces_[i].taylor(rates(x[i]), rates(x[next(i)]));
   }
 
-  /// Calls f(end, k, knot, scale) for equation k of either end, which concerns a knot; the scale
-  /// brings it to the size of the others.
+  /// Calls f(end, k, knot, scale) for equation k of either end at its knot, with the factor that
+  /// scales it to the size of the other equations.
   template <class F>
   void for_each_end_equation(F&& f) const {
     for (std::size_t end = 0; end < 2 && !ends_.is_cyclic; ++end) {
@@ -205,7 +206,8 @@ private:
     return 6 * int(end) + 3 * int(k);
   }
 
-  /// Units of the unknowns: rates of a rotation by one over the longer piece next to each knot.
+  /// Units of the unknowns at each knot: the rates of a rotation by 1 over the longer adjacent
+  /// segment.
   [[nodiscard]] std::vector<typename matrix::block> units() const {
     std::vector<typename matrix::block> result(lengths_.size());
     for (std::size_t i = 0; i < lengths_.size(); ++i) {

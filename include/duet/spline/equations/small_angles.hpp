@@ -20,7 +20,7 @@
 
 namespace duet::detail {
 
-/// Equation Σ weights_j x_j = right for rotations so small that their order does not matter and
+/// Equation Σ weights_j x_j = right for small rotations, which commute to first order, so that
 /// coordinates do not mix.
 template <class T>
 struct small_angle_equation {
@@ -39,7 +39,7 @@ template <class R, class Equations>
   for (std::size_t row = 0; row < n; ++row) {
     const small_angle_equation<R> equation = equations.small_angles(row);
     for (std::size_t j = 0; j < 3; ++j) {
-      matrix3<R>& block = rows[row].at(equations.place(row, j));
+      matrix3<R>& block = rows[row].at(equations.block_position(row, j));
       block.setZero();
       for (int k = 0; k < 3; ++k) {
         block(k, k) = equation.weights[j];
@@ -55,9 +55,9 @@ template <class R, class Equations>
   return x;
 }
 
-/// Size of a step of the unknowns from x relative to the values it changes: the largest such ratio
-/// of all equations, each measured by the largest of its terms. Equations of short intervals are
-/// small, and count as much as those of long ones.
+/// Size of a step of the unknowns from x relative to the values it changes: the maximum over all
+/// equations of the change divided by the largest term of the equation. So small equations of short
+/// intervals count as much as those of long ones.
 template <class R, class Equations>
 [[nodiscard]] R relative_step(const Equations& equations, const std::vector<vector3<R>>& x,
                               const std::vector<vector3<R>>& step) {
@@ -77,35 +77,35 @@ template <class R, class Equations>
     }
     largest = std::max(largest, term[row]);
   }
-  // Increments far from all rotations decay to nothing, finally below the smallest numbers.
+  // Far from all rotations, terms decay below the smallest numbers: they are bounded from below.
   const R epsilon = std::numeric_limits<R>::epsilon();
-  const R least = largest * (epsilon * epsilon) * (epsilon * epsilon);
+  const R min_term = largest * (epsilon * epsilon) * (epsilon * epsilon);
   R result(0);
   for (std::size_t row = 0; row < n; ++row) {
-    const R ratio = moved[row] > 0 ? R(moved[row] / std::max(term[row], least)) : moved[row];
+    const R ratio = moved[row] > 0 ? R(moved[row] / std::max(term[row], min_term)) : moved[row];
     result = larger_or_nan(result, ratio);
   }
   return result;
 }
 
 /// Size of a step relative to the values it changes, for rates at knots as unknowns, several
-/// vectors each, from velocities upwards. Each is measured by itself and by the size that the
-/// rotations next to the knot give it.
+/// vectors at each knot, from velocities upwards. Each vector is compared with its own size and
+/// with the size that follows from the rotations of the adjacent segments.
 ///
-/// \param lengths  lengths of the pieces with these rotations; as many as the knots if the curve is
-///                 closed
+/// \param rotations  half-angle vectors of the segments
+/// \param lengths    lengths of these segments; as many as the knots if the curve is closed
 template <class R, int N>
 [[nodiscard]] R relative_step_of_rates(const std::vector<Eigen::Matrix<R, N, 1>>& x,
                                        const std::vector<Eigen::Matrix<R, N, 1>>& step,
-                                       const std::vector<vector3<R>>& turns,
+                                       const std::vector<vector3<R>>& rotations,
                                        const std::vector<R>& lengths) {
-  const std::size_t pieces = turns.size();
+  const std::size_t pieces = rotations.size();
   R result(0);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const std::size_t left = i > 0 ? i - 1 : x.size() == pieces ? pieces - 1 : 0;
     const std::size_t right = std::min(i, pieces - 1);
-    R size =
-        std::max(R(length(turns[left]) / lengths[left]), R(length(turns[right]) / lengths[right]));
+    R size = std::max(R(length(rotations[left]) / lengths[left]),
+                      R(length(rotations[right]) / lengths[right]));
     for (int k = 0; k < N; k += 3) {
       const R moved = length(step[i], k);
       const R now = length(x[i], k);

@@ -44,10 +44,10 @@ protected:
   using square = Eigen::Matrix<R, dimension, dimension>;
   using basis_type = bspline_basis<Order, R>;
 
-  bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> rows,
+  bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> data,
                     const fit_options& options)
-      : rows_(std::move(rows)), characteristic_length_(R(options.characteristic_length)),
-        given_weights_(options.weights), whitening_(inverse_roots(options.covariances)) {
+      : samples_(std::move(data)), characteristic_length_(R(options.characteristic_length)),
+        sample_weights_(options.weights), whitening_(inverse_roots(options.covariances)) {
     first_.reserve(u.size());
     weights_.reserve(u.size());
     for (const R& parameter : u) {
@@ -57,7 +57,7 @@ protected:
     }
   }
 
-  [[nodiscard]] const std::vector<element>& rows() const { return rows_; }
+  [[nodiscard]] const std::vector<element>& samples() const { return samples_; }
   /// Index of the first of the `Order` control points on which each sample depends.
   [[nodiscard]] const std::vector<std::size_t>& first() const { return first_; }
 
@@ -69,9 +69,9 @@ protected:
 
   [[nodiscard]] std::vector<R> residuals(const std::vector<element>& controls) const {
     std::vector<R> result;
-    result.reserve(rows_.size());
+    result.reserve(samples_.size());
     last_span last;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
       result.push_back(size_of(residual_at(i, controls, last)));
     }
     return result;
@@ -93,7 +93,7 @@ protected:
   }
 
   [[nodiscard]] R weight_of(std::size_t i) const {
-    return given_weights_.empty() ? R(1) : R(given_weights_[i]);
+    return sample_weights_.empty() ? R(1) : R(sample_weights_[i]);
   }
   /// Cost Σ wᵢ ρ(rᵢ) with a limit of Huber's loss for each sample; samples with limit 0 do not
   /// count.
@@ -101,7 +101,7 @@ protected:
                           const std::vector<R>& limits) const {
     R sum(0);
     last_span last;
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
       if (limits[i] > 0) {
         sum += weight_of(i) * huber_loss(size_of(residual_at(i, controls, last)), limits[i]);
       }
@@ -139,22 +139,22 @@ protected:
     tangent value;
     /// Derivatives with respect to the control points in body axes, one after the other,
     /// transposed.
-    Eigen::Matrix<R, unknowns, dimension> slope;
+    Eigen::Matrix<R, unknowns, dimension> gradient;
   };
 
   /// Residual i and its derivatives. With c exp(δ/2) for a control point c, φ = 2 log(c* c⁺) has
-  /// the rate J_r⁻¹(φ) δ⁺ − J_l⁻¹(φ) δ, and the factor exp(wφ/2) has the rate w J_r(wφ) times that,
-  /// in its body axes; the factors behind it transform it to those of the value. The residual r
-  /// changes by −J_l⁻¹(r) times the rate of the value.
+  /// the rate φ̇ = J_r⁻¹(φ) δ⁺ − J_l⁻¹(φ) δ, and the factor exp(wφ/2) has the rate w J_r(wφ) φ̇ in
+  /// its body axes. The factors behind it transform this rate to the axes of the value. The
+  /// residual r changes by −J_l⁻¹(r) times the rate of the value.
   [[nodiscard]] linear_residual linearised(std::size_t i, const std::vector<element>& controls,
                                            last_span& last) const {
     move_to(first_[i], controls, last);
     add_rates(last);
-    std::array<element, factors> turns;
+    std::array<element, factors> exponentials;
     element value = last.shared.start;
     for (std::size_t j = 0; j < factors; ++j) {
-      turns[j] = duet::exp(part(i, j, last));
-      value = value * turns[j];
+      exponentials[j] = duet::exp(part(i, j, last));
+      value = value * exponentials[j];
     }
     linear_residual result;
     const vector3<T> r = twice(residual(value, i));
@@ -166,11 +166,11 @@ protected:
       for (T& each : by_increment.reshaped()) {
         each *= weights_[i][j];
       }
-      put(by_element + product(by_increment, last.shared.by_next[j]), j + 1, i, result.slope);
+      put(by_element + product(by_increment, last.shared.by_next[j]), j + 1, i, result.gradient);
       by_element = -product(by_increment, last.shared.by_last[j]);
-      by_value = product(by_value, rotation_matrix(conj(turns[j])));
+      by_value = product(by_value, rotation_matrix(conj(exponentials[j])));
     }
-    put(by_element + by_value, 0, i, result.slope);
+    put(by_element + by_value, 0, i, result.gradient);
     return result;
   }
 
@@ -189,9 +189,9 @@ private:
   }
   static void add_rates(last_span& last) {
     for (std::size_t j = 0; j < factors && !last.has_rates; ++j) {
-      const vector3<T> turn = twice(last.shared.increments[j]);
-      last.shared.by_next[j] = right_jacobian_inverse(turn);
-      last.shared.by_last[j] = left_jacobian_inverse(turn);
+      const vector3<T> phi = twice(last.shared.increments[j]);
+      last.shared.by_next[j] = right_jacobian_inverse(phi);
+      last.shared.by_last[j] = left_jacobian_inverse(phi);
     }
     last.has_rates = true;
   }
@@ -202,8 +202,9 @@ private:
 
   /// Logarithm log(S* Q) along the shorter arc.
   [[nodiscard]] vector3<T> residual(const element& value, std::size_t i) const {
-    const bool is_opposite = innermost(dot(value, rows_[i])) < 0;
-    return log_vector(relative_rotation(value, is_opposite ? element(-rows_[i]) : rows_[i]), "fit");
+    const bool is_opposite = innermost(dot(value, samples_[i])) < 0;
+    return log_vector(relative_rotation(value, is_opposite ? element(-samples_[i]) : samples_[i]),
+                      "fit");
   }
 
   [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return R(2) * components(half); }
@@ -217,16 +218,18 @@ private:
   /// not symmetric or not positive definite
   [[nodiscard]] std::vector<square> inverse_roots(const std::vector<Eigen::MatrixXd>& covariances) {
     const std::size_t count = covariances.size();
-    require(count <= 1 || count == rows_.size(), "duet: fit: ", count, " covariances for ",
-            rows_.size(), " rows: one for each, or one for all");
+    require(count <= 1 || count == samples_.size(), "duet: fit: ", count, " covariances for ",
+            samples_.size(), " samples (expected one for each, or one for all)");
     std::vector<square> result;
     for (std::size_t i = 0; i < count; ++i) {
-      const Eigen::MatrixXd& given = covariances[i];
-      require(given.rows() == dimension && given.cols() == dimension, "duet: fit: covariance ", i,
-              " is ", given.rows(), " x ", given.cols(), ", not ", dimension, " x ", dimension);
-      require(given.isApprox(given.transpose()), "duet: fit: covariance ", i, " is not symmetric");
-      const Eigen::LLT<square> root(given.template cast<R>());
-      require(given.allFinite() && root.info() == Eigen::Success, "duet: fit: covariance ", i,
+      const Eigen::MatrixXd& covariance = covariances[i];
+      require(covariance.rows() == dimension && covariance.cols() == dimension,
+              "duet: fit: covariance ", i, " is ", covariance.rows(), " x ", covariance.cols(),
+              ", not ", dimension, " x ", dimension);
+      require(covariance.isApprox(covariance.transpose()), "duet: fit: covariance ", i,
+              " is not symmetric");
+      const Eigen::LLT<square> root(covariance.template cast<R>());
+      require(covariance.allFinite() && root.info() == Eigen::Success, "duet: fit: covariance ", i,
               " is not positive definite");
       result.push_back(root.matrixL().solve(square::Identity()));
     }
@@ -255,8 +258,8 @@ private:
 
   /// Stores the transposed linear map m from rates of control point j to residual i.
   void put(const matrix3<T>& m, std::size_t j, std::size_t i,
-           Eigen::Matrix<R, unknowns, dimension>& slope) const {
-    auto block = slope.template middleRows<dimension>(Eigen::Index(j) * dimension);
+           Eigen::Matrix<R, unknowns, dimension>& gradient) const {
+    auto block = gradient.template middleRows<dimension>(Eigen::Index(j) * dimension);
     if constexpr (dimension == 3) {
       block = m.transpose();
     } else {
@@ -269,10 +272,10 @@ private:
     }
   }
 
-  std::vector<element> rows_;
+  std::vector<element> samples_;
   R characteristic_length_;
-  std::vector<double> given_weights_;
-  std::vector<square> whitening_; ///< empty, one for all or one for each sample
+  std::vector<double> sample_weights_;
+  std::vector<square> whitening_; ///< empty, one for all samples or one for each
   std::vector<std::size_t> first_;
   std::vector<std::array<R, factors>> weights_;
 };

@@ -21,8 +21,8 @@
 #include <vector>
 
 /// \file
-/// Initial guesses of fits, and outlier limits of robust ones, from medians, which up to half of
-/// the samples may spoil without moving them far.
+/// Initial guesses of fits and outlier limits of robust fits, from medians, which outliers among up
+/// to half of the samples do not move far.
 
 namespace duet::detail {
 
@@ -39,8 +39,9 @@ template <int Order, Real R>
 /// Initial guess of plain fits: the samples interpolated at the Greville abscissae.
 template <class T, int Order>
 [[nodiscard]] std::vector<quaternion<T>>
-elements_at_averages(const bspline_basis<Order, real_type_t<T>>& basis,
-                     const std::vector<real_type_t<T>>& u, const std::vector<quaternion<T>>& rows) {
+control_points_at_averages(const bspline_basis<Order, real_type_t<T>>& basis,
+                           const std::vector<real_type_t<T>>& u,
+                           const std::vector<quaternion<T>>& samples) {
   using R = real_type_t<T>;
   std::vector<quaternion<T>> result;
   for (std::size_t i = 0; i < basis.size(); ++i) {
@@ -48,7 +49,7 @@ elements_at_averages(const bspline_basis<Order, real_type_t<T>>& basis,
     const auto above = std::size_t(std::upper_bound(u.begin(), u.end(), at) - u.begin());
     const std::size_t right = std::clamp<std::size_t>(above, 1, u.size() - 1);
     const R fraction = std::clamp(R((at - u[right - 1]) / (u[right] - u[right - 1])), R(0), R(1));
-    result.push_back(slerp(rows[right - 1], rows[right], fraction));
+    result.push_back(slerp(samples[right - 1], samples[right], fraction));
     if (i > 0 && innermost(dot(result[i - 1], result[i])) < 0) {
       result[i] = -result[i];
     }
@@ -72,8 +73,10 @@ template <Real R>
   return median_within(x);
 }
 
-/// Median of x around each sample, over 61 samples or more if there are as many: those on the same
-/// piece of the curve, identified by a number that does not decrease, and their neighbours.
+/// Median of x around each sample, over 61 samples or more if there are as many: the samples on the
+/// same segment of the curve and their neighbours.
+///
+/// \param piece  number of the segment of each sample, not decreasing
 template <Real R>
 [[nodiscard]] std::vector<R> local_medians(const std::vector<R>& x,
                                            const std::vector<std::size_t>& piece) {
@@ -103,23 +106,24 @@ template <Real R>
 }
 
 /// Sets the limits of Huber's loss: three times the median residual around each sample, at least
-/// `least`; zero for samples at four times that distance or more. Returns the sum of the limits.
+/// `min_limit`; zero for samples at four times that distance or more. Returns the sum of the
+/// limits.
 template <Real R>
 [[nodiscard]] R set_outlier_limits(const std::vector<R>& sizes,
-                                   const std::vector<std::size_t>& piece, const R& least,
+                                   const std::vector<std::size_t>& piece, const R& min_limit,
                                    std::vector<R>& limits) {
   const std::vector<R> medians = local_medians(sizes, piece);
   R sum(0);
   for (std::size_t i = 0; i < sizes.size(); ++i) {
-    const R limit = std::max(R(3 * medians[i]), least);
+    const R limit = std::max(R(3 * medians[i]), min_limit);
     limits[i] = sizes[i] <= 4 * limit && sizes[i] < too_far<R>() ? limit : R(0);
     sum += std::min(limit, too_far<R>());
   }
   return sum;
 }
 
-/// Coordinates of samples that have medians: the matrix of a rotation, independent of the sign of
-/// its quaternion, and for a pose also its translation divided by the characteristic length.
+/// Coordinates of samples for medians: the rotation matrix, which is independent of the sign of the
+/// quaternion, and for a pose also its translation divided by the characteristic length.
 template <class T>
 class median_coordinates {
   static constexpr bool is_pose = contains_tag<T, screw_tag>();
@@ -136,9 +140,13 @@ public:
       }
     };
     if constexpr (is_pose) {
-      constexpr R most = std::numeric_limits<R>::max() / 64; // sums of differences stay finite
+      constexpr R max_coordinate =
+          std::numeric_limits<R>::max() / 64; // sums of differences stay finite
       put(rotation_matrix(rotation(q)), 0);
-      put(vector3<R>((translation(q) / characteristic_length).cwiseMin(most).cwiseMax(-most)), 9);
+      put(vector3<R>((translation(q) / characteristic_length)
+                         .cwiseMin(max_coordinate)
+                         .cwiseMax(-max_coordinate)),
+          9);
     } else {
       put(rotation_matrix(q), 0);
     }
@@ -156,16 +164,17 @@ public:
   }
 };
 
-/// Sample with the least median separation from the others, among nine spread over all.
+/// Sample with the smallest median separation from the others, among nine spread over all samples.
 template <class T>
-[[nodiscard]] quaternion<T> central_row(const std::vector<quaternion<T>>& rows,
-                                        const real_type_t<T>& characteristic_length) {
+[[nodiscard]] quaternion<T> central_sample(const std::vector<quaternion<T>>& samples,
+                                           const real_type_t<T>& characteristic_length) {
   using R = real_type_t<T>;
   using coordinates = median_coordinates<T>;
   constexpr std::size_t count = 9;
   std::array<typename coordinates::point, count> points;
   for (std::size_t k = 0; k < count; ++k) {
-    points[k] = coordinates::of(rows[k * (rows.size() - 1) / (count - 1)], characteristic_length);
+    points[k] =
+        coordinates::of(samples[k * (samples.size() - 1) / (count - 1)], characteristic_length);
   }
   std::vector<R> medians, separations(count);
   for (const auto& point : points) {
@@ -174,18 +183,18 @@ template <class T>
     medians.push_back(median_within(separations));
   }
   const auto best = std::min_element(medians.begin(), medians.end()) - medians.begin();
-  return rows[std::size_t(best) * (rows.size() - 1) / (count - 1)];
+  return samples[std::size_t(best) * (samples.size() - 1) / (count - 1)];
 }
 
 /// Samples relative to one of them, with all digits of small differences.
 template <class T>
-[[nodiscard]] std::vector<quaternion<T>> rows_seen_from(const quaternion<T>& origin,
-                                                        std::vector<quaternion<T>> rows) {
-  for (quaternion<T>& each : rows) {
+[[nodiscard]] std::vector<quaternion<T>> samples_relative_to(const quaternion<T>& origin,
+                                                             std::vector<quaternion<T>> samples) {
+  for (quaternion<T>& each : samples) {
     each =
         relative_rotation(origin, innermost(dot(origin, each)) < 0 ? quaternion<T>(-each) : each);
   }
-  return rows;
+  return samples;
 }
 
 /// Huber's loss: ½ r² up to the limit, beyond it linear along the tangent.
@@ -194,8 +203,8 @@ template <Real R>
   return r <= limit ? R(r * r / 2) : R(limit * (r - limit / 2));
 }
 
-/// Robust centre of samples, up to half of which may be outliers: the sample nearest to the median
-/// of each coordinate.
+/// Robust centre of samples, up to half of which may be outliers: the sample nearest to the medians
+/// of the coordinates.
 template <class T>
 class robust_centre {
   using coordinates = median_coordinates<T>;
@@ -203,25 +212,25 @@ class robust_centre {
   using R = real_type_t<T>;
 
 public:
-  /// Initial control points of a robust fit: around each Greville abscissa the centre of the
-  /// samples, sought in windows from many samples to few, so that outliers are not taken for a
-  /// motion where they happen to be many.
+  /// Initial control points of a robust fit: the centre of the samples around each Greville
+  /// abscissa. It is searched for in windows from many samples to few, so that local accumulations
+  /// of outliers are not mistaken for the motion.
   template <int Order>
   [[nodiscard]] std::vector<quaternion<T>>
   controls(const bspline_basis<Order, R>& basis, const std::vector<R>& u,
-           const std::vector<quaternion<T>>& rows, const R& characteristic_length) {
+           const std::vector<quaternion<T>>& samples, const R& characteristic_length) {
     constexpr std::array<std::size_t, 5> windows{81, 41, 21, 11, 5};
     std::vector<quaternion<T>> result;
     for (std::size_t i = 0; i < basis.size(); ++i) {
       const auto above = std::lower_bound(u.begin(), u.end(), knot_average(basis, i));
-      const std::size_t middle = std::min(std::size_t(above - u.begin()), rows.size() - 1);
+      const std::size_t middle = std::min(std::size_t(above - u.begin()), samples.size() - 1);
       const auto first_of = [&](std::size_t count) {
-        return std::min(middle > count / 2 ? middle - count / 2 : 0, rows.size() - count);
+        return std::min(middle > count / 2 ? middle - count / 2 : 0, samples.size() - count);
       };
-      const std::size_t all = std::min(rows.size(), windows.front()), from = first_of(all);
+      const std::size_t all = std::min(samples.size(), windows.front()), from = first_of(all);
       points_.clear();
       for (std::size_t k = from; k < from + all; ++k) {
-        points_.push_back(coordinates::of(rows[k], characteristic_length));
+        points_.push_back(coordinates::of(samples[k], characteristic_length));
       }
       centre_ = middle - from;
       radius_ = std::numeric_limits<R>::infinity();
@@ -229,7 +238,7 @@ public:
         const std::size_t count = std::min(all, window);
         move(first_of(count) - from, count);
       }
-      result.push_back(rows[from + centre_]);
+      result.push_back(samples[from + centre_]);
       if (i > 0 && innermost(dot(result[i - 1], result[i])) < 0) {
         result[i] = -result[i];
       }
@@ -238,44 +247,44 @@ public:
   }
 
 private:
-  /// Moves the centre to that of those of `count` points within the radius, which becomes three
-  /// times the median separation from there.
+  /// Moves the centre to that of the points within the radius, among `count` points from `first`
+  /// on. The radius becomes three times the median separation from the new centre.
   void move(std::size_t first, std::size_t count) {
-    near_rows_.clear();
+    near_samples_.clear();
     for (std::size_t k = first; k < first + count; ++k) {
       if (coordinates::separation(points_[centre_], points_[k]) <= radius_) {
-        near_rows_.push_back(k);
+        near_samples_.push_back(k);
       }
     }
-    if (3 * near_rows_.size() < count) {
+    if (3 * near_samples_.size() < count) {
       if (count < 21) {
-        return; // by chance: few samples do not prove the others wrong
+        return; // a majority of few samples may be due to chance
       }
-      near_rows_.resize(count); // the motion is different here
-      std::iota(near_rows_.begin(), near_rows_.end(), first);
+      near_samples_.resize(count); // the motion has left the radius: all samples count
+      std::iota(near_samples_.begin(), near_samples_.end(), first);
     }
     point middle;
     for (std::size_t i = 0; i < middle.size(); ++i) {
       numbers_.clear();
-      for (const std::size_t k : near_rows_) {
+      for (const std::size_t k : near_samples_) {
         numbers_.push_back(points_[k][i]);
       }
       middle[i] = median_within(numbers_);
     }
-    const auto nearest = [&](std::size_t a, std::size_t b) {
+    const auto is_nearer = [&](std::size_t a, std::size_t b) {
       return coordinates::separation(points_[a], middle) <
              coordinates::separation(points_[b], middle);
     };
-    centre_ = *std::min_element(near_rows_.begin(), near_rows_.end(), nearest);
+    centre_ = *std::min_element(near_samples_.begin(), near_samples_.end(), is_nearer);
     numbers_.clear();
-    for (const std::size_t k : near_rows_) {
+    for (const std::size_t k : near_samples_) {
       numbers_.push_back(coordinates::separation(points_[k], points_[centre_]));
     }
     radius_ = 3 * median_within(numbers_);
   }
 
-  std::vector<point> points_; ///< coordinates of the samples around
-  std::vector<std::size_t> near_rows_;
+  std::vector<point> points_; ///< coordinates of the samples around the abscissa
+  std::vector<std::size_t> near_samples_;
   std::vector<R> numbers_;
   std::size_t centre_ = 0;
   R radius_ = 0;

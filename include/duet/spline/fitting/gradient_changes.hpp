@@ -25,7 +25,7 @@ public:
   [[nodiscard]] bool empty() const { return changes_.empty(); }
   void clear() { changes_.clear(); }
 
-  /// Records the step to the next point, and the gradient before it.
+  /// Records the step to the next point, and the gradient before the step.
   void step(vector taken, const vector& gradient) {
     step_ = std::move(taken);
     gradient_ = gradient;

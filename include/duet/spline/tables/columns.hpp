@@ -24,9 +24,8 @@ namespace duet::detail {
 enum class table_column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
 
 inline constexpr const char* known_columns =
-    "known are u (tau, t, time, timestamp), x y z (tx, px, p_x, p_RS_R_x ...) and qw qx qy qz "
-    "(q_w, "
-    "q_RS_w ...), with units as in `t [s]`; Euler angles where `euler_columns` names them";
+    "known columns are u (tau, t, time, timestamp), x y z (tx, px, p_x, p_RS_R_x ...) and qw qx qy "
+    "qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need `euler_columns`";
 
 /// Name in a header, with its meaning and unit.
 struct column_name {
@@ -126,21 +125,21 @@ struct table_layout {
 
   /// Reads a header.
   ///
-  /// \param has_u      true if the rows must have a parameter
-  /// \param has_place  true if the rows must have positions
-  /// \param angles     columns of Euler angles; null: rotations are quaternions
+  /// \param has_u         true if the rows must have a parameter
+  /// \param has_position  true if the rows must have positions
+  /// \param angles        columns of Euler angles; null: rotations are quaternions
   /// \return problem with the header, empty if there is none
   [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_u,
-                                 bool has_place, const euler_columns* angles = nullptr) {
+                                 bool has_position, const euler_columns* angles = nullptr) {
     columns = header.size();
     has_angles = angles != nullptr;
     for (std::size_t i = 0; i < columns; ++i) {
       const column_name cell(header[i]);
-      const std::size_t k = has_angles ? place_among(*angles, cell) : std::size_t(cell.what);
+      const std::size_t k = has_angles ? angle_column(*angles, cell) : std::size_t(cell.what);
       if (k == std::size_t(table_column::other)) {
         continue;
       }
-      // Of ROS's two times the message's own is that of the measurement, and comes second.
+      // ROS writes two times: the second, in the header of the message, is that of the measurement.
       const bool is_better_time = names[k] == "%time" && cell.name == "field_header_stamp";
       if (at[k] != absent && !is_better_time) {
         return "the header has both '" + names[k] + "' and '" + std::string(header[i]) + "'";
@@ -152,14 +151,14 @@ struct table_layout {
       is_euroc = is_euroc || cell.name.starts_with("p_rs_");
       is_of_ros = is_of_ros || cell.is_of_ros;
     }
-    return missing(has_u, has_place, angles);
+    return missing(has_u, has_position, angles);
   }
 
 private:
   /// Index of a column of angles, which take the positions of the first three numbers of a
   /// quaternion.
-  [[nodiscard]] static std::size_t place_among(const euler_columns& angles,
-                                               const column_name& cell) {
+  [[nodiscard]] static std::size_t angle_column(const euler_columns& angles,
+                                                const column_name& cell) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (cell.name == column_name(angles.names()[k]).name) {
         return std::size_t(table_column::qw) + k;
@@ -176,15 +175,16 @@ private:
   }
 
   /// Problem with the header: missing columns, or units of angles other than the given one.
-  [[nodiscard]] std::string missing(bool has_u, bool has_place, const euler_columns* angles) const {
+  [[nodiscard]] std::string missing(bool has_u, bool has_position,
+                                    const euler_columns* angles) const {
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < (has_angles ? 7 : 8); ++k) {
-      if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_place)) {
+      if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_position)) {
         const std::string name = has_angles && k >= 4 ? angles->names()[k - 4] : short_names[k];
         return "the header names no column " + name + ": " + known_columns;
       }
       if (has_angles && k >= 4 && !is_unit_of(*angles, units[k])) {
-        return "the header has " + names[k] + ", euler_columns other angles: " +
+        return "the header has the column " + names[k] + ", but euler_columns expects " +
                (angles->unit() == angle_unit::degree ? "degrees" : "radians");
       }
     }
@@ -195,7 +195,7 @@ private:
 /// Comment before the first row that seems to name the columns.
 class commented_header {
 public:
-  void look_at(std::size_t line, std::string_view comment, const euler_columns* angles) {
+  void inspect(std::size_t line, std::string_view comment, const euler_columns* angles) {
     std::vector<std::string_view> cells;
     split_cells(comment, cells);
     if (cells.size() > 1 && cells[0].ends_with(':')) { // `columns: t x y z ...`
@@ -221,26 +221,26 @@ public:
     }
   }
 
-  /// Layout that the comment gives to rows with this number of columns. Empty if it is not a
-  /// header: if its names or their number do not fit the rows, and no name contradicts the usual
+  /// Layout that the comment gives to rows with this number of columns. Empty if the comment is not
+  /// a header: its names or their number do not fit the rows, and no name contradicts the usual
   /// layout of such rows.
   ///
   /// \throws file_error if it is ambiguous
   [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
-                                                   bool has_u, bool has_place,
+                                                   bool has_u, bool has_position,
                                                    const euler_columns* angles,
                                                    const std::optional<table_layout>& usual) const {
     table_layout result;
     std::string problem;
     if (cells_.size() == columns) {
       const std::vector<std::string_view> header(cells_.begin(), cells_.end());
-      problem = result.read(header, has_u, has_place, angles);
+      problem = result.read(header, has_u, has_position, angles);
       if (problem.empty()) {
         return result;
       }
     } else if (is_certain_) {
-      problem = "the comment names " + std::to_string(cells_.size()) + " columns, the rows have " +
-                std::to_string(columns);
+      problem = "the comment names " + std::to_string(cells_.size()) +
+                " columns, but the rows have " + std::to_string(columns);
     }
     if (problem.empty() || (usual && angles == nullptr && agrees_with(*usual))) {
       return std::nullopt;

@@ -38,12 +38,12 @@ public:
     detail::require(is_axis(sequence.first) && is_axis(sequence.second) &&
                         is_axis(sequence.third) && sequence.first != sequence.second &&
                         sequence.second != sequence.third,
-                    "duet: euler_columns: axes ", sequence.first, ", ", sequence.second, ", ",
-                    sequence.third, ": each is 0, 1 or 2, and no two neighbours are equal");
+                    "duet: euler_columns: the axes are ", sequence.first, ", ", sequence.second,
+                    ", ", sequence.third, " (expected 0, 1 or 2 each, neighbours different)");
     for (std::size_t i = 0; i < 3; ++i) {
       detail::require(!names_[i].empty() && names_[i] != names_[(i + 1) % 3],
-                      "duet: euler_columns: the names '", names_[i], "' and '", names_[(i + 1) % 3],
-                      "': each angle has a column of its own");
+                      "duet: euler_columns: the columns of two angles are '", names_[i], "' and '",
+                      names_[(i + 1) % 3], "' (expected three different names)");
     }
   }
 

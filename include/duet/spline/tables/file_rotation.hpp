@@ -12,7 +12,7 @@
 #include <string>
 
 /// \file
-/// Rotations in files, with all digits or few.
+/// Rotations in files: quaternions with all digits, and matrices printed with few.
 
 namespace duet {
 
@@ -24,8 +24,8 @@ inline constexpr double rotation_matrix_tolerance = 1e-3;
 
 namespace duet::detail {
 
-/// Normalised quaternion; one that is a unit to round-off stays as it is, since files keep all
-/// digits.
+/// Normalised quaternion. A quaternion that is a unit to round-off is returned unchanged, because
+/// files preserve all digits.
 [[nodiscard]] inline quaternion<double> unit_of_file(const quaternion<double>& q) {
   return std::abs(norm(q) - 1) <= 4e-16 ? q : normalized(q);
 }
@@ -37,7 +37,7 @@ namespace duet::detail {
 [[nodiscard]] inline std::string read_rotation(matrix3<double> r, quaternion<double>& q) {
   const double defect = (r * r.transpose() - matrix3<double>::Identity()).cwiseAbs().maxCoeff();
   if (!(defect <= rotation_matrix_tolerance)) {
-    return "the matrix is no rotation: |R R^T - 1| = " + to_text(defect);
+    return "the matrix is not a rotation: |R R^T - 1| = " + to_text(defect);
   }
   if (const double determinant = r.determinant(); determinant < 0) {
     return "the matrix is a reflection: det R = " + to_text(determinant);

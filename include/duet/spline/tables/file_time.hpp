@@ -15,12 +15,12 @@
 
 namespace duet::detail {
 
-/// Time in seconds. For seconds since 1970, adjacent doubles are 2.4e-7 s apart, so whole seconds
-/// and the rest are kept, too: differences of times have all digits of the file.
+/// Time in seconds. Adjacent doubles for seconds since 1970 differ by 2.4e-7 s, so the integer and
+/// the fractional part are stored as well: differences of times have all digits of the file.
 class file_time {
 public:
   explicit file_time(double seconds = 0)
-      : seconds_(seconds), whole_(std::trunc(seconds)), rest_(seconds - whole_) {}
+      : seconds_(seconds), integral_(std::trunc(seconds)), fraction_(seconds - integral_) {}
 
   /// Time in a cell that holds a finite number, decimal or with an exponent, in units of 10^−digits
   /// s. The decimal point is moved in the text, because divisions round.
@@ -31,10 +31,10 @@ public:
       cell.remove_prefix(1);
     }
     const std::size_t e = std::min(cell.find_first_of("eE"), cell.size());
-    // Beyond these exponents a finite number is 0.
-    const double most = double(cell.size() + digits) + 400;
+    // With exponents beyond this bound a finite number is 0.
+    const double max_shift = double(cell.size() + digits) + 400;
     const double exponent = number_of(cell.substr(std::min(e + 1, cell.size())));
-    const auto shift = int(std::clamp(exponent, -most, most)) - int(digits);
+    const auto shift = int(std::clamp(exponent, -max_shift, max_shift)) - int(digits);
     cell = cell.substr(0, e);
     const std::size_t point = std::min(cell.find('.'), cell.size());
     std::string before(cell.substr(0, point));
@@ -51,18 +51,20 @@ public:
     before = "0" + before;
     after = "." + after + "0";
     seconds_ = sign * number_of(before + after);
-    whole_ = sign * number_of(before);
-    rest_ = sign * number_of("0" + after);
+    integral_ = sign * number_of(before);
+    fraction_ = sign * number_of("0" + after);
   }
 
   /// Nearest double, in seconds.
   [[nodiscard]] double seconds() const { return seconds_; }
   /// Seconds since another time, to 1e-16 s and round-off; since 0 the nearest double.
   [[nodiscard]] double since(const file_time& start) const {
-    return start.seconds_ == 0 ? seconds_ : (whole_ - start.whole_) + (rest_ - start.rest_);
+    return start.seconds_ == 0 ? seconds_
+                               : (integral_ - start.integral_) + (fraction_ - start.fraction_);
   }
   [[nodiscard]] bool operator<(const file_time& other) const {
-    return whole_ < other.whole_ || (whole_ == other.whole_ && rest_ < other.rest_);
+    return integral_ < other.integral_ ||
+           (integral_ == other.integral_ && fraction_ < other.fraction_);
   }
 
 private:
@@ -73,7 +75,7 @@ private:
     return number;
   }
 
-  double seconds_ = 0, whole_ = 0, rest_ = 0;
+  double seconds_ = 0, integral_ = 0, fraction_ = 0;
 };
 
 } // namespace duet::detail

@@ -18,11 +18,10 @@
 /// - a header, a first line of names or a comment before the first row: columns by their names,
 ///   others ignored. A comment counts if its names and their number fit the columns. Times are in
 ///   the unit given there, in nanoseconds in files with the names of the EuRoC data set, else in
-///   seconds; whole numbers that as seconds would be later than the year 5000 are taken for
-///   milliseconds (from 1e11 on), microseconds (1e14) or nanoseconds (1e17). Times of rostopic
-///   (%time, or field.header.stamp if present) are nanoseconds if they are whole numbers, seconds
-///   if they have a decimal point, as it prints them. Columns u and tau are not times and are taken
-///   as they are;
+///   seconds; integers that as seconds would be later than the year 5000 are read as milliseconds
+///   (from 1e11 on), microseconds (1e14) or nanoseconds (1e17). Times of rostopic (%time, or
+///   field.header.stamp if present) are nanoseconds if they are integers, seconds if they have a
+///   decimal point, as it prints them. Columns u and tau are not times and are read unchanged;
 /// - 8 numbers separated by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, times by the same rule;
 /// - 8 numbers separated by commas, the first 1e17 or more: EuRoC's `timestamp,x,y,z,qw,qx,qy,qz`.
 ///   Smaller ones are rejected, as w may be first or last (likewise with semicolons instead of
@@ -37,7 +36,7 @@ struct row_format {
   table_layout layout;
   bool is_matrix = false;   ///< true for [R t] row by row, without the layout
   std::size_t digits = 0;   ///< times are in units of 10^−digits s
-  std::string guessed_unit; ///< unit guessed from the size of times, then whole numbers
+  std::string guessed_unit; ///< unit guessed from the size of times, which must then be integers
   std::string remark;       ///< assumptions about the format, empty if there were none
 };
 
@@ -51,17 +50,18 @@ struct guessed_time_unit {
                                        : digits == 6 ? "microseconds"
                                        : digits == 3 ? "milliseconds"
                                                      : "") {}
-  /// Guesses the unit of times from the years 1973 to 5138; a number with a fraction is in seconds,
-  /// except one from 1e17 to 1e20. So times read in seconds are never taken for another unit again.
+  /// Guesses the unit of times from the years 1973 to 5138. A number with a fraction is in seconds,
+  /// except one from 1e17 to 1e20, so that files of times in seconds keep their unit when they are
+  /// written and read again.
   explicit guessed_time_unit(std::string_view cell)
       : guessed_time_unit([&]() -> std::size_t {
           const double size = std::abs(parse_number(cell).value_or(0));
-          const bool is_whole = size == std::floor(size);
-          return size >= 1e20               ? 0
-                 : size >= 1e17             ? 9
-                 : !is_whole || size < 1e11 ? 0
-                 : size >= 1e14             ? 6
-                                            : 3;
+          const bool is_integer = size == std::floor(size);
+          return size >= 1e20                 ? 0
+                 : size >= 1e17               ? 9
+                 : !is_integer || size < 1e11 ? 0
+                 : size >= 1e14               ? 6
+                                              : 3;
         }()) {}
 };
 
@@ -97,9 +97,9 @@ usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
     raise(
         file_error(path, line,
                    std::to_string(cells.size()) +
-                       " columns, and no header before the first row says which is which, as "
-                       "`u,x,y,z,qw,qx,qy,qz` does; those of TUM's files (timestamp tx ty tz qx qy "
-                       "qz qw, apart by blanks) and KITTI's (12 numbers) need none: " +
+                       " columns without a header before the first row (expected a header such as "
+                       "`u,x,y,z,qw,qx,qy,qz`; TUM files, timestamp tx ty tz qx qy qz qw separated "
+                       "by blanks, and KITTI files, 12 numbers, need none): " +
                        known_columns));
   }
   result.layout = *layout;
@@ -121,20 +121,21 @@ usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
                                                      const std::string& unit) {
   const std::size_t digits = unit == "ns" ? 9 : unit == "us" ? 6 : unit == "ms" ? 3 : 0;
   if (digits == 0 && unit != "s" && unit != "sec" && unit != "seconds") {
-    raise(file_error(path, line, "timestamps in '" + unit + "': s, ms, us or ns expected"));
+    raise(file_error(path, line,
+                     "the unit of timestamps is '" + unit + "' (expected s, ms, us or ns)"));
   }
   return digits;
 }
 
 /// Detects the format from a header and the first row.
 ///
-/// \param cells      cells of the first row
-/// \param has_place  true if positions are needed
+/// \param cells         cells of the first row
+/// \param has_position  true if positions are needed
 /// \throws file_error for unknown units
 [[nodiscard]] inline row_format format_of_header(const std::string& path, std::size_t line,
                                                  const table_layout& header,
                                                  const std::vector<std::string_view>& cells,
-                                                 bool has_place) {
+                                                 bool has_position) {
   row_format result;
   result.layout = header;
   const std::string& unit = header.units[0];
@@ -157,9 +158,10 @@ usual_layout(const std::vector<std::string_view>& cells, bool has_commas) {
           std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
     }
   }
-  for (std::size_t k = 1; has_place && k < 4; ++k) {
+  for (std::size_t k = 1; has_position && k < 4; ++k) {
     if (!header.units[k].empty() && header.units[k] != "m") {
-      raise(file_error(path, line, "positions in '" + header.units[k] + "': m expected"));
+      raise(file_error(path, line,
+                       "the unit of positions is '" + header.units[k] + "' (expected m)"));
     }
   }
   return result;

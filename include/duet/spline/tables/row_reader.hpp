@@ -31,22 +31,22 @@ namespace duet::detail {
 /// Row of a file.
 struct table_row {
   std::size_t line = 0;
-  std::string fault; ///< problem, empty if there is none; then the other fields are valid
+  std::string issue; ///< problem with the row; if empty, the other fields are valid
   file_time time;
-  vector3<double> place = vector3<double>::Zero();
+  vector3<double> position = vector3<double>::Zero();
   quaternion<double> rotation{1};
 };
 
 /// Reads a file line by line.
 class table_row_reader {
 public:
-  /// \param times_path  file of times, empty if there is none
-  /// \param has_place   true if rows must have positions
-  /// \param angles      columns of Euler angles; null: rotations are quaternions
+  /// \param times_path    file of times, empty if there is none
+  /// \param has_position  true if rows must have positions
+  /// \param angles        columns of Euler angles; null: rotations are quaternions
   /// \throws file_error for an invalid file of times
-  table_row_reader(std::string path, std::string times_path, bool has_place,
+  table_row_reader(std::string path, std::string times_path, bool has_position,
                    const euler_columns* angles)
-      : path_(std::move(path)), times_path_(std::move(times_path)), has_place_(has_place),
+      : path_(std::move(path)), times_path_(std::move(times_path)), has_position_(has_position),
         angles_(angles) {
     if (!times_path_.empty()) {
       read_times();
@@ -56,19 +56,19 @@ public:
   /// Row in a line, empty if the line holds none.
   ///
   /// \throws file_error with the line of an invalid row, or for an ambiguous header
-  [[nodiscard]] std::optional<table_row> read(std::size_t line, std::string_view whole) {
-    const split_line parts(whole);
+  [[nodiscard]] std::optional<table_row> read(std::size_t line, std::string_view text) {
+    const split_line parts(text);
     const bool is_begin = !format_ && !header_;
     if (parts.text.empty()) {
       if (is_begin) {
-        comment_.look_at(line, parts.comment, angles_);
+        comment_.inspect(line, parts.comment, angles_);
       }
       return std::nullopt;
     }
     split_cells(parts.text, cells_);
     if (is_begin && are_words(cells_)) {
       header_.emplace();
-      if (const std::string problem = header_->read(cells_, true, has_place_, angles_);
+      if (const std::string problem = header_->read(cells_, true, has_position_, angles_);
           !problem.empty()) {
         raise(file_error(path_, line, problem));
       }
@@ -99,7 +99,7 @@ public:
   void finish() const {
     if (row_count_ > 0 && row_count_ < times_.size()) {
       raise(file_error(times_path_, times_[row_count_].line,
-                       "a time beyond the " + std::to_string(row_count_) + " rows of " + path_));
+                       "more times than the " + std::to_string(row_count_) + " rows of " + path_));
     }
   }
 
@@ -118,8 +118,8 @@ private:
   /// Reads one time a line, in the unit of a header if there is one.
   void read_times() {
     std::optional<guessed_time_unit> unit;
-    for_each_line(times_path_, [&](std::size_t line, std::string_view whole) {
-      split_cells(split_line(whole).text, cells_);
+    for_each_line(times_path_, [&](std::size_t line, std::string_view text) {
+      split_cells(split_line(text).text, cells_);
       if (cells_.empty()) {
         return;
       }
@@ -129,9 +129,9 @@ private:
         return;
       }
       double number = 0;
-      if (const std::string fault = read_cell(times_path_, line, "column 1", cells_[0], number);
-          !fault.empty()) {
-        raise(file_error(times_path_, line, fault));
+      if (const std::string issue = read_cell(times_path_, line, "column 1", cells_[0], number);
+          !issue.empty()) {
+        raise(file_error(times_path_, line, issue));
       }
       if (cells_.size() != 1) {
         raise(file_error(times_path_, line,
@@ -139,9 +139,9 @@ private:
       }
       if (!unit) {
         unit.emplace(cells_[0]);
-        times_remark_ = unit->name.empty() ? "" : "; times taken for " + unit->name;
+        times_remark_ = unit->name.empty() ? "" : "; times read as " + unit->name;
       }
-      require_whole(times_path_, line, "time", number, times_remark_.empty() ? "" : unit->name);
+      require_integer(times_path_, line, "time", number, times_remark_.empty() ? "" : unit->name);
       times_.push_back({line, file_time(cells_[0], unit->digits)});
     });
     if (times_.empty()) {
@@ -150,30 +150,32 @@ private:
   }
 
   /// \throws file_error for a fraction of a unit that was guessed
-  static void require_whole(const std::string& path, std::size_t line, const std::string& name,
-                            double x, const std::string& unit) {
+  static void require_integer(const std::string& path, std::size_t line, const std::string& name,
+                              double x, const std::string& unit) {
     if (!unit.empty() && x != std::floor(x)) {
       raise(file_error(path, line,
-                       name + " " + to_text(x) + " is no whole number of " + unit +
-                           ": a header with its unit, as in `timestamp [s]`, is needed"));
+                       name + " " + to_text(x) + " is not an integer number of " + unit +
+                           " (other units need a header, as in `timestamp [s]`)"));
     }
   }
 
   void choose_format(std::size_t line, bool has_commas) {
     if (!header_) {
-      header_ = comment_.layout(path_, cells_.size(), true, has_place_, angles_,
+      header_ = comment_.layout(path_, cells_.size(), true, has_position_, angles_,
                                 usual_layout(cells_, has_commas));
     }
     if (!header_ && angles_ != nullptr) {
-      raise(file_error(path_, line, "no header before the first row names the columns of angles"));
+      raise(file_error(path_, line,
+                       "there is no header before the first row (expected names of the columns of "
+                       "angles)"));
     }
-    format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_place_)
+    format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_position_)
                       : format_of_row(path_, line, cells_, has_commas);
     if (const std::string remark = comment_.remark(cells_.size()); !header_ && !remark.empty()) {
       format_->remark += (format_->remark.empty() ? "" : "; ") + remark;
     }
     if (!times_path_.empty() && !format_->is_matrix) {
-      raise(file_error(path_, line, "has times of its own besides those of " + times_path_));
+      raise(file_error(path_, line, "the rows have times, and so does " + times_path_));
     }
   }
 
@@ -185,20 +187,20 @@ private:
         note(row, read_cell(path_, row.line, layout.names[k], cells_[layout.at[k]], x[k]));
       }
     }
-    if (!row.fault.empty()) {
+    if (!row.issue.empty()) {
       return;
     }
     const quaternion<double> q = layout.has_angles ? angles_->rotation({x[4], x[5], x[6]})
                                                    : quaternion<double>(x[4], x[5], x[6], x[7]);
     if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
-      row.fault = "the quaternion of " + layout.names[4] + ", " + layout.names[5] + ", " +
+      row.issue = "the quaternion of " + layout.names[4] + ", " + layout.names[5] + ", " +
                   layout.names[6] + ", " + layout.names[7] + " has norm " + to_text(length) +
                   ", not 1";
       return;
     }
-    require_whole(path_, row.line, layout.names[0], x[0], format_->guessed_unit);
+    require_integer(path_, row.line, layout.names[0], x[0], format_->guessed_unit);
     row.time = file_time(cells_[layout.at[0]], format_->digits);
-    row.place = {x[1], x[2], x[3]};
+    row.position = {x[1], x[2], x[3]};
     row.rotation = unit_of_file(q);
   }
 
@@ -208,30 +210,30 @@ private:
       note(row, read_cell(path_, row.line, "column " + std::to_string(i + 1), cells_[i],
                           m(Eigen::Index(i / 4), Eigen::Index(i % 4))));
     }
-    if (row.fault.empty()) {
-      row.fault = read_rotation(m.leftCols<3>(), row.rotation);
+    if (row.issue.empty()) {
+      row.issue = read_rotation(m.leftCols<3>(), row.rotation);
     }
-    row.place = m.col(3);
+    row.position = m.col(3);
     if (times_path_.empty()) {
       row.time = file_time(double(row_count_));
     } else if (row_count_ < times_.size()) {
       row.time = times_[row_count_].time;
     } else {
       raise(file_error(path_, row.line,
-                       "a row beyond the " + std::to_string(times_.size()) + " times of " +
+                       "more rows than the " + std::to_string(times_.size()) + " times of " +
                            times_path_));
     }
   }
 
   /// Records a problem with the row; the first one is kept.
-  static void note(table_row& row, std::string fault) {
-    if (row.fault.empty()) {
-      row.fault = std::move(fault);
+  static void note(table_row& row, std::string issue) {
+    if (row.issue.empty()) {
+      row.issue = std::move(issue);
     }
   }
 
   std::string path_, times_path_;
-  bool has_place_;
+  bool has_position_;
   const euler_columns* angles_;
   std::vector<time_row> times_;
   std::string times_remark_;
@@ -248,10 +250,10 @@ private:
 /// \throws file_error as `table_row_reader`
 template <class Row>
 std::string for_each_table_row(const std::string& path, const std::string& times_path,
-                               bool has_place, const euler_columns* angles, const Row& row) {
-  table_row_reader reader(path, times_path, has_place, angles);
-  for_each_line(path, [&](std::size_t line, std::string_view whole) {
-    if (const std::optional<table_row> r = reader.read(line, whole)) {
+                               bool has_position, const euler_columns* angles, const Row& row) {
+  table_row_reader reader(path, times_path, has_position, angles);
+  for_each_line(path, [&](std::size_t line, std::string_view text) {
+    if (const std::optional<table_row> r = reader.read(line, text)) {
       row(*r);
     }
   });
