@@ -95,8 +95,8 @@ task structured_task(const serial_chain<6>& arm, random_source& random) {
   const int kind = random.integer(0, 3);
   Eigen::Matrix<double, 6, 1> theta;
   for (int i = 0; i < 6; ++i) {
-    const bool slides = arm.kind(i) == joint_kind::prismatic;
-    theta[i] = slides                                   ? random.integer(-8, 8) / 8.
+    const bool is_prismatic = arm.kind(i) == joint_kind::prismatic;
+    theta[i] = is_prismatic                             ? random.integer(-8, 8) / 8.
                : kind == 0                              ? random.integer(-1, 2) * pi / 2
                : kind == 1                              ? random.integer(-11, 12) * pi / 12
                : kind == 3 && random.integer(0, 1) == 0 ? 0
@@ -108,13 +108,13 @@ task structured_task(const serial_chain<6>& arm, random_source& random) {
 /// Rows of Denavit and Hartenberg: a, d, α.
 using table = std::array<std::array<double, 3>, 6>;
 
-serial_chain<6> arm_of(const table& rows, int sliding = -1) {
+serial_chain<6> arm_of(const table& rows, int prismatic = -1) {
   std::array<dh_row<>, 6> all;
   for (std::size_t i = 0; i < 6; ++i) {
     all[i].a = rows[i][0];
     all[i].d = rows[i][1];
     all[i].alpha = rows[i][2];
-    all[i].kind = int(i) == sliding ? joint_kind::prismatic : joint_kind::revolute;
+    all[i].kind = int(i) == prismatic ? joint_kind::prismatic : joint_kind::revolute;
   }
   return from_dh(all);
 }
@@ -162,7 +162,7 @@ serial_chain<6> known_arm(random_source& random) {
 }
 
 /// Angles are multiples of a part of a half turn, lengths of 1/100, one in `zeros` of either 0.
-serial_chain<6> round_arm(random_source& random, int parts, int zeros, bool slides = false) {
+serial_chain<6> round_arm(random_source& random, int parts, int zeros, bool is_prismatic = false) {
   table rows;
   for (auto& row : rows) {
     const auto length = [&] {
@@ -174,26 +174,27 @@ serial_chain<6> round_arm(random_source& random, int parts, int zeros, bool slid
                           : random.integer(1 - parts, parts);
     row = {a, d, angle * pi / parts};
   }
-  return arm_of(rows, slides ? random.integer(0, 5) : -1);
+  return arm_of(rows, is_prismatic ? random.integer(0, 5) : -1);
 }
 
 /// The solutions beside those of a goal next to it that are not among those found, but regular.
-int lost_beside(const task& t, random_source& random) {
-  const auto turn = random.direction<3>(), way = random.direction<3>();
-  constexpr double by = 1e-6;
-  const auto moved = pose(exp(vector3<double>(by * turn[0], by * turn[1], by * turn[2])),
-                          Eigen::Vector3d(by * way[0], by * way[1], by * way[2]));
+int lost_near_goal(const task& t, random_source& random) {
+  const auto rotation = random.direction<3>(), direction = random.direction<3>();
+  constexpr double size = 1e-6;
+  const auto moved =
+      pose(exp(vector3<double>(size * rotation[0], size * rotation[1], size * rotation[2])),
+           Eigen::Vector3d(size * direction[0], size * direction[1], size * direction[2]));
   int lost = 0;
   const detail::branches_of_chain<serial_chain<6>> branches(t.arm, t.goal);
-  const detail::branches_of_chain<serial_chain<6>> beside(t.arm, moved * t.goal);
-  for (auto x : detail::branch_search(beside.loop()).answer().solutions) {
+  const detail::branches_of_chain<serial_chain<6>> nearby(t.arm, moved * t.goal);
+  for (auto x : detail::branch_search(nearby.loop()).answer().solutions) {
     if (detail::close_loop(branches.loop(), x.theta)) {
-      const auto found = branches(x);
+      const auto solution = branches(x);
       const bool is_regular =
-          detail::smallest_singular_value(jacobian(t.arm, found.joints, frame::hybrid)) > 1e-4;
-      lost += is_regular && found.residual < 1e-12 &&
+          detail::smallest_singular_value(jacobian(t.arm, solution.joints, frame::hybrid)) > 1e-4;
+      lost += is_regular && solution.residual < 1e-12 &&
               std::none_of(t.all.solutions.begin(), t.all.solutions.end(), [&](const auto& s) {
-                return distance(t.arm, s.joints, found.joints) < 1e-6;
+                return distance(t.arm, s.joints, solution.joints) < 1e-6;
               });
     }
   }
@@ -206,8 +207,8 @@ void report(const char* name, int count, random_source& random, bool is_structur
             const make_task& make) {
   constexpr int together = 100; // as asking for the time takes some itself
   constexpr double singular = 1e-6;
-  int regular = 0, missed = 0, unseen = 0, uncertain = 0, in_place = 0, solutions = 0, most = 0,
-      complex = 0;
+  int regular = 0, missed = 0, unseen = 0, uncertain = 0, singular_count = 0, solutions = 0,
+      max_solutions = 0, complex = 0;
   double worst = 0, seconds = 0;
   std::vector<task> tasks;
   for (int done = 0; done < count; done += int(tasks.size())) {
@@ -225,7 +226,7 @@ void report(const char* name, int count, random_source& random, bool is_structur
       const bool is_reached = std::any_of(all.begin(), all.end(), [&](const auto& s) {
         return distance(t.arm, s.joints, t.theta) < 1e-6;
       });
-      int lost = is_structured ? lost_beside(t, random) : 0;
+      int lost = is_structured ? lost_near_goal(t, random) : 0;
       if (detail::smallest_singular_value(jacobian(t.arm, t.theta, frame::hybrid)) >= singular) {
         lost = std::max(lost, is_reached ? 0 : 1);
       } else {
@@ -240,10 +241,10 @@ void report(const char* name, int count, random_source& random, bool is_structur
       const bool is_singular = std::any_of(all.begin(), all.end(), [&](const auto& s) {
         return s.smallest_singular_value < singular;
       });
-      in_place += !t.all.is_complete && is_singular;
+      singular_count += !t.all.is_complete && is_singular;
       uncertain += !t.all.is_complete && !is_singular;
       solutions += int(all.size());
-      most = std::max(most, int(all.size()));
+      max_solutions = std::max(max_solutions, int(all.size()));
       complex += t.all.complex_solutions;
       for (const auto& s : all) {
         worst = std::max(worst, s.residual);
@@ -251,7 +252,7 @@ void report(const char* name, int count, random_source& random, bool is_structur
     }
   }
   std::printf("| %s | %d | %d | %d | %d | %d | %.2f | %d | %.2f | %.1e | %.1f |\n", name, regular,
-              missed, unseen, uncertain, in_place, double(solutions) / regular, most,
+              missed, unseen, uncertain, singular_count, double(solutions) / regular, max_solutions,
               double(complex) / regular, worst, 1e6 * seconds / count);
   std::fflush(stdout);
 }

@@ -29,17 +29,17 @@ using namespace timing_bench;
 using curve = std::vector<duet::detail::joint_cubic<vector>>;
 
 /// The shortest time from rest to rest on a straight line.
-double seven_phases(double way, double v, double a, double j) {
+double seven_phases(double distance, double v, double a, double j) {
   const auto rise = [&](double speed) {
     return speed > a * a / j ? speed / a + a / j : 2 * std::sqrt(speed / j);
   };
-  if (v * rise(v) <= way) {
-    return 2 * rise(v) + (way - v * rise(v)) / v;
+  if (v * rise(v) <= distance) {
+    return 2 * rise(v) + (distance - v * rise(v)) / v;
   }
   double low = 0, high = v;
   for (int i = 0; i < 200; ++i) {
     const double middle = (low + high) / 2;
-    (middle * rise(middle) < way ? low : high) = middle;
+    (middle * rise(middle) < distance ? low : high) = middle;
   }
   return 2 * rise(high);
 }
@@ -49,14 +49,14 @@ double seven_phases(double way, double v, double a, double j) {
 class reference {
 public:
   reference(const curve& path, const problem& limits, const vector& jerk,
-            const std::vector<double>& places)
-      : path_(path), limits_(limits), jerk_(jerk), n_(int(places.size()) - 1),
+            const std::vector<double>& arc_lengths)
+      : path_(path), limits_(limits), jerk_(jerk), n_(int(arc_lengths.size()) - 1),
         c_(Eigen::VectorXd::Zero(n_ + 3)) {
     for (int i = 0; i <= n_; ++i) {
-      c_[i + 1] = places[std::size_t(i)];
+      c_[i + 1] = arc_lengths[std::size_t(i)];
     }
     c_[0] = c_[1] = c_[2] = 0;
-    c_[n_] = c_[n_ + 1] = c_[n_ + 2] = places.back();
+    c_[n_] = c_[n_ + 1] = c_[n_ + 2] = arc_lengths.back();
     step_ = 1;
     double stretch = 0;
     for_each_bound(c_, step_, [&](double limit, double, double x, int, const auto&, int order) {
@@ -165,15 +165,16 @@ private:
       matrix.col(fixed).setZero();
       matrix(fixed, fixed) = 1;
     }
-    const Eigen::VectorXd way = matrix.selfadjointView<Eigen::Lower>().ldlt().solve(-gradient);
-    const double fall = -gradient.dot(way), before = value(c_, step_, weight);
-    for (double part = 1; part > 1e-6; part /= 2) {
-      const Eigen::VectorXd c = c_ + part * way.head(n_ + 3);
-      const double h = step_ + part * way[n - 1];
-      if (value(c, h, weight) < before - 1e-3 * part * fall) {
+    const Eigen::VectorXd newton_step =
+        matrix.selfadjointView<Eigen::Lower>().ldlt().solve(-gradient);
+    const double decrease = -gradient.dot(newton_step), before = value(c_, step_, weight);
+    for (double fraction = 1; fraction > 1e-6; fraction /= 2) {
+      const Eigen::VectorXd c = c_ + fraction * newton_step.head(n_ + 3);
+      const double h = step_ + fraction * newton_step[n - 1];
+      if (value(c, h, weight) < before - 1e-3 * fraction * decrease) {
         c_ = c;
         step_ = h;
-        return fall;
+        return decrease;
       }
     }
     return 0;
@@ -206,32 +207,34 @@ void compare(unsigned seeds) {
                                              {.jerk = limits});
       };
       const auto motion = watch.of([&] { return timed(p.waypoints); });
-      const auto without = duet::time_optimal_trajectory(
-          p.waypoints, p.velocity, p.acceleration, {.curve = duet::waypoint_interpolation::smooth});
+      const auto without =
+          duet::time_optimal_trajectory(p.waypoints, p.velocity, p.acceleration,
+                                        {.curve = duet::waypoint_interpolation::natural_cubic});
       longer.add(motion.duration() / without.duration(), seed);
       // Where both are at equal times is where the searches start.
       const auto problem =
-          duet::detail::timing_problem_of(p.waypoints, p.velocity, p.acceleration,
-                                          duet::time_parametrisation_options{.jerk = limits});
-      const curve path = duet::detail::hermite_curve(problem.polygon,
-                                                     duet::detail::smooth_slopes(problem.polygon));
+          duet::detail::validated_input(p.waypoints, p.velocity, p.acceleration,
+                                        duet::time_parametrisation_options{.jerk = limits});
+      const curve path = duet::detail::hermite_curve(
+          problem.polygon, duet::detail::natural_cubic_slopes(problem.polygon));
       const auto start = duet::detail::timed_by_accelerations(problem, path);
       double best = std::numeric_limits<double>::infinity();
       for (const auto& each : {start, duet::detail::timed_within_jerks(problem, path)}) {
-        const auto places = duet::detail::places_of(each, 300, problem.polygon.s.back());
-        best = std::min(best, reference(path, p, jerk, places).time());
+        const auto arc_lengths = duet::detail::arc_lengths_of(each, 300, problem.polygon.s.back());
+        best = std::min(best, reference(path, p, jerk, arc_lengths).time());
       }
       sampled.add(motion.duration() / best, seed);
       const auto fine = duet::time_optimal_trajectory(p.waypoints, p.velocity, p.acceleration,
                                                       {.min_intervals = 2400, .jerk = limits});
       finer.add(motion.duration() / fine.duration(), seed);
       const std::vector<vector> ends{p.waypoints[0], p.waypoints[1]};
-      const vector way = ends[1] - ends[0];
-      const auto least = [&](const vector& limit) {
-        return limit.cwiseQuotient(way.cwiseAbs()).minCoeff();
+      const vector displacement = ends[1] - ends[0];
+      const auto min_ratio = [&](const vector& limit) {
+        return limit.cwiseQuotient(displacement.cwiseAbs()).minCoeff();
       };
-      straight.add(timed(ends).duration() /
-                       seven_phases(1, least(p.velocity), least(p.acceleration), least(jerk)),
+      straight.add(timed(ends).duration() / seven_phases(1, min_ratio(p.velocity),
+                                                         min_ratio(p.acceleration),
+                                                         min_ratio(jerk)),
                    seed);
     }
     std::printf("| %s | %.2f ", kind.name, longer.sum / seeds);

@@ -25,18 +25,18 @@ using timing = duet::detail::time_parametrisation_input<-16>;
 using motion = duet::detail::timed_path<vector>;
 
 /// Where a motion is at a time, and how fast.
-std::array<double, 2> to_tip_pose(const motion& path, double t) {
+std::array<double, 2> state_at(const motion& path, double t) {
   double s = 0;
   std::size_t i = 0;
-  for (; i + 1 < path.pieces.size() && path.pieces[i + 1].law.time <= t; ++i) {
+  for (; i + 1 < path.pieces.size() && path.pieces[i + 1].scaling.time <= t; ++i) {
     s += path.pieces[i].path.length;
   }
-  const auto place = path.pieces[i].law.at(t, path.pieces[i].path.length);
-  return {s + place.s, place.speed};
+  const auto state = path.pieces[i].scaling.at(t, path.pieces[i].path.length);
+  return {s + state.s, state.speed};
 }
 
 /// The largest share of a limit at 1000 times.
-double largest_share(const duet::joint_trajectory<-16>& q, const timing& limits) {
+double max_fraction(const duet::joint_trajectory<-16>& q, const timing& limits) {
   double result = 0;
   for (int i = 0; i <= 1000; ++i) {
     const double t = q.duration() * i / 1000;
@@ -49,11 +49,11 @@ double largest_share(const duet::joint_trajectory<-16>& q, const timing& limits)
 }
 
 /// The problem of a piece from one time to another, whose curve becomes that of the piece.
-timing piece_of(timing problem, curve& path, const motion& whole, double from, double to) {
-  const bool starts = from <= 0, ends = to >= whole.duration;
+timing part_of(timing problem, curve& path, const motion& complete, double from, double to) {
+  const bool starts = from <= 0, ends = to >= complete.duration;
   auto& s = problem.polygon.s;
-  const auto [first, first_speed] = starts ? std::array{0.0, 0.0} : to_tip_pose(whole, from);
-  const auto [last, last_speed] = ends ? std::array{s.back(), 0.0} : to_tip_pose(whole, to);
+  const auto [first, first_speed] = starts ? std::array{0.0, 0.0} : state_at(complete, from);
+  const auto [last, last_speed] = ends ? std::array{s.back(), 0.0} : state_at(complete, to);
   curve piece;
   std::vector<double> knots{0};
   for (std::size_t e = 0; e < path.size(); ++e) {
@@ -64,7 +64,7 @@ timing piece_of(timing problem, curve& path, const motion& whole, double from, d
     }
   }
   path = piece;
-  problem.polygon.s = problem.polygon.given_at = knots;
+  problem.polygon.s = problem.polygon.waypoint_s = knots;
   problem.waypoints = knots.size();
   problem.initial_speed = first_speed;
   problem.final_speed = last_speed;
@@ -75,9 +75,9 @@ void compare(unsigned seeds) {
   std::printf("| | pieces | refused | duration | longest (seed) | largest share | ms | longest |\n"
               "|---|---|---|---|---|---|---|---|\n");
   for (const family& kind : families) {
-    statistics longer, share, slowest;
+    statistics longer, fraction, slowest;
     stopwatch watch;
-    int pieces = 0, refused = 0;
+    int pieces = 0, infeasible = 0;
     for (unsigned seed = 1; seed <= seeds; ++seed) {
       const problem p = problem_of(kind, seed);
       random_source random(seed + 1000);
@@ -86,11 +86,11 @@ void compare(unsigned seeds) {
         jerk.push_back(random.log_uniform(3, 300));
       }
       const timing problem =
-          duet::detail::timing_problem_of(p.waypoints, p.velocity, p.acceleration,
-                                          duet::time_parametrisation_options{.jerk = jerk});
-      const curve path = duet::detail::hermite_curve(problem.polygon,
-                                                     duet::detail::smooth_slopes(problem.polygon));
-      const motion whole = duet::detail::timed_within_jerks(problem, path);
+          duet::detail::validated_input(p.waypoints, p.velocity, p.acceleration,
+                                        duet::time_parametrisation_options{.jerk = jerk});
+      const curve path = duet::detail::hermite_curve(
+          problem.polygon, duet::detail::natural_cubic_slopes(problem.polygon));
+      const motion complete = duet::detail::timed_within_jerks(problem, path);
       for (int k = 0; k < 4; ++k) {
         double from = random.uniform(0, .99), to = random.uniform(from + .01, 1);
         if (k == 1) { // short
@@ -98,10 +98,10 @@ void compare(unsigned seeds) {
         } else if (k == 2) {
           (seed % 2 == 0 ? from : to) = seed % 2 == 0 ? 0 : 1;
         }
-        const double time = (to - from) * whole.duration;
+        const double time = (to - from) * complete.duration;
         curve piece = path;
         const timing part =
-            piece_of(problem, piece, whole, from * whole.duration, to * whole.duration);
+            part_of(problem, piece, complete, from * complete.duration, to * complete.duration);
         ++pieces;
         try {
           stopwatch single;
@@ -109,15 +109,15 @@ void compare(unsigned seeds) {
               watch.of([&] { return single.of([&] { return duet::detail::timed(part, piece); }); });
           slowest.add(single.median(), seed);
           longer.add(q.duration() / time, seed);
-          share.add(largest_share(q, part), seed);
+          fraction.add(max_fraction(q, part), seed);
         } catch (const duet::invalid_input&) {
-          ++refused;
+          ++infeasible;
         }
       }
     }
     std::printf("| %s | %d | %d | %.4f | %.4f (%u) | 1 %+.0e | %.0f | %.0f |\n", kind.name, pieces,
-                refused, longer.sum / (pieces - refused), longer.worst, longer.seed,
-                share.worst - 1, watch.median(), slowest.worst);
+                infeasible, longer.sum / (pieces - infeasible), longer.worst, longer.seed,
+                fraction.worst - 1, watch.median(), slowest.worst);
     std::fflush(stdout);
   }
 }

@@ -44,13 +44,13 @@ struct robot {
 /// Shoulder and wrist spherical, or not: `shoulder` between axes 1 and 3, `elbow` and `wrist`
 /// across.
 arm_chain redundant_arm(double shoulder, double elbow, double wrist) {
-  constexpr double quarter = pi / 2;
-  const std::array<dh_row<>, 7> rows{{{.d = .3, .alpha = -quarter},
-                                      {.d = shoulder, .alpha = quarter},
-                                      {.a = elbow, .d = .4, .alpha = quarter},
-                                      {.a = -elbow, .alpha = -quarter},
-                                      {.d = .35, .alpha = -quarter},
-                                      {.a = wrist, .alpha = quarter},
+  constexpr double quarter_turn = pi / 2;
+  const std::array<dh_row<>, 7> rows{{{.d = .3, .alpha = -quarter_turn},
+                                      {.d = shoulder, .alpha = quarter_turn},
+                                      {.a = elbow, .d = .4, .alpha = quarter_turn},
+                                      {.a = -elbow, .alpha = -quarter_turn},
+                                      {.d = .35, .alpha = -quarter_turn},
+                                      {.a = wrist, .alpha = quarter_turn},
                                       {.d = .1}}};
   return from_dh(rows);
 }
@@ -63,26 +63,28 @@ constexpr double resolution = .1;
 
 bool is_on_curve(const component& curve, const joints& x) {
   const std::size_t n = curve.joints.size();
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n; ++k) {
     const joints to_x = difference(x, curve.joints[k]),
-                 way = difference(curve.joints[(k + 1) % n], curve.joints[k]);
-    const bool is_piece = way.norm() > 0 && (k + 1 < n || curve.is_closed);
-    const double part = is_piece ? std::clamp(to_x.dot(way) / way.squaredNorm(), 0., 1.) : 0;
-    least = std::min(least, (to_x - part * way).norm());
+                 chord = difference(curve.joints[(k + 1) % n], curve.joints[k]);
+    const bool is_piece = chord.norm() > 0 && (k + 1 < n || curve.is_closed);
+    const double fraction =
+        is_piece ? std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.) : 0;
+    min_distance = std::min(min_distance, (to_x - fraction * chord).norm());
   }
-  return least < resolution * resolution; // a chord is nearer, and what singularities leave as well
+  return min_distance <
+         resolution * resolution; // a chord is nearer, and what singularities leave as well
 }
 
 /// Straight lines between angles are on the tori of coaxial joints; of others it is not tried.
 bool is_on_torus(const arm_chain& arm, const component& torus, const joints& x) {
   const auto goal = arm.pose(x);
   return std::any_of(torus.joints.begin(), torus.joints.end(), [&](const joints& s) {
-    const joints way = difference(s, x);
+    const joints chord = difference(s, x);
     return [&] {
-      for (const double part : {.13, .37, .5, .71, .91}) {
-        const auto left = pose_error_between(arm.pose(joints(x + part * way)), goal);
-        if (left.translation > 1e-5 || left.rotation > 1e-5) {
+      for (const double fraction : {.13, .37, .5, .71, .91}) {
+        const auto error = pose_error_between(arm.pose(joints(x + fraction * chord)), goal);
+        if (error.translation > 1e-5 || error.rotation > 1e-5) {
           return false;
         }
       }
@@ -129,32 +131,32 @@ void row(const robot& each, const family& kind, int count, std::uint64_t seed, b
     const std::clock_t before = std::clock();
     const auto all = self_motion_curves(arm, goal, {.resolution = resolution});
     time += std::clock() - before;
-    int open_here = 0, missed_here = 0;
+    int open_curves = 0, missed_solutions = 0;
     for (const component& each_of : all) {
       curves += each_of.dimension == 1;
       points += each_of.dimension == 0;
       surfaces += each_of.dimension > 1;
-      open_here += each_of.dimension == 1 && !each_of.is_closed;
+      open_curves += each_of.dimension == 1 && !each_of.is_closed;
     }
     for (int start = 0; start < 100; ++start) {
       joints from;
       for (double& x : from) {
         x = random.uniform(-pi, pi);
       }
-      const auto found =
+      const auto result =
           inverse_kinematics(arm, goal, from, {.tolerance = 1e-12, .max_restarts = 0});
-      missed_here += found.reason == stop_reason::reached &&
-                     std::none_of(all.begin(), all.end(), [&](const component& part) {
-                       return part.dimension > 1 ? is_on_torus(arm, part, found.joints)
-                                                 : is_on_curve(part, found.joints);
-                     });
+      missed_solutions += result.reason == stop_reason::reached &&
+                          std::none_of(all.begin(), all.end(), [&](const component& part) {
+                            return part.dimension > 1 ? is_on_torus(arm, part, result.joints)
+                                                      : is_on_curve(part, result.joints);
+                          });
     }
-    open += open_here;
-    missed += missed_here > 0;
+    open += open_curves;
+    missed += missed_solutions > 0;
     none += all.empty();
-    if (is_listed && (open_here + missed_here > 0 || all.empty())) {
+    if (is_listed && (open_curves + missed_solutions > 0 || all.empty())) {
       std::printf("  pose %d: %zu components, %d open, %d solutions on none\n", k, all.size(),
-                  open_here, missed_here);
+                  open_curves, missed_solutions);
     }
   }
   std::printf("%-16s %-22s %5d %6d %6d %8d %5d %5d %6d %8.3f\n", each.name, kind.name, poses,

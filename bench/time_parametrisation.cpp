@@ -25,13 +25,13 @@ namespace {
 
 using namespace timing_bench;
 
-curve monotone(const problem& p) {
+curve pchip_curve(const problem& p) {
   const duet::detail::joint_polygon<vector> polygon(p.waypoints);
-  return duet::detail::hermite_curve(polygon, duet::detail::monotone_slopes(polygon));
+  return duet::detail::hermite_curve(polygon, duet::detail::pchip_slopes(polygon));
 }
 
 /// The natural spline over the length of the polygon, by its second derivatives.
-curve natural(const problem& p) {
+curve natural_cubic_curve(const problem& p) {
   std::vector<vector> points;
   for (const vector& each : p.waypoints) {
     if (points.empty() || (each - points.back()).norm() > 1e-12) {
@@ -92,8 +92,8 @@ double reference(const curve& path, const vector& velocity, const vector& accele
       parts.push_back(std::move(next));
     }
   }
-  const auto range = [](const part& at, double x, double most) {
-    double low = 0, high = most;
+  const auto range = [](const part& at, double x, double max_squared_velocity) {
+    double low = 0, high = max_squared_velocity;
     for (const auto& [a, b, c] : at.bounds) {
       const double middle = -a * x / b, reach = std::abs(c / b);
       if (b != 0) {
@@ -106,11 +106,11 @@ double reference(const curve& path, const vector& velocity, const vector& accele
     return std::pair(low, high);
   };
   const std::size_t n = parts.size();
-  std::vector<double> most(n + 1, 0.0);
+  std::vector<double> max_squared_velocity(n + 1, 0.0);
   for (std::size_t i = n; i-- > 1;) {
     double low = 0, high = std::min(parts[i].cap_0, parts[i - 1].cap_1);
     const auto is_allowed = [&](double x) {
-      const auto [from, to] = range(parts[i], x, most[i + 1]);
+      const auto [from, to] = range(parts[i], x, max_squared_velocity[i + 1]);
       return from <= to;
     };
     if (!is_allowed(high)) {
@@ -121,11 +121,11 @@ double reference(const curve& path, const vector& velocity, const vector& accele
     } else {
       low = high;
     }
-    most[i] = low;
+    max_squared_velocity[i] = low;
   }
   double time = 0, x = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    const double next = std::max(0.0, range(parts[i], x, most[i + 1]).second);
+    const double next = std::max(0.0, range(parts[i], x, max_squared_velocity[i + 1]).second);
     time += 2 * parts[i].h / (std::sqrt(x) + std::sqrt(next));
     x = next;
   }
@@ -145,11 +145,12 @@ void compare(unsigned seeds) {
         return duet::time_optimal_trajectory(p.waypoints, p.velocity, p.acceleration, options)
             .duration();
       };
-      const double by_natural = reference(natural(p), p.velocity, p.acceleration);
+      const double natural_time = reference(natural_cubic_curve(p), p.velocity, p.acceleration);
       const double time = watch.of([&] { return timed({}); });
-      same.add(time / reference(monotone(p), p.velocity, p.acceleration), seed);
-      spline.add(time / by_natural, seed);
-      smooth.add(timed({.curve = duet::waypoint_interpolation::smooth}) / by_natural, seed);
+      same.add(time / reference(pchip_curve(p), p.velocity, p.acceleration), seed);
+      spline.add(time / natural_time, seed);
+      smooth.add(timed({.curve = duet::waypoint_interpolation::natural_cubic}) / natural_time,
+                 seed);
     }
     std::printf("| %s ", kind.name);
     for (const statistics& each : {same, spline, smooth}) {

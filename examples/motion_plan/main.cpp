@@ -67,9 +67,9 @@ bool run(const problem& p) {
   example::require_folder(p.out);
   const plan_type found = plan(p);
   const Eigen::VectorXd acceleration = Eigen::VectorXd::Constant(p.arm.size(), p.acceleration);
-  duet::time_parametrisation_options options{.curve = p.jerk
-                                                          ? duet::waypoint_interpolation::smooth
-                                                          : duet::waypoint_interpolation::monotone};
+  duet::time_parametrisation_options options{
+      .curve = p.jerk ? duet::waypoint_interpolation::natural_cubic
+                      : duet::waypoint_interpolation::pchip};
   const auto without = duet::time_optimal_trajectory(found, velocities(p), acceleration, options);
   if (p.jerk) {
     options.jerk.assign(std::size_t(p.arm.size()), *p.jerk);

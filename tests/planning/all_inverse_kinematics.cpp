@@ -34,11 +34,11 @@ using result = all_inverse_kinematics_result<-16>;
 struct arm_kind {
   const char* name;
   bool parallel_2_3 = false, meet_1_2 = false, meet_4_5 = false, right_angles = false;
-  std::vector<std::size_t> sliding = {};
+  std::vector<std::size_t> prismatic = {};
   int meeting = -1, parallel = -1; ///< the first of three axes
   solution_method method = solution_method::elimination;
-  int most = 16;       ///< solutions
-  bool certain = true; ///< is their number?
+  int max_solutions = 16; ///< solutions
+  bool is_certain = true; ///< is their number?
 };
 
 /// Joints in random places, and in special ones to each other.
@@ -71,7 +71,7 @@ chain random_arm(const arm_kind& kind, duet_test::random_source& random) {
           k == 1 ? quaternion<double>(1) : quaternion<double>(0, 1, 0, 0);
     }
   }
-  for (const std::size_t i : kind.sliding) {
+  for (const std::size_t i : kind.prismatic) {
     joints[i].kind = joint_kind::prismatic;
   }
   const auto tool = random.direction<4>();
@@ -82,8 +82,8 @@ chain random_arm(const arm_kind& kind, duet_test::random_source& random) {
 vector configuration(const chain& arm, duet_test::random_source& random) {
   vector theta(arm.size());
   for (int i = 0; i < arm.size(); ++i) {
-    const double most = arm.kind(i) == joint_kind::prismatic ? 1 : pi;
-    theta[i] = random.uniform(-most, most);
+    const double max_solutions = arm.kind(i) == joint_kind::prismatic ? 1 : pi;
+    theta[i] = random.uniform(-max_solutions, max_solutions);
   }
   return theta;
 }
@@ -99,7 +99,7 @@ double distance(const chain& arm, const vector& a, const vector& b) {
   return largest;
 }
 
-bool holds(const chain& arm, const result& found, const vector& theta, double tolerance = 1e-7) {
+bool contains(const chain& arm, const result& found, const vector& theta, double tolerance = 1e-7) {
   return std::any_of(found.solutions.begin(), found.solutions.end(),
                      [&](const auto& s) { return distance(arm, s.joints, theta) < tolerance; });
 }
@@ -110,7 +110,7 @@ double smallest_singular_value(const chain& arm, const vector& theta) {
 }
 
 /// How far the tip is from the goal, by matrices.
-double gap_by_matrices(const chain& arm, const vector& theta, const dual_quaternion<double>& goal) {
+double matrix_distance(const chain& arm, const vector& theta, const dual_quaternion<double>& goal) {
   return (transform_matrix(arm.pose(theta)) - transform_matrix(goal)).norm();
 }
 
@@ -119,7 +119,7 @@ void check_solutions(const chain& arm, const result& found, const dual_quaternio
   for (std::size_t k = 0; k < found.solutions.size(); ++k) {
     const auto& s = found.solutions[k];
     CHECK(s.residual <= 1e-12);
-    CHECK(gap_by_matrices(arm, s.joints, goal) <= 1e-11);
+    CHECK(matrix_distance(arm, s.joints, goal) <= 1e-11);
     CHECK(s.multiplicity == 1);
     CHECK(s.smallest_singular_value ==
           doctest::Approx(smallest_singular_value(arm, s.joints)).epsilon(1e-9));
@@ -150,9 +150,10 @@ chain manseur_doty() {
 }
 
 TEST_CASE("an arm with sixteen solutions") {
-  Eigen::Matrix3d turn;
-  turn << -.760117, -.641689, .102262, .133333, 0, .991071, -.635959, .766965, .085558;
-  const auto goal = normalized(pose(from_rotation_matrix(turn), Eigen::Vector3d(-1.140175, 0, 0)));
+  Eigen::Matrix3d rotation;
+  rotation << -.760117, -.641689, .102262, .133333, 0, .991071, -.635959, .766965, .085558;
+  const auto goal =
+      normalized(pose(from_rotation_matrix(rotation), Eigen::Vector3d(-1.140175, 0, 0)));
   const chain arm = manseur_doty();
   const result found = all_inverse_kinematics(arm, goal);
   CHECK(found.solutions.size() == 16);
@@ -171,14 +172,14 @@ void check_kind(const arm_kind& kind, int count) {
     const vector theta = configuration(arm, random);
     const auto goal = arm.pose(theta);
     const result found = all_inverse_kinematics(arm, goal);
-    CHECK(holds(arm, found, theta));
-    CHECK((found.is_complete || !kind.certain));
+    CHECK(contains(arm, found, theta));
+    CHECK((found.is_complete || !kind.is_certain));
     CHECK(found.method == kind.method);
     CHECK(found.solutions.size() % 2 == 0);
     const int all = int(found.solutions.size()) + found.complex_solutions;
-    CHECK(all <= kind.most);
+    CHECK(all <= kind.max_solutions);
     if (name == "general" || kind.method != solution_method::elimination) {
-      CHECK(all == kind.most);
+      CHECK(all == kind.max_solutions);
     }
     check_solutions(arm, found, goal);
   }
@@ -195,17 +196,17 @@ TEST_CASE("the coordinates that the goal is made of are found") {
               .meet_4_5 = true,
               .right_angles = true},
              20);
-  check_kind({.name = "1 slides", .sliding = {0}}, 10);
-  check_kind({.name = "3 slides", .sliding = {2}}, 10);
-  check_kind({.name = "6 slides", .sliding = {5}}, 10);
+  check_kind({.name = "1 slides", .prismatic = {0}}, 10);
+  check_kind({.name = "3 slides", .prismatic = {2}}, 10);
+  check_kind({.name = "6 slides", .prismatic = {5}}, 10);
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       CAPTURE(i);
       CAPTURE(j);
       check_kind({.name = "two slide",
-                  .sliding = {i, j},
+                  .prismatic = {i, j},
                   .method = solution_method::two_prismatic,
-                  .most = 8},
+                  .max_solutions = 8},
                  6);
     }
   }
@@ -217,12 +218,12 @@ TEST_CASE("closed forms") {
     check_kind({.name = "three axes meet",
                 .meeting = first,
                 .method = solution_method::spherical_wrist,
-                .most = 8},
+                .max_solutions = 8},
                20);
     check_kind({.name = "three axes are parallel",
                 .parallel = first,
                 .method = solution_method::parallel_axes,
-                .most = 8},
+                .max_solutions = 8},
                20);
   }
   check_kind({.name = "as in industry",
@@ -231,14 +232,15 @@ TEST_CASE("closed forms") {
               .right_angles = true,
               .meeting = 3,
               .method = solution_method::spherical_wrist,
-              .most = 8},
+              .max_solutions = 8},
              20);
-  for (const auto& sliding : {std::vector<std::size_t>{0, 1, 2}, std::vector<std::size_t>{0, 2, 4},
-                              std::vector<std::size_t>{2, 3, 5}}) {
+  for (const auto& prismatic :
+       {std::vector<std::size_t>{0, 1, 2}, std::vector<std::size_t>{0, 2, 4},
+        std::vector<std::size_t>{2, 3, 5}}) {
     check_kind({.name = "three slide",
-                .sliding = sliding,
+                .prismatic = prismatic,
                 .method = solution_method::three_prismatic,
-                .most = 2},
+                .max_solutions = 2},
                10);
   }
 }
@@ -256,35 +258,37 @@ TEST_CASE("axes that all meet in a point, two of them of slides") {
   const auto goal = arm.pose(theta);
   const result found = all_inverse_kinematics(arm, goal);
   CHECK(found.is_complete);
-  CHECK(holds(arm, found, theta));
+  CHECK(contains(arm, found, theta));
   check_solutions(arm, found, goal);
 }
 
 /// Rounding takes such a tip as far from its goal as the ways are long.
 TEST_CASE("slides thousands of times as long as the arm") {
   duet_test::random_source random(9);
-  for (const auto& sliding : {std::vector<std::size_t>{0, 4}, std::vector<std::size_t>{3, 5},
-                              std::vector<std::size_t>{1, 2}, std::vector<std::size_t>{0, 2, 4}}) {
-    for (const double way : {1e3, 3e4, 1e6}) {
-      CAPTURE(way);
-      const chain arm = random_arm({.name = "", .sliding = sliding}, random);
+  for (const auto& prismatic :
+       {std::vector<std::size_t>{0, 4}, std::vector<std::size_t>{3, 5},
+        std::vector<std::size_t>{1, 2}, std::vector<std::size_t>{0, 2, 4}}) {
+    for (const double scale : {1e3, 3e4, 1e6}) {
+      CAPTURE(scale);
+      const chain arm = random_arm({.name = "", .prismatic = prismatic}, random);
       vector theta = configuration(arm, random);
-      for (const std::size_t i : sliding) {
-        theta[Eigen::Index(i)] *= way;
+      for (const std::size_t i : prismatic) {
+        theta[Eigen::Index(i)] *= scale;
       }
       const auto goal = arm.pose(theta);
       const result found = all_inverse_kinematics(arm, goal);
       CHECK(found.is_complete);
-      CHECK(holds(arm, found, theta, 1e-11 * way));
+      CHECK(contains(arm, found, theta, 1e-11 * scale));
       const double size = detail::chain_screws(arm, (0 * theta).eval(), -1).size;
       for (const auto& s : found.solutions) {
-        double longest = size;
-        for (const std::size_t i : sliding) {
-          longest = std::max(longest, std::abs(s.joints[Eigen::Index(i)]));
+        double max_displacement = size;
+        for (const std::size_t i : prismatic) {
+          max_displacement = std::max(max_displacement, std::abs(s.joints[Eigen::Index(i)]));
         }
-        const auto left = pose_error_between(arm.pose(s.joints), goal);
+        const auto error = pose_error_between(arm.pose(s.joints), goal);
         CHECK(s.residual ==
-              doctest::Approx(std::max(left.translation / longest, left.rotation)).epsilon(1e-9));
+              doctest::Approx(std::max(error.translation / max_displacement, error.rotation))
+                  .epsilon(1e-9));
         CHECK(s.residual <= 3e-13);
       }
     }
@@ -337,7 +341,7 @@ TEST_CASE("zeros that crowd in one order") {
     const result found = all_inverse_kinematics(arm, goal);
     CHECK(found.is_complete);
     CHECK(found.solutions.size() == 8);
-    CHECK(holds(arm, found, theta));
+    CHECK(contains(arm, found, theta));
     check_solutions(arm, found, goal);
   }
 }
@@ -364,7 +368,7 @@ TEST_CASE("goals made of quarter turns") {
     const result found = all_inverse_kinematics(arm, goal);
     CHECK(found.is_complete);
     CHECK(found.solutions.size() == count);
-    CHECK(holds(arm, found, theta));
+    CHECK(contains(arm, found, theta));
     check_solutions(arm, found, goal);
   };
   check(a, {1, 2, -1, 2, 2, 1}, q, 10);
@@ -393,11 +397,11 @@ TEST_CASE("singular goals are not called unreachable") {
                                                      {.d = .3, .alpha = -q},
                                                      {.a = .003, .alpha = q},
                                                      {.d = .1}}});
-  const auto check = [&](int number) {
-    CAPTURE(number);
+  const auto check = [&](int code) {
+    CAPTURE(code);
     vector theta(6);
-    for (int i = 0, rest = number; i < 6; ++i, rest /= 4) {
-      theta[i] = (rest % 4 - 1) * q;
+    for (int i = 0, remaining = code; i < 6; ++i, remaining /= 4) {
+      theta[i] = (remaining % 4 - 1) * q;
     }
     const result found = all_inverse_kinematics(arm, arm.pose(theta));
     CHECK_FALSE((found.solutions.empty() && found.is_complete));
@@ -457,7 +461,7 @@ TEST_CASE("pairs of solutions beside singular ones") {
     const result found = all_inverse_kinematics(at.arm, at.arm.pose(at.theta));
     CHECK(found.is_complete);
     CHECK(found.solutions.size() == count);
-    CHECK(holds(at.arm, found, at.theta));
+    CHECK(contains(at.arm, found, at.theta));
   };
   const dh_task crx{{{{0, .245, -1}, {.71, 0, 2}, {0, 0, -1}, {0, .54, 1}, {0, .15, -1}, {0, .16}}},
                     {-20, 9, -21, 25, -7, 0}};
@@ -468,15 +472,15 @@ TEST_CASE("pairs of solutions beside singular ones") {
   const auto at = arm_of(folded, halves, std::identity());
   const vector singular = pi / 2 * (vector(6) << 1, 0, -1, -1, 0, 2).finished();
   const result found = all_inverse_kinematics(at.arm, at.arm.pose(singular));
-  CHECK(holds(at.arm, found, singular, 1e-5));
-  CHECK(holds(at.arm, found, at.theta, 1e-5));
+  CHECK(contains(at.arm, found, singular, 1e-5));
+  CHECK(contains(at.arm, found, at.theta, 1e-5));
 }
 
 TEST_CASE("angles within a turn") {
-  const double turn = 2 * pi;
+  const double rotation = 2 * pi;
   for (const double start : {0., .3, -2., pi, 3 * pi, 5 * pi, 1e5}) {
     for (const double x : {start, -start, std::nextafter(start, 0), std::nextafter(start, 1e9)}) {
-      const double nearest = std::remainder(x, turn);
+      const double nearest = std::remainder(x, rotation);
       CHECK(detail::wrap_angle(x) == (nearest <= -pi ? pi : nearest));
     }
   }
@@ -496,7 +500,7 @@ TEST_CASE("closed forms and elimination") {
     const result found = all_inverse_kinematics(arm, goal);
     const detail::branches_of_chain<chain> branches(arm, goal);
     for (const auto& x : detail::eliminated(branches.loop()).solutions) {
-      CHECK(holds(arm, found, branches(x).joints));
+      CHECK(contains(arm, found, branches(x).joints));
       ++both;
     }
     all += int(found.solutions.size());
@@ -524,7 +528,7 @@ TEST_CASE("arms in use") {
     const result found = all_inverse_kinematics(arm, goal);
     CHECK(found.solutions.size() == 8);
     CHECK(found.is_complete);
-    CHECK(holds(arm, found, theta));
+    CHECK(contains(arm, found, theta));
     check_solutions(arm, found, goal);
   }
   CHECK(all_inverse_kinematics(ur5e, ur5e.pose(theta)).method == solution_method::parallel_axes);
@@ -560,15 +564,16 @@ TEST_CASE("beside a singularity what is missing is not called complete") {
     for (int k = 0; k < 10; ++k) {
       vector theta = configuration(arm, random);
       for (const int joint : {2, 4}) { // the elbow and the wrist
-        for (const double away : {1e-1, 1e-2, 1e-4, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-9, 0.}) {
+        for (const double offset :
+             {1e-1, 1e-2, 1e-4, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-9, 0.}) {
           CAPTURE(joint);
-          CAPTURE(away);
+          CAPTURE(offset);
           vector at = theta;
-          at[joint] = away;
+          at[joint] = offset;
           const result found = all_inverse_kinematics(arm, arm.pose(at));
-          CHECK(
-              (holds(arm, found, at, 2e-6 + 1e-14 / std::max(away, 1e-30)) || !found.is_complete));
-          CHECK(found.is_complete == !(joint == 4 && away == 0));
+          CHECK((contains(arm, found, at, 2e-6 + 1e-14 / std::max(offset, 1e-30)) ||
+                 !found.is_complete));
+          CHECK(found.is_complete == !(joint == 4 && offset == 0));
         }
       }
     }
@@ -585,7 +590,7 @@ TEST_CASE("whatever a search from random starts finds is among them") {
     const auto one =
         inverse_kinematics(arm, goal, configuration(arm, random), {.tolerance = 1e-10});
     if (one.reason == stop_reason::reached) {
-      CHECK(holds(arm, found, one.joints, 1e-6));
+      CHECK(contains(arm, found, one.joints, 1e-6));
       for (std::size_t i = 0; i < is_met.size(); ++i) {
         is_met[i] = is_met[i] || distance(arm, one.joints, found.solutions[i].joints) < 1e-6;
       }
@@ -618,20 +623,20 @@ TEST_CASE("branches that meet") {
       const double middle = (low + high) / 2;
       (determinant(low) * determinant(middle) > 0 ? low : high) = middle;
     }
-    for (const double away : {0., 1e-9, 1e-5, 1e-3}) {
+    for (const double offset : {0., 1e-9, 1e-5, 1e-3}) {
       CAPTURE(k);
-      CAPTURE(away);
-      theta[3] = low + away;
+      CAPTURE(offset);
+      theta[3] = low + offset;
       const auto goal = arm.pose(theta);
       const result found = all_inverse_kinematics(arm, goal);
-      CHECK(holds(arm, found, theta, 2e-6));
+      CHECK(contains(arm, found, theta, 2e-6));
       int count = 0, nearest = 0;
       for (const auto& s : found.solutions) {
         count += s.multiplicity;
         nearest = distance(arm, s.joints, theta) < 2e-6 ? s.multiplicity : nearest;
       }
       CHECK(count % 2 == 0);
-      CHECK(nearest == (away < 1e-8 ? 2 : 1));
+      CHECK(nearest == (offset < 1e-8 ? 2 : 1));
     }
   }
 }
@@ -669,7 +674,7 @@ TEST_CASE("what is no goal, and no arm of six joints") {
                        invalid_input);
   duet_test::random_source random(1);
   CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(
-                           random_arm({.name = "", .sliding = {0, 1, 2, 3}}, random), goal)),
+                           random_arm({.name = "", .prismatic = {0, 1, 2, 3}}, random), goal)),
                        "duet: all_inverse_kinematics: 4 sliding joints, of which 3 are the most",
                        invalid_input);
   std::array<joint<>, 6> joints;

@@ -50,14 +50,14 @@ chain with_wrist(duet_test::random_source& random, double tilt) {
 }
 
 /// Three parallel axes; the sixth is parallel to them where the coordinate of the fifth is 0.
-chain with_parallel_axes(duet_test::random_source& random, bool is_apart) {
+chain with_parallel_axes(duet_test::random_source& random, bool has_offset) {
   const auto length = [&] { return random.uniform(.1, 1); };
   return from_dh(
       std::array<dh_row<>, 6>{{{.d = length(), .alpha = pi / 2},
                                {.a = length()},
                                {.a = length()},
                                {.d = length(), .alpha = pi / 2},
-                               {.a = is_apart ? length() : 0., .d = length(), .alpha = -pi / 2},
+                               {.a = has_offset ? length() : 0., .d = length(), .alpha = -pi / 2},
                                {.d = length()}}});
 }
 
@@ -80,21 +80,21 @@ struct skew_elbow {
 };
 /// \param miss  by which it comes no nearer than that
 /// \param apart  how far the axes of the shoulder are
-skew_elbow with_skew_elbow(duet_test::random_source& random, double miss, double apart = 0) {
+skew_elbow with_skew_elbow(duet_test::random_source& random, double miss, double separation = 0) {
   const auto angle = [&] { return random.uniform(.6, 1.5); };
   const double a2 = random.uniform(.2, 1), d2 = random.uniform(-.5, .5), alpha2 = angle(),
                alpha3 = angle(), across = d2 * std::sin(alpha2), wrist = angle();
   // From the third axis the shoulder is as far as the wrist, and at the same height.
   const double distance = std::hypot(a2, across), a3 = random.uniform(-.9, .9) * distance,
-               beside = std::sqrt(distance * distance - a3 * a3), d4 = beside / std::sin(alpha3),
+               normal = std::sqrt(distance * distance - a3 * a3), d4 = normal / std::sin(alpha3),
                d3 = -d2 * std::cos(alpha2) - d4 * std::cos(alpha3);
-  return {{{{.a = apart, .d = random.uniform(.1, 1), .alpha = angle()},
+  return {{{{.a = separation, .d = random.uniform(.1, 1), .alpha = angle()},
             {.a = a2, .d = d2, .alpha = alpha2},
             {.a = a3, .d = d3 + miss, .alpha = alpha3},
             {.d = d4, .alpha = -wrist},
             {.alpha = wrist},
             {.d = random.uniform(.1, 1)}}},
-          std::atan2(-across, -a2) - std::atan2(-beside, a3)};
+          std::atan2(-across, -a2) - std::atan2(-normal, a3)};
 }
 
 /// The arm from its tip to its base: coordinates are in the other order, times −1.
@@ -124,12 +124,14 @@ double distance(const joints& a, const joints& b) {
 }
 
 /// The rotation vector and the way to a goal, to first order.
-wide_joints way_to(const dual_quaternion<real_50>& goal, const dual_quaternion<real_50>& tip) {
-  const auto turn = rotation(goal) * conj(rotation(tip));
-  const Eigen::Matrix<real_50, 3, 1> way = translation(goal) - translation(tip);
+wide_joints error_twist_to(const dual_quaternion<real_50>& goal,
+                           const dual_quaternion<real_50>& tip) {
+  const auto relative = rotation(goal) * conj(rotation(tip));
+  const Eigen::Matrix<real_50, 3, 1> error = translation(goal) - translation(tip);
   wide_joints twist;
-  const real_50 twice = turn.w() < 0 ? -2 : 2;
-  twist << way[0], way[1], way[2], twice * turn.x(), twice * turn.y(), twice * turn.z();
+  const real_50 twice = relative.w() < 0 ? -2 : 2;
+  twist << error[0], error[1], error[2], twice * relative.x(), twice * relative.y(),
+      twice * relative.z();
   return twist;
 }
 
@@ -137,7 +139,7 @@ wide_joints way_to(const dual_quaternion<real_50>& goal, const dual_quaternion<r
 double wrist_of(const chain& arm) {
   const detail::chain_screws axes(arm, joints::Zero().eval(), -1);
   const auto to_wrist = axes.size * detail::nearest_point(axes.joints[5], axes.joints[4]) +
-                        axes.middle - axes.tip.translation;
+                        axes.centre - axes.tip.translation;
   return dot(axes.joints[5].axis, to_wrist);
 }
 
@@ -150,8 +152,8 @@ wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goa
   wide_joints exact = theta.cast<real_50>();
   for (int k = 0; k < 12; ++k) {
     const auto tip = arm.pose(exact);
-    const wide_joints way = way_to(goal * to_wrist, tip * to_wrist);
-    if (way.norm() < 1e-40) {
+    const wide_joints error = error_twist_to(goal * to_wrist, tip * to_wrist);
+    if (error.norm() < 1e-40) {
       break;
     }
     const Eigen::Matrix<real_50, 3, 1> lever = translation(tip * to_wrist) - translation(tip);
@@ -159,31 +161,31 @@ wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goa
     for (int i = 0; i < 6; ++i) {
       all.col(i).head<3>() += all.col(i).tail<3>().cross(lever);
     }
-    exact += all.partialPivLu().solve(way);
+    exact += all.partialPivLu().solve(error);
   }
   return exact;
 }
 
 /// \param joint  whose coordinate is how far θ is from a singularity
 /// \param certain  as near as that it has to be certain that there are no others
-void check_beside(const chain& arm, joints theta, int joint, solution_method method,
-                  double certain = 1e-12, std::span<const double> how_far = distances) {
+void check_near(const chain& arm, joints theta, int joint, solution_method method,
+                double certain = 1e-12, std::span<const double> offsets = distances) {
   const double singular = theta[joint];
   for (const double side : {1., -1.}) {
     theta[joint] = singular + side * 2e-3;
     const int count = count_of(all_inverse_kinematics(arm, arm.pose(theta)));
-    for (const double away : how_far) {
+    for (const double offset : offsets) {
       CAPTURE(side);
-      CAPTURE(away);
-      theta[joint] = singular + side * away;
+      CAPTURE(offset);
+      theta[joint] = singular + side * offset;
       const result found = all_inverse_kinematics(arm, arm.pose(theta));
       CHECK(found.method == method);
       CHECK_FALSE(found.solutions.empty());
       for (const auto& s : found.solutions) {
         CHECK(s.residual <= 1e-12);
       }
-      const bool is_certain = away >= 1e-12;
-      CHECK((found.is_complete == is_certain || (is_certain && away < certain)));
+      const bool is_certain = offset >= 1e-12;
+      CHECK((found.is_complete == is_certain || (is_certain && offset < certain)));
       if (!is_certain) { // the joints move with the tip in place
         continue;
       }
@@ -195,7 +197,7 @@ void check_beside(const chain& arm, joints theta, int joint, solution_method met
         CHECK(s.multiplicity == 1);
         const double rounding = (1e-14 + 2 * s.residual) / s.smallest_singular_value;
         const wide_joints exact = exact_solution(arm, goal, s.joints);
-        CHECK(double(way_to(goal, arm.pose(exact)).norm()) < 1e-35);
+        CHECK(double(error_twist_to(goal, arm.pose(exact)).norm()) < 1e-35);
         CHECK(distance(exact.cast<double>(), s.joints) < rounding);
         met += distance(theta, s.joints) < std::min(rounding, .05); // others are .1 away
         for (const auto& other : found.solutions) {
@@ -214,14 +216,14 @@ double smallest_singular_value(const chain& arm, const joints& theta) {
 /// With one coordinate singular, beside which nothing else is.
 joints configuration(const chain& arm, duet_test::random_source& random, int joint,
                      double singular = 0) {
-  constexpr double beside = 2e-3;
+  constexpr double offset = 2e-3;
   joints theta;
   do {
     for (double& x : theta) {
       x = random.uniform(-pi, pi);
     }
-    theta[joint] = singular + beside;
-  } while (smallest_singular_value(arm, theta) < .02 * beside);
+    theta[joint] = singular + offset;
+  } while (smallest_singular_value(arm, theta) < .02 * offset);
   theta[joint] = singular;
   return theta;
 }
@@ -231,7 +233,7 @@ TEST_CASE("beside the singularity of a wrist") {
   for (int k = 0; k < 5; ++k) {
     CAPTURE(k);
     const chain arm = with_wrist(random, k < 3 ? pi / 2 : random.uniform(.5, 1.2));
-    check_beside(arm, configuration(arm, random, 4), 4, solution_method::spherical_wrist);
+    check_near(arm, configuration(arm, random, 4), 4, solution_method::spherical_wrist);
   }
 }
 
@@ -240,17 +242,17 @@ TEST_CASE("beside the singularity of a wrist after three parallel axes") {
   for (int k = 0; k < 5; ++k) {
     CAPTURE(k);
     const chain arm = with_parallel_axes(random, k >= 3);
-    check_beside(arm, configuration(arm, random, 4), 4, solution_method::parallel_axes);
+    check_near(arm, configuration(arm, random, 4), 4, solution_method::parallel_axes);
   }
 }
 
-void check_beside_fold(const chain& arm, int elbow, double fold, duet_test::random_source& random) {
+void check_near_fold(const chain& arm, int elbow, double fold, duet_test::random_source& random) {
   const std::span<const double> down_to_1e_12 = std::span(distances).first(12);
   joints theta = configuration(arm, random, elbow, fold);
-  check_beside(arm, theta, elbow, solution_method::spherical_wrist, 1e-8, down_to_1e_12);
-  for (const double away : {1e-14, 1e-16, 0.}) { // the joints move with the tip in place
-    CAPTURE(away);
-    theta[elbow] = fold + away;
+  check_near(arm, theta, elbow, solution_method::spherical_wrist, 1e-8, down_to_1e_12);
+  for (const double offset : {1e-14, 1e-16, 0.}) { // the joints move with the tip in place
+    CAPTURE(offset);
+    theta[elbow] = fold + offset;
     const result found = all_inverse_kinematics(arm, arm.pose(theta));
     CHECK_FALSE(found.is_complete);
     CHECK_FALSE(found.solutions.empty());
@@ -266,7 +268,7 @@ TEST_CASE("beside an elbow that is folded onto the shoulder") {
     CAPTURE(k);
     const double shoulder = k < 3 ? pi / 2 : random.uniform(.6, 1.5),
                  wrist = k % 2 == 0 ? pi / 2 : random.uniform(.6, 1.5);
-    check_beside_fold(with_folding_elbow(random, shoulder, wrist), 2, -pi / 2, random);
+    check_near_fold(with_folding_elbow(random, shoulder, wrist), 2, -pi / 2, random);
   }
 }
 
@@ -275,7 +277,7 @@ TEST_CASE("beside an elbow that is folded, with axes 2 and 3 not parallel") {
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
     const auto [rows, fold] = with_skew_elbow(random, 0);
-    check_beside_fold(from_dh(rows), 2, fold, random);
+    check_near_fold(from_dh(rows), 2, fold, random);
   }
 }
 
@@ -284,7 +286,7 @@ TEST_CASE("beside an elbow that folds a wrist of two axes onto a shoulder of thr
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
     const auto [rows, fold] = with_skew_elbow(random, 0);
-    check_beside_fold(from_dh(mirrored(rows)), 3, -fold, random);
+    check_near_fold(from_dh(mirrored(rows)), 3, -fold, random);
   }
 }
 
@@ -297,9 +299,9 @@ TEST_CASE("beside a fold that comes no nearer than 1e-5") {
     const chain arm = from_dh(is_shoulder ? rows : mirrored(rows));
     const int elbow = is_shoulder ? 2 : 3;
     joints theta = configuration(arm, random, elbow, is_shoulder ? fold : -fold);
-    for (const double away : {1e-3, -3e-4, 1e-4, -3e-5}) {
-      CAPTURE(away);
-      theta[elbow] = (is_shoulder ? fold : -fold) + away;
+    for (const double offset : {1e-3, -3e-4, 1e-4, -3e-5}) {
+      CAPTURE(offset);
+      theta[elbow] = (is_shoulder ? fold : -fold) + offset;
       const result found = all_inverse_kinematics(arm, arm.pose(theta));
       CHECK(found.is_complete);
       CHECK(count_of(found) % 2 == 0);
@@ -319,10 +321,10 @@ TEST_CASE("beside a fold that comes no nearer than 1e-5") {
 /// The less they are apart, the fewer digits the equations have.
 TEST_CASE("beside a fold next to a shoulder whose axes are a little apart") {
   duet_test::random_source random(7);
-  for (const double apart : {1e-2, 1e-3}) {
+  for (const double separation : {1e-2, 1e-3}) {
     int met = 0, certain = 0;
     for (int k = 0; k < 50; ++k) {
-      const auto [rows, fold] = with_skew_elbow(random, 0, apart);
+      const auto [rows, fold] = with_skew_elbow(random, 0, separation);
       const chain arm = from_dh(rows);
       joints theta = configuration(arm, random, 2, fold);
       theta[2] += k % 2 == 0 ? 1e-8 : -1e-8;
@@ -338,12 +340,12 @@ TEST_CASE("beside a fold next to a shoulder whose axes are a little apart") {
 
 TEST_CASE("shoulders whose axes are next to nothing apart: beside the fold nothing is certain") {
   duet_test::random_source random(8);
-  for (const double apart : {1e-4, 1e-6, 1e-8}) {
+  for (const double separation : {1e-4, 1e-6, 1e-8}) {
     for (int k = 0; k < 20; ++k) {
-      const auto [rows, fold] = with_skew_elbow(random, 0, apart);
+      const auto [rows, fold] = with_skew_elbow(random, 0, separation);
       const chain arm = from_dh(rows);
       joints theta = configuration(arm, random, 2, fold);
-      theta[2] += .1 * apart;
+      theta[2] += .1 * separation;
       CHECK_FALSE(all_inverse_kinematics(arm, arm.pose(theta)).is_complete);
     }
   }
@@ -358,18 +360,18 @@ TEST_CASE("where a turning vector has a small length") {
   };
   for (int k = 0; k < 20; ++k) {
     const detail::vector3d n = any(), v = any();
-    const detail::rotating_vector still(n, v), moved(n, v, -1 * still.at(.4));
+    const detail::rotating_vector fixed(n, v), moved(n, v, -1 * fixed.at(.4));
     for (const double length : {1e-2, 1e-5, 1e-8, 1e-11}) {
       // By .6 beside it: .8² + .6² = 1.
-      const detail::rotating_vector by(n, v, .6 * length * n - still.at(.4));
-      const auto found = detail::subproblem3(k % 2 == 0 ? moved : by, length);
+      const detail::rotating_vector perpendicular(n, v, .6 * length * n - fixed.at(.4));
+      const auto found = detail::subproblem3(k % 2 == 0 ? moved : perpendicular, length);
       REQUIRE(found.size() == 2);
       for (const auto& [theta, multiplicity] : found) {
         CHECK(multiplicity == 1);
         // |v(θ) − v(.4)| = 2 |n × v| |sin ½(θ − .4)|
         const real_50 across = length_of(cross(n, v)),
-                      way = 2 * across * abs(sin((real_50(theta) - real_50(.4)) / 2));
-        CHECK(double(abs(way - (k % 2 == 0 ? 1 : .8) * length)) < 2e-15);
+                      error = 2 * across * abs(sin((real_50(theta) - real_50(.4)) / 2));
+        CHECK(double(abs(error - (k % 2 == 0 ? 1 : .8) * length)) < 2e-15);
       }
       CHECK(found[0].theta < .4);
       CHECK(found[1].theta > .4);
@@ -392,8 +394,8 @@ TEST_CASE("in the singularity of a wrist") {
     for (double& x : theta) {
       x = random.uniform(-pi, pi);
     }
-    for (const double away : {0., 1e-16, 1e-14}) {
-      theta[4] = away;
+    for (const double offset : {0., 1e-16, 1e-14}) {
+      theta[4] = offset;
       const result found = all_inverse_kinematics(arm, arm.pose(theta));
       CHECK_FALSE(found.is_complete);
       bool is_met = false;

@@ -26,15 +26,15 @@ duet::detail::three_vector<double> random_vector(duet_test::random_source& rando
 }
 
 /// A loop of axes in random places that is closed at θ.
-loop_equation closed_at(const six_coordinates& theta, const std::vector<std::size_t>& sliding,
+loop_equation closed_at(const six_coordinates& theta, const std::vector<std::size_t>& prismatic,
                         duet_test::random_source& random) {
   loop_equation loop;
   for (std::size_t i = 0; i < 6; ++i) {
     const auto n = random.direction<3>();
     loop.joints[i] = {true, {n[0], n[1], n[2]}, random_vector(random)};
   }
-  for (const std::size_t i : sliding) {
-    loop.joints[i].turns = false;
+  for (const std::size_t i : prismatic) {
+    loop.joints[i].is_revolute = false;
   }
   loop.closing = duet::detail::product_of_joints(loop, theta, 0, 6);
   return loop;
@@ -44,8 +44,9 @@ double difference(const loop_equation& loop, const six_coordinates& a, const six
   double largest = 0;
   for (Eigen::Index i = 0; i < 6; ++i) {
     const double d = a[i] - b[i];
-    const bool turns = loop.joints[std::size_t(i)].turns;
-    largest = std::max(largest, std::abs(turns ? std::remainder(d, 2 * std::numbers::pi) : d));
+    const bool is_revolute = loop.joints[std::size_t(i)].is_revolute;
+    largest =
+        std::max(largest, std::abs(is_revolute ? std::remainder(d, 2 * std::numbers::pi) : d));
   }
   return largest;
 }
@@ -56,14 +57,15 @@ double difference(const loop_equation& loop, const six_coordinates& a, const six
 TEST_CASE(
     "the determinant vanishes at the angle of a solution, where all its coordinates come out") {
   duet_test::random_source random(1);
-  for (const std::vector<std::size_t>& sliding : {std::vector<std::size_t>{}, {0}, {1}, {3}, {4}}) {
-    CAPTURE(sliding.empty() ? -1 : int(sliding[0]));
+  for (const std::vector<std::size_t>& prismatic :
+       {std::vector<std::size_t>{}, {0}, {1}, {3}, {4}}) {
+    CAPTURE(prismatic.empty() ? -1 : int(prismatic[0]));
     for (int k = 0; k < 20; ++k) {
       six_coordinates theta;
       for (double& x : theta) {
         x = random.uniform(-1.5, 1.5);
       }
-      const loop_equation loop = closed_at(theta, sliding, random);
+      const loop_equation loop = closed_at(theta, prismatic, random);
       const duet::detail::elimination system(loop);
       double nearest = std::numeric_limits<double>::infinity();
       system.solution_at(theta[2], [&](const six_coordinates& x) {

@@ -29,25 +29,25 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The shortest time from rest to rest on a straight line: seven phases with constant jerk, fewer
 /// where the largest velocity or acceleration is not reached.
-double seven_phases(double way, double v, double a, double j) {
+double seven_phases(double distance, double v, double a, double j) {
   // How long it takes to a speed.
   const auto rise = [&](double speed) {
     return speed > a * a / j ? speed / a + a / j : 2 * std::sqrt(speed / j);
   };
   double low = 0, high = std::min(v, 1e9);
-  if (high * rise(high) <= way) {
-    return 2 * rise(high) + (way - high * rise(high)) / high;
+  if (high * rise(high) <= distance) {
+    return 2 * rise(high) + (distance - high * rise(high)) / high;
   }
   for (int i = 0; i < 200; ++i) {
     const double middle = (low + high) / 2;
-    (middle * rise(middle) < way ? low : high) = middle;
+    (middle * rise(middle) < distance ? low : high) = middle;
   }
   return 2 * rise(high);
 }
 
 /// The largest share of a limit at many times, between which that can't change by much.
 template <class Trajectory, class V>
-double largest_share(const Trajectory& q, const V& v, const V& a, const V& j, int count) {
+double max_fraction(const Trajectory& q, const V& v, const V& a, const V& j, int count) {
   double result = 0;
   for (int i = 0; i <= count; ++i) {
     const double t = q.duration() * i / count;
@@ -81,18 +81,18 @@ std::vector<vector> random_waypoints(duet_test::random_source& random, int kind)
 } // namespace
 
 TEST_CASE("one joint: the seven phases of the closed form, and fewer") {
-  for (const double way : {1e-3, .1, 1.0, 30.0}) {
+  for (const double distance : {1e-3, .1, 1.0, 30.0}) {
     for (const double v : {2.0, infinity}) {
       for (const double j : {.5, 10.0, 400.0}) {
-        CAPTURE(way);
+        CAPTURE(distance);
         CAPTURE(v);
         CAPTURE(j);
-        const double a = 5, exact = seven_phases(way, v, a, j);
-        const std::vector<one> ends{one(1.0), one(1 + way)};
+        const double a = 5, exact = seven_phases(distance, v, a, j);
+        const std::vector<one> ends{one(1.0), one(1 + distance)};
         const auto q = time_optimal_trajectory(ends, std::array{v}, std::array{a}, {.jerk = {j}});
         CHECK(q.duration() >= exact * (1 - 1e-12));
         CHECK(q.duration() < exact * 1.02);
-        CHECK(largest_share(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
+        CHECK(max_fraction(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
         CHECK(q.times() == std::vector<double>{0, q.duration()});
       }
     }
@@ -139,9 +139,9 @@ TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends")
     }
     const time_parametrisation_options options{.min_intervals = 60 + k % 50, .jerk = numbers(j)};
     const auto q = time_optimal_trajectory(waypoints, v, a, options);
-    const double share = largest_share(q, v, a, j, 500);
-    CHECK(share <= 1 + 1e-10);
-    CHECK(share > .9);
+    const double fraction = max_fraction(q, v, a, j, 500);
+    CHECK(fraction <= 1 + 1e-10);
+    CHECK(fraction > .9);
     CHECK(q(0).velocity.norm() < 1e-12);
     CHECK(q(0).acceleration.norm() < 1e-12);
     CHECK(q(q.duration()).velocity.cwiseQuotient(v).norm() < 1e-9);
@@ -152,7 +152,8 @@ TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends")
     }
     // Never quicker than without limits of jerk.
     CHECK(q.duration() >
-          .99 * time_optimal_trajectory(waypoints, v, a, {.curve = waypoint_interpolation::smooth})
+          .99 * time_optimal_trajectory(waypoints, v, a,
+                                        {.curve = waypoint_interpolation::natural_cubic})
                     .duration());
   }
 }
@@ -162,21 +163,22 @@ TEST_CASE(
   duet_test::random_source random(8);
   for (int k = 0; k < 200; ++k) {
     CAPTURE(k);
-    std::vector<double> places{1.0};
+    std::vector<double> arc_lengths{1.0};
     for (int i = random.integer(4, 30); i > 0; --i) {
-      places.push_back(places.back() + random.log_uniform(1e-3, 1));
+      arc_lengths.push_back(arc_lengths.back() + random.log_uniform(1e-3, 1));
     }
-    const detail::reference_parametrisation law(places, {k % 2 == 0, k % 4 < 2});
-    const std::vector<double> knots{places.front(), places.back()};
-    const auto path = law.pieces(knots);
-    CHECK((law.first_slope() > 0) == (k % 2 == 1));
-    CHECK((law.last_slope() > 0) == (k % 4 >= 2));
+    const detail::reference_parametrisation reference(arc_lengths, {k % 2 == 0, k % 4 < 2});
+    const std::vector<double> knots{arc_lengths.front(), arc_lengths.back()};
+    const auto path = reference.pieces(knots);
+    CHECK((reference.first_slope() > 0) == (k % 2 == 1));
+    CHECK((reference.last_slope() > 0) == (k % 4 >= 2));
     CHECK(path.front().start == doctest::Approx(0).epsilon(1e-13));
-    CHECK(path.front().a == doctest::Approx(law.first_slope()).epsilon(1e-12));
+    CHECK(path.front().a == doctest::Approx(reference.first_slope()).epsilon(1e-12));
     const auto& last = path.back();
-    CHECK(last.a + 2 * last.b + 3 * last.c == doctest::Approx(law.last_slope()).epsilon(1e-9));
+    CHECK(last.a + 2 * last.b + 3 * last.c ==
+          doctest::Approx(reference.last_slope()).epsilon(1e-9));
     CHECK(last.start + last.a + last.b + last.c ==
-          doctest::Approx(places.back() - places.front()).epsilon(1e-13));
+          doctest::Approx(arc_lengths.back() - arc_lengths.front()).epsilon(1e-13));
     for (const auto& piece : path) {
       for (const double x : {0.0, .25, .5, .75, 1.0}) {
         CHECK(piece.a + x * (2 * piece.b + 3 * x * piece.c) > -1e-12);
@@ -188,27 +190,27 @@ TEST_CASE(
 TEST_CASE("one joint from rate to rate: the phases of the closed form") {
   // From v0 with the largest acceleration at once, which then falls to none at the largest rate.
   const auto rise = [](double from, double v, double a, double j) {
-    const double held = (v - from - a * a / (2 * j)) / a, fall = a / j;
-    REQUIRE(held >= 0);
-    const double before = from + a * held;
-    const double way = (from + before) / 2 * held + before * fall + a * fall * fall / 3;
-    return std::array{held + fall, way};
+    const double constant = (v - from - a * a / (2 * j)) / a, ramp = a / j;
+    REQUIRE(constant >= 0);
+    const double before = from + a * constant;
+    const double distance = (from + before) / 2 * constant + before * ramp + a * ramp * ramp / 3;
+    return std::array{constant + ramp, distance};
   };
   for (const double first : {0.01, .5, 1.0}) {
     for (const double last : {.2, 1.1}) {
       CAPTURE(first);
       CAPTURE(last);
-      const double v = 2, a = 5, j = 40, way = 3;
+      const double v = 2, a = 5, j = 40, distance = 3;
       const auto up = rise(first, v, a, j), down = rise(last, v, a, j);
-      const double exact = up[0] + down[0] + (way - up[1] - down[1]) / v;
+      const double exact = up[0] + down[0] + (distance - up[1] - down[1]) / v;
       for (const double sign : {-1.0, 1.0}) {
-        const std::vector<one> ends{one(1.0), one(1 + sign * way)};
+        const std::vector<one> ends{one(1.0), one(1 + sign * distance)};
         const auto q = time_optimal_trajectory(
             ends, std::array{v}, std::array{a},
             {.initial_velocities = {sign * first}, .final_velocities = {sign * last}, .jerk = {j}});
         CHECK(q.duration() >= exact * (1 - 1e-12));
         CHECK(q.duration() < exact * (first < .1 ? 1.03 : 1.01)); // nearly at rest: by coarse steps
-        CHECK(largest_share(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
+        CHECK(max_fraction(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
         CHECK(q(0).velocity[0] == doctest::Approx(sign * first).epsilon(1e-12));
         CHECK(q(q.duration()).velocity[0] == doctest::Approx(sign * last).epsilon(1e-9));
       }
@@ -222,14 +224,14 @@ TEST_CASE("one joint from rate to rate: the phases of the closed form") {
                                 {.initial_velocities = {v}, .final_velocities = {v}, .jerk = {5}});
     CHECK(q.duration() >= 2 / v * (1 - 1e-12));
     CHECK(q.duration() < 2 / v * 1.002);
-    CHECK(largest_share(q, one(v), one(2.0), one(5.0), 3000) <= 1 + 1e-12);
+    CHECK(max_fraction(q, one(v), one(2.0), one(5.0), 3000) <= 1 + 1e-12);
   }
   // Away from the goal at first, and back from beyond it.
   const std::vector<one> line{one(0.0), one(1.0)};
   const auto q = time_optimal_trajectory(
       line, std::array{1.0}, std::array{2.0},
       {.initial_velocities = {-.2}, .final_velocities = {-.1}, .jerk = {20}});
-  CHECK(largest_share(q, one(1.0), one(2.0), one(20.0), 3000) <= 1 + 1e-12);
+  CHECK(max_fraction(q, one(1.0), one(2.0), one(20.0), 3000) <= 1 + 1e-12);
   CHECK(q(0).velocity[0] == doctest::Approx(-.2).epsilon(1e-12));
   CHECK(q(.01).value[0] < 0);
   CHECK(q(q.duration() - .01).value[0] > 1);
@@ -246,23 +248,24 @@ TEST_CASE("from rates of motions that are known, along a middle piece, none is r
     const vector v = limits(.3, 3), a = limits(.5, 20), j = limits(1, 500);
     const auto waypoints = random_waypoints(random, k % 4);
     const time_parametrisation_options options{.min_intervals = 120, .jerk = numbers(j)};
-    auto problem = detail::timing_problem_of(waypoints, v, a, options);
+    auto problem = detail::validated_input(waypoints, v, a, options);
     auto& polygon = problem.polygon;
-    const auto curve = detail::hermite_curve(polygon, detail::smooth_slopes(polygon));
-    const auto whole = detail::timed_within_jerks(problem, curve);
+    const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
+    const auto complete = detail::timed_within_jerks(problem, curve);
     // Where and how fast it is at two times.
-    double from = random.uniform(0, .8) * whole.duration;
-    const double to = std::min(whole.duration, from + random.uniform(.02, 1) * whole.duration);
+    double from = random.uniform(0, .8) * complete.duration;
+    const double to =
+        std::min(complete.duration, from + random.uniform(.02, 1) * complete.duration);
     from *= k % 5 == 0 ? 0 : 1;
     const auto at = [&](double t) {
       double s = 0;
       std::size_t i = 0;
-      for (; i + 1 < whole.pieces.size() && whole.pieces[i + 1].law.time <= t; ++i) {
-        s += whole.pieces[i].path.length;
+      for (; i + 1 < complete.pieces.size() && complete.pieces[i + 1].scaling.time <= t; ++i) {
+        s += complete.pieces[i].path.length;
       }
-      const auto [way, speed, acceleration, jerk] =
-          whole.pieces[i].law.at(t, whole.pieces[i].path.length);
-      return std::array{s + way, speed};
+      const auto [distance, speed, acceleration, jerk] =
+          complete.pieces[i].scaling.at(t, complete.pieces[i].path.length);
+      return std::array{s + distance, speed};
     };
     const auto [first, first_speed] = at(from);
     const auto [last, last_speed] = at(to);
@@ -275,12 +278,12 @@ TEST_CASE("from rates of motions that are known, along a middle piece, none is r
         knots.push_back(knots.back() + end - begin);
       }
     }
-    polygon.s = polygon.given_at = knots;
+    polygon.s = polygon.waypoint_s = knots;
     problem.waypoints = knots.size();
     problem.initial_speed = from > 0 ? first_speed : 0;
-    problem.final_speed = to < whole.duration ? last_speed : 0;
+    problem.final_speed = to < complete.duration ? last_speed : 0;
     const auto q = detail::timed(problem, middle);
-    CHECK(largest_share(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK(max_fraction(q, v, a, j, 500) <= 1 + 1e-10);
     CHECK(q.duration() < 1.1 * (to - from));
     const auto& end = middle.back();
     CHECK((q(0).velocity - problem.initial_speed * middle[0].first(0)).norm() < 1e-9);
@@ -293,7 +296,7 @@ TEST_CASE(
     "from and to any rates limits are kept, or a part of the rates is named that is possible") {
   duet_test::random_source random(10);
   const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30), rest(0, 0, 0);
-  int refused = 0;
+  int infeasible = 0;
   for (int k = 0; k < 16; ++k) {
     CAPTURE(k);
     const auto waypoints = random_waypoints(random, k % 4);
@@ -311,39 +314,39 @@ TEST_CASE(
     };
     std::string message = duet_test::message_of([&] { (void)timed(); });
     if (message.find("beyond its limit") != std::string::npos) {
-      const double most = std::max(first.cwiseQuotient(v).cwiseAbs().maxCoeff(),
-                                   last.cwiseQuotient(v).cwiseAbs().maxCoeff());
-      CHECK(most > 1);
-      first *= .999 / most;
-      last *= .999 / most;
+      const double max_ratio = std::max(first.cwiseQuotient(v).cwiseAbs().maxCoeff(),
+                                        last.cwiseQuotient(v).cwiseAbs().maxCoeff());
+      CHECK(max_ratio > 1);
+      first *= .999 / max_ratio;
+      last *= .999 / max_ratio;
       message = duet_test::message_of([&] { (void)timed(); });
     }
     if (!message.empty()) {
-      ++refused;
+      ++infeasible;
       const bool is_first = message.find("from the initial rates, only from ") != std::string::npos;
       const auto at = message.find(is_first ? "only from " : "only up to ");
       REQUIRE(at != std::string::npos);
-      const double part = std::stod(message.substr(at + (is_first ? 10 : 11)));
-      CHECK(part > 0);
-      CHECK(part < 1);
+      const double fraction = std::stod(message.substr(at + (is_first ? 10 : 11)));
+      CHECK(fraction > 0);
+      CHECK(fraction < 1);
       CHECK(message.find(" of them, by reason of joint ") != std::string::npos);
-      first *= .95 * part;
-      last *= .95 * part;
+      first *= .95 * fraction;
+      last *= .95 * fraction;
     }
     const auto q = timed();
-    CHECK(largest_share(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK(max_fraction(q, v, a, j, 500) <= 1 + 1e-10);
     CHECK((q(0).velocity - first).norm() < 1e-12);
     CHECK((q(q.duration()).velocity - last).norm() < 1e-9);
     CHECK((q(q.duration()).value - waypoints.back()).norm() < 1e-9);
   }
-  CHECK(refused > 0);
-  CHECK(refused < 8);
+  CHECK(infeasible > 0);
+  CHECK(infeasible < 8);
 }
 
 TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
   using seven = Eigen::Matrix<double, 7, 1>;
   duet_test::random_source random(11);
-  const auto some = [&] {
+  const auto random_vector = [&] {
     seven result;
     for (double& x : result) {
       x = random.normal();
@@ -351,28 +354,29 @@ TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
     return result;
   };
   for (int k = 0; k < 2; ++k) {
-    const std::vector<seven> waypoints{some(), some(), some(), some()};
-    const seven v = some().cwiseAbs() + seven::Constant(.5), a = seven::Constant(4),
+    const std::vector<seven> waypoints{random_vector(), random_vector(), random_vector(),
+                                       random_vector()};
+    const seven v = random_vector().cwiseAbs() + seven::Constant(.5), a = seven::Constant(4),
                 j = seven::Constant(50);
-    const seven first = .2 * some().cwiseMin(1).cwiseMax(-1);
+    const seven first = .2 * random_vector().cwiseMin(1).cwiseMax(-1);
     const auto q = time_optimal_trajectory(waypoints, v, a,
                                            {.min_intervals = 120,
                                             .initial_velocities = {first.begin(), first.end()},
                                             .jerk = {j.begin(), j.end()}});
-    CHECK(largest_share(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK(max_fraction(q, v, a, j, 500) <= 1 + 1e-10);
     CHECK((q(0).velocity - first).norm() < 1e-12);
   }
   // From 1 to rest over way without acceleration there: way ≥ √(2 / j) / 3.
-  const double least = std::sqrt(2.0 / 8) / 3;
-  const auto stop = [&](double way) {
-    const std::vector<one> line{one(0.0), one(way)};
+  const double min_length = std::sqrt(2.0 / 8) / 3;
+  const auto stop = [&](double distance) {
+    const std::vector<one> line{one(0.0), one(distance)};
     return duet_test::message_of([&] {
       (void)time_optimal_trajectory(line, std::array{2.0}, std::array{100.0},
                                     {.initial_velocities = {1}, .jerk = {8}});
     });
   };
-  CHECK(stop(least * 1.01) == "");
-  const std::string message = stop(least * .9);
+  CHECK(stop(min_length * 1.01) == "");
+  const std::string message = stop(min_length * .9);
   CAPTURE(message);
   CHECK(message.find(
             "duet: time_optimal_trajectory: the limits could not be kept from the initial rates, "
@@ -431,27 +435,27 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
   using duet_test::real_50;
   using number = taylor<real_50, 3>;
   duet_test::random_source random(6);
-  double widest = 0;
+  double max_width = 0;
   for (int k = 0; k < 40; ++k) {
     const detail::joint_polygon<vector> polygon(random_waypoints(random, k % 4));
-    const auto curve = detail::hermite_curve(polygon, detail::smooth_slopes(polygon));
+    const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
     const std::size_t n = 30;
-    std::vector<double> places;
+    std::vector<double> arc_lengths;
     for (std::size_t i = 0; i <= n; ++i) {
       const double x = double(i) / double(n);
-      places.push_back(polygon.s.back() * x * x * (3 - 2 * x));
+      arc_lengths.push_back(polygon.s.back() * x * x * (3 - 2 * x));
     }
     const detail::ends_at_rest rest{k % 2 == 0, k % 3 == 0};
-    const auto path = detail::reference_parametrisation(places, rest).pieces(polygon.s);
+    const auto path = detail::reference_parametrisation(arc_lengths, rest).pieces(polygon.s);
     const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
     const detail::path_velocity_constraints bounds(curve, path, n, v, a, j);
-    std::vector<double> pace;
+    std::vector<double> squared_velocity;
     for (std::size_t i = 0; i < n + 2; ++i) {
-      pace.push_back(random.uniform(.5, 2));
+      squared_velocity.push_back(random.uniform(.5, 2));
     }
     for (std::size_t i = 0; i < path.size(); ++i) {
       const auto& piece = path[i];
-      const double* c = &pace[piece.interval];
+      const double* c = &squared_velocity[piece.interval];
       const real_50 first = piece.interval == 0 ? c[0] : (real_50(c[0]) + c[1]) / 2;
       const real_50 last = piece.interval + 1 == n ? c[2] : (real_50(c[1]) + c[2]) / 2;
       for (int at = 0; at <= 4; ++at) {
@@ -490,7 +494,7 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
             const double size = 1 + std::abs(low) + std::abs(high), rounding = 1e-12 * size;
             CHECK(exact <= high + rounding);
             CHECK(exact >= low - rounding);
-            widest = std::max(widest, (high - low) / size);
+            max_width = std::max(max_width, (high - low) / size);
           };
           check(change / a[joint], rows.acceleration, rows.beyond_acceleration);
           check(jerk / j[joint], rows.jerk, rows.beyond_jerk);
@@ -498,47 +502,48 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
       }
     }
   }
-  CHECK(widest < .5);
+  CHECK(max_width < .5);
 }
 
 TEST_CASE("where a knot is next to a node, the piece between them has the same law") {
-  std::vector<double> places;
+  std::vector<double> arc_lengths;
   for (int i = 0; i <= 16; ++i) {
-    places.push_back(i * i * (3 - i / 8.0));
+    arc_lengths.push_back(i * i * (3 - i / 8.0));
   }
-  const detail::reference_parametrisation law(places);
-  const auto whole = law.pieces({0, places.back()});
-  REQUIRE(whole.size() == 16);
+  const detail::reference_parametrisation reference(arc_lengths);
+  const auto complete = reference.pieces({0, arc_lengths.back()});
+  REQUIRE(complete.size() == 16);
   for (const double off : {-1e-9, -1e-12, -1e-14, 0.0, 1e-14, 1e-12, 1e-9}) {
     CAPTURE(off);
-    const double knot = whole[6].start + off;
-    const auto path = law.pieces({0, knot, places.back()});
+    const double knot = complete[6].start + off;
+    const auto path = reference.pieces({0, knot, arc_lengths.back()});
     CHECK(path.size() <= 17);
     const auto straight = [](double from, double length) {
       return detail::joint_cubic<one>{one(from), one(1.0), one(0.0), one(0.0), length};
     };
-    std::vector<double> pace;
+    std::vector<double> squared_velocity;
     for (int i = 0; i < 18; ++i) {
-      pace.push_back(1 + .1 * std::sin(i));
+      squared_velocity.push_back(1 + .1 * std::sin(i));
     }
     const auto motion = detail::trajectory_from_path_velocity(
-        std::vector{straight(0, knot), straight(knot, places.back() - knot)}, path, 16, pace);
+        std::vector{straight(0, knot), straight(knot, arc_lengths.back() - knot)}, path, 16,
+        squared_velocity);
     const auto uncut = detail::trajectory_from_path_velocity(
-        std::vector{straight(0, places.back())}, whole, 16, pace);
+        std::vector{straight(0, arc_lengths.back())}, complete, 16, squared_velocity);
     CHECK(motion.duration == doctest::Approx(uncut.duration).epsilon(1e-13));
     double length = 0;
     for (std::size_t i = 0; i < path.size(); ++i) {
-      const auto& [here, line] = motion.pieces[i];
-      const auto& there = uncut.pieces[path[i].interval];
-      CHECK(here.growth == there.law.growth);
-      CHECK(here.speed ==
-            doctest::Approx(std::sqrt(pace[0])).epsilon(.2)); // no noise of differences
-      CHECK(std::abs(here.acceleration - there.law.acceleration - here.growth * path[i].from) <
-            1e-14);
+      const auto& [scaling, line] = motion.pieces[i];
+      const auto& expected = uncut.pieces[path[i].interval];
+      CHECK(scaling.growth == expected.scaling.growth);
+      CHECK(scaling.speed ==
+            doctest::Approx(std::sqrt(squared_velocity[0])).epsilon(.2)); // no noise of differences
+      CHECK(std::abs(scaling.acceleration - expected.scaling.acceleration -
+                     scaling.growth * path[i].from) < 1e-14);
       CHECK(line.c0[0] == doctest::Approx(length).epsilon(1e-13));
       length += line.length;
     }
-    CHECK(length == doctest::Approx(places.back()).epsilon(1e-14));
+    CHECK(length == doctest::Approx(arc_lengths.back()).epsilon(1e-14));
   }
 }
 
@@ -547,32 +552,32 @@ TEST_CASE("infinite limits are none; what can't be done is said") {
   const vector v(1, 1, 1), a(2, 3, 4);
   const std::vector<double> none(3, infinity), j{20, 20, 20};
   const double smooth =
-      time_optimal_trajectory(waypoints, v, a, {.curve = waypoint_interpolation::smooth})
+      time_optimal_trajectory(waypoints, v, a, {.curve = waypoint_interpolation::natural_cubic})
           .duration();
   CHECK(time_optimal_trajectory(waypoints, v, a, {.jerk = none}).duration() == smooth);
   CHECK(time_optimal_trajectory(waypoints, v, a, {.jerk = j}).duration() > smooth);
-  const auto refusal = [&](const time_parametrisation_options& options) {
+  const auto error_message = [&](const time_parametrisation_options& options) {
     return duet_test::message_of([&] { (void)time_optimal_trajectory(waypoints, v, a, options); });
   };
-  CHECK(refusal({.jerk = {1, 2}}) == "duet: time_optimal_trajectory: 2 jerk limits for 3 joints");
-  CHECK(refusal({.jerk = {1, 2, 0}}) ==
+  CHECK(error_message({.jerk = {1, 2}}) ==
+        "duet: time_optimal_trajectory: 2 jerk limits for 3 joints");
+  CHECK(error_message({.jerk = {1, 2, 0}}) ==
         "duet: time_optimal_trajectory: the jerk limit of joint 2 is 0");
-  CHECK(refusal({.initial_velocities = {.1, 0, -1.5}, .jerk = j}) ==
+  CHECK(error_message({.initial_velocities = {.1, 0, -1.5}, .jerk = j}) ==
         "duet: time_optimal_trajectory: the initial rate of joint 2 is -1.5, beyond its limit 1");
-  CHECK(refusal({.final_velocities = {.1, 1.25, 0}, .jerk = j}) ==
+  CHECK(error_message({.final_velocities = {.1, 1.25, 0}, .jerk = j}) ==
         "duet: time_optimal_trajectory: the final rate of joint 1 is 1.25, beyond its limit 1");
   CHECK(time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {0, 0, 0}, .jerk = j})
             .duration() > 0);
-  CHECK(refusal({.curve = waypoint_interpolation::monotone, .jerk = j}) ==
+  CHECK(error_message({.curve = waypoint_interpolation::pchip, .jerk = j}) ==
         "duet: time_optimal_trajectory: limits of jerk ask for a curve with continuous second "
-        "derivatives, as waypoint_interpolation::smooth where no joint leaves its range: at "
+        "derivatives, as waypoint_interpolation::natural_cubic where no joint leaves its range: at "
         "waypoint 1 that "
         "of joint 1 jumps");
   // Straight on every curve is smooth, and all waypoints in one place are no way.
   const std::vector<vector> straight{vector(0, 0, 0), vector(1, 2, 3), vector(1, 2, 3),
                                      vector(3, 6, 9)};
-  CHECK(time_optimal_trajectory(straight, v, a,
-                                {.curve = waypoint_interpolation::monotone, .jerk = j})
+  CHECK(time_optimal_trajectory(straight, v, a, {.curve = waypoint_interpolation::pchip, .jerk = j})
             .duration() > 0);
   CHECK(time_optimal_trajectory(std::vector<vector>{v, v}, v, a, {.jerk = j}).duration() == 0);
 

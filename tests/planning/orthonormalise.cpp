@@ -31,14 +31,14 @@ M random_matrix(duet_test::random_source& random, Eigen::Index rows, Eigen::Inde
 
 /// J x = e for Jacobians whose last row is nearly the sum of two others, and J n = 0 where x·n = 0.
 template <int Joints>
-void check_least_solution() {
+void check_min_norm_solution() {
   using columns = Eigen::Matrix<double, 6, Joints>;
   duet_test::random_source random(4);
-  for (const double max_abs_difference : {1., 1e-3, 1e-6, 1e-9, 1e-12}) {
-    CAPTURE(max_abs_difference);
+  for (const double independence : {1., 1e-3, 1e-6, 1e-9, 1e-12}) {
+    CAPTURE(independence);
     for (int k = 0; k < 20; ++k) {
       columns j = random_matrix<columns>(random, 6, Joints);
-      j.row(5) = j.row(0) + j.row(3) + max_abs_difference * j.row(5);
+      j.row(5) = j.row(0) + j.row(3) + independence * j.row(5);
       const Eigen::Matrix<double, Joints, 1> rates =
           random_matrix<Eigen::Matrix<double, Joints, 1>>(random, Joints, 1);
       const Eigen::Matrix<double, 6, 1> e = j * rates;
@@ -47,7 +47,7 @@ void check_least_solution() {
       // What the rates have beyond it moves nothing, and is at right angles to it.
       const Eigen::Matrix<double, Joints, 1> rest = rates - x;
       CHECK((j * rest).norm() < 1e-14 * (1 + j.norm() * x.norm()));
-      CHECK(std::abs(rest.dot(x)) < 1e-14 / max_abs_difference * (1 + rates.squaredNorm()) * 100);
+      CHECK(std::abs(rest.dot(x)) < 1e-14 / independence * (1 + rates.squaredNorm()) * 100);
     }
   }
 }
@@ -69,8 +69,8 @@ TEST_CASE("columns become orthonormal, and the same sums of other columns are ma
 }
 
 TEST_CASE("the least solution of six equations, near where they depend on each other, too") {
-  check_least_solution<6>();
-  check_least_solution<7>();
+  check_min_norm_solution<6>();
+  check_min_norm_solution<7>();
 }
 
 } // namespace test_planning_orthonormalise

@@ -65,17 +65,17 @@ chain random_arm(const arm_kind& kind, duet_test::random_source& random,
 vector configuration(duet_test::random_source& random, const arm_kind& kind) {
   vector theta(6);
   for (int i = 0; i < 6; ++i) {
-    const double most = i == kind.first || i == kind.second ? 1 : pi;
-    theta[i] = random.uniform(-most, most);
+    const double max_abs = i == kind.first || i == kind.second ? 1 : pi;
+    theta[i] = random.uniform(-max_abs, max_abs);
   }
   return theta;
 }
 
 /// The largest difference of turns, and of what both slides do together.
 double distance(const arm_kind& kind, const vector& a, const vector& b) {
-  const double way = kind.is_opposite ? -1 : 1;
+  const double sign = kind.is_opposite ? -1 : 1;
   double largest =
-      std::abs(a[kind.first] - b[kind.first] + way * (a[kind.second] - b[kind.second]));
+      std::abs(a[kind.first] - b[kind.first] + sign * (a[kind.second] - b[kind.second]));
   for (int i = 0; i < 6; ++i) {
     if (i != kind.first && i != kind.second) {
       largest = std::max(largest, std::abs(std::remainder(a[i] - b[i], 2 * pi)));
@@ -121,11 +121,11 @@ TEST_CASE("the turns that a goal is made of are found, once, and whatever a sear
         CHECK(s.within_limits);
       }
       for (int start = 0; start < 5; ++start) {
-        const auto found = inverse_kinematics(arm, goal, configuration(random, kind),
-                                              {.tolerance = 1e-11, .max_restarts = 3});
-        if (found.reason == stop_reason::reached) {
+        const auto solution = inverse_kinematics(arm, goal, configuration(random, kind),
+                                                 {.tolerance = 1e-11, .max_restarts = 3});
+        if (solution.reason == stop_reason::reached) {
           ++others;
-          CHECK(count_of(all, kind, found.joints) == 1);
+          CHECK(count_of(all, kind, solution.joints) == 1);
         }
       }
     }
@@ -139,14 +139,14 @@ TEST_CASE("a goal beyond the five dimensions has no solution, for certain") {
     int certain = 0;
     for (int k = 0; k < 10; ++k) {
       const chain arm = random_arm(kind, random);
-      const auto near = arm.pose(configuration(random, kind));
+      const auto reachable = arm.pose(configuration(random, kind));
       const auto q = random.direction<4>();
       const auto anywhere = pose(quaternion<double>(q[0], q[1], q[2], q[3]),
                                  vector3<double>(.2, .5, random.uniform(-1, 1)));
-      const auto beside =
+      const auto slightly_off =
           pose(from_rotation_vector(vector3<double>(1e-6, 1e-6, 0)), vector3<double>(0, 0, 0)) *
-          near;
-      for (const auto& goal : {anywhere, beside}) {
+          reachable;
+      for (const auto& goal : {anywhere, slightly_off}) {
         const result all = all_inverse_kinematics(arm, goal);
         CHECK(all.solutions.empty());
         certain += all.is_complete;

@@ -38,11 +38,11 @@ vector configuration(duet_test::random_source& random) {
 
 /// How far a configuration is from the nearest point of a curve.
 double distance(const self_motion_curve<7>& curve, const vector& theta) {
-  double least = std::numeric_limits<double>::infinity();
+  double min_distance = std::numeric_limits<double>::infinity();
   for (const auto& x : curve.joints) {
-    least = std::min(least, difference(x, theta).norm());
+    min_distance = std::min(min_distance, difference(x, theta).norm());
   }
-  return least;
+  return min_distance;
 }
 
 /// Every curve is one, every point on it a solution, and the configuration that the goal was made
@@ -50,20 +50,20 @@ double distance(const self_motion_curve<7>& curve, const vector& theta) {
 void check_curves(const chain& arm, const vector& theta,
                   const std::vector<self_motion_curve<7>>& curves, double resolution) {
   const auto goal = arm.pose(theta);
-  int near = 0;
+  int containing = 0;
   for (const auto& curve : curves) {
     CHECK(curve.is_closed);
     for (std::size_t k = 0; k < curve.joints.size(); ++k) {
-      const pose_error left = pose_error_between(arm.pose(curve.joints[k]), goal);
-      CHECK(left.translation < 1e-10);
-      CHECK(left.rotation < 1e-10);
+      const pose_error error = pose_error_between(arm.pose(curve.joints[k]), goal);
+      CHECK(error.translation < 1e-10);
+      CHECK(error.rotation < 1e-10);
       const vector step = difference(curve.joints[(k + 1) % curve.joints.size()], curve.joints[k]);
       CHECK(step.norm() > 0);
       CHECK(step.norm() <= resolution * (1 + 1e-9));
     }
-    near += distance(curve, theta) <= resolution / 2;
+    containing += distance(curve, theta) <= resolution / 2;
   }
-  CHECK(near == 1);
+  CHECK(containing == 1);
 }
 
 /// Shoulder, elbow and wrist of iiwa turn two ways each, and none of them can be changed with the
@@ -99,9 +99,9 @@ TEST_CASE("a general arm; finer curves are as many") {
 void check_component(const chain& arm, const self_motion_curve<7>& part,
                      const dual_quaternion<double>& goal, double resolution) {
   for (const auto& x : part.joints) {
-    const pose_error left = pose_error_between(arm.pose(x), goal);
-    CHECK(left.translation < 1e-10);
-    CHECK(left.rotation < 1e-10);
+    const pose_error error = pose_error_between(arm.pose(x), goal);
+    CHECK(error.translation < 1e-10);
+    CHECK(error.rotation < 1e-10);
   }
   if (part.dimension == 1) {
     CHECK(part.is_closed);

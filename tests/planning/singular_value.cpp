@@ -41,7 +41,7 @@ matrix rotation(duet_test::random_source& random) {
 
 /// What is hard: units that make rows long or short, singular values next to each other, columns
 /// that nearly agree, nothing to reflect.
-std::vector<matrix> ugly_matrices(duet_test::random_source& random) {
+std::vector<matrix> ill_conditioned_matrices(duet_test::random_source& random) {
   std::vector<matrix> result;
   for (const double unit : {1., 1e3, 1e-6}) {
     matrix a = random_matrix(random);
@@ -62,10 +62,10 @@ std::vector<matrix> ugly_matrices(duet_test::random_source& random) {
   result.push_back(twins);
   vector lengths;
   lengths << 3, -2, 1, .5, .5, 4;
-  const matrix apart = lengths.asDiagonal();
-  result.push_back(apart);
-  result.push_back(apart.rowwise().reverse());
-  result.push_back(apart + 1e-200 * random_matrix(random));
+  const matrix diagonal = lengths.asDiagonal();
+  result.push_back(diagonal);
+  result.push_back(diagonal.rowwise().reverse());
+  result.push_back(diagonal + 1e-200 * random_matrix(random));
   return result;
 }
 
@@ -116,7 +116,7 @@ eight values_of(const std::vector<matrix>& all, std::size_t first) {
 TEST_CASE("the smallest singular value is what 50 digits say") {
   duet_test::random_source random(2);
   for (int round = 0; round < 8; ++round) {
-    const auto all = ugly_matrices(random);
+    const auto all = ill_conditioned_matrices(random);
     for (std::size_t i = 0; i < all.size(); ++i) {
       CAPTURE(round);
       CAPTURE(i);

@@ -155,7 +155,7 @@ TEST_CASE("the largest and the least speed of two unknowns: none of a grid is be
       bounds.push_back({random.normal() / random.normal(), random.uniform(.01, 2)});
     }
     const double least = k % 2 == 0 ? 0 : random.uniform(0, .7);
-    const auto is_allowed = [&](double x, double y, double slack) {
+    const auto is_feasible = [&](double x, double y, double slack) {
       return std::all_of(bounds.begin(), bounds.end(), [&](const auto& each) {
         return std::abs(y + each.slope * x) <= each.reach + slack;
       });
@@ -163,36 +163,37 @@ TEST_CASE("the largest and the least speed of two unknowns: none of a grid is be
     double smallest = 2, largest = -1;
     for (int i = 0; i <= 100; ++i) {
       for (int j = 0; j <= 100; ++j) {
-        if (is_allowed(i / 100.0, least + j * (.7 - least) / 100, 0)) {
+        if (is_feasible(i / 100.0, least + j * (.7 - least) / 100, 0)) {
           smallest = std::min(smallest, i / 100.0);
           largest = std::max(largest, i / 100.0);
         }
       }
     }
-    const double most_x = detail::nearest_speed(bounds, 1, least, .7);
-    const double least_x = detail::nearest_speed(bounds, 0, least, .7);
+    const double max_x = detail::nearest_speed(bounds, 1, least, .7);
+    const double min_x = detail::nearest_speed(bounds, 0, least, .7);
     if (largest < 0) {
       // No point of the grid: both, if there is anything between its points, or none.
-      CHECK((most_x >= least_x || (!(most_x == most_x) || most_x < 0 || least_x > 1)));
+      CHECK((max_x >= min_x || (!(max_x == max_x) || max_x < 0 || min_x > 1)));
       continue;
     }
-    CHECK(most_x <= 1);
-    CHECK(most_x >= largest - 1e-12);
-    CHECK(least_x >= 0);
-    CHECK(least_x <= smallest + 1e-12);
+    CHECK(max_x <= 1);
+    CHECK(max_x >= largest - 1e-12);
+    CHECK(min_x >= 0);
+    CHECK(min_x <= smallest + 1e-12);
     // With the next speed that goes with it, all bounds are kept.
-    for (const double x : {least_x, most_x}) {
-      CHECK(is_allowed(x, detail::feasible_path_velocities(bounds, x, least, .7).most.value, 1e-9));
+    for (const double x : {min_x, max_x}) {
+      CHECK(
+          is_feasible(x, detail::feasible_path_velocities(bounds, x, least, .7).upper.value, 1e-9));
     }
   }
 }
 
 TEST_CASE("one joint: the trapezoid of the closed form") {
-  for (const double way : {1e-3, .1, 1.0, 30.0}) {
+  for (const double distance : {1e-3, .1, 1.0, 30.0}) {
     const double v = 2, a = 5;
-    const double exact = way > v * v / a ? way / v + v / a : 2 * std::sqrt(way / a);
+    const double exact = distance > v * v / a ? distance / v + v / a : 2 * std::sqrt(distance / a);
     const std::vector<Eigen::Matrix<double, 1, 1>> ends{Eigen::Matrix<double, 1, 1>(1.0),
-                                                        Eigen::Matrix<double, 1, 1>(1 + way)};
+                                                        Eigen::Matrix<double, 1, 1>(1 + distance)};
     const auto q = time_optimal_trajectory(ends, std::array{v}, std::array{a});
     CHECK(q.duration() >= exact * (1 - 1e-12));
     CHECK(q.duration() < exact * (1 + 3e-4));
@@ -200,23 +201,23 @@ TEST_CASE("one joint: the trapezoid of the closed form") {
     // No limit of velocity.
     const auto free = time_optimal_trajectory(
         ends, std::array{std::numeric_limits<double>::infinity()}, std::array{a});
-    CHECK(free.duration() == doctest::Approx(2 * std::sqrt(way / a)).epsilon(2e-4));
+    CHECK(free.duration() == doctest::Approx(2 * std::sqrt(distance / a)).epsilon(2e-4));
   }
 }
 
 TEST_CASE("one joint in motion at its ends: the closed form; backwards first it turns on the way") {
   using one = Eigen::Matrix<double, 1, 1>;
   const double v = 2, a = 5;
-  for (const double way : {.7, 30.0}) {
-    const std::vector<one> ends{one(1.0), one(1 + way)};
+  for (const double distance : {.7, 30.0}) {
+    const std::vector<one> ends{one(1.0), one(1 + distance)};
     for (const auto& rates : {std::array{1.5, 0.0}, {0.0, 1.9}, {1.7, .4}, {2.0, 2.0}}) {
       const double v_0 = rates[0], v_1 = rates[1];
-      CAPTURE(way);
+      CAPTURE(distance);
       CAPTURE(v_0);
       const double squares = v_0 * v_0 + v_1 * v_1;
-      const double peak = std::min(v, std::sqrt(a * way + squares / 2));
+      const double peak = std::min(v, std::sqrt(a * distance + squares / 2));
       const double exact =
-          (2 * peak - v_0 - v_1) / a + (way - (2 * peak * peak - squares) / (2 * a)) / peak;
+          (2 * peak - v_0 - v_1) / a + (distance - (2 * peak * peak - squares) / (2 * a)) / peak;
       const auto q =
           time_optimal_trajectory(ends, std::array{v}, std::array{a},
                                   {.initial_velocities = {v_0}, .final_velocities = {v_1}});
@@ -228,7 +229,7 @@ TEST_CASE("one joint in motion at its ends: the closed form; backwards first it 
     const auto back =
         time_optimal_trajectory(ends, std::array{v}, std::array{a}, {.initial_velocities = {-.3}});
     CHECK(back(0).velocity[0] == doctest::Approx(-.3));
-    CHECK(back(back.duration()).value[0] == doctest::Approx(1 + way));
+    CHECK(back(back.duration()).value[0] == doctest::Approx(1 + distance));
     double least = 1;
     for (int i = 0; i <= 1000; ++i) {
       const auto now = back(back.duration() * i / 1000);
@@ -254,17 +255,18 @@ TEST_CASE("limits are kept on smooth paths, around corners, and however unequal 
   const vector v(1, 2, .7), a(3, 2, 10);
   for (int k = 0; k < 6; ++k) {
     std::vector<vector> waypoints;
-    vector here(0, 0, 0);
+    vector current(0, 0, 0);
     const int count = random.integer(2, 30);
     for (int i = 0; i < count; ++i) {
-      waypoints.push_back(here);
+      waypoints.push_back(current);
       if (i % 7 == 3) {
-        waypoints.push_back(here); // a pause
+        waypoints.push_back(current); // a pause
       }
       const double x = double(i) / count;
-      here = k % 3 == 0 ? vector(std::cos(5 * x), std::sin(5 * x), x)
-                        : vector(here + vector(random.normal(), random.normal(), random.normal()) *
-                                            (k % 3 == 1 ? 1 : random.log_uniform(1e-6, 1)));
+      current = k % 3 == 0
+                    ? vector(std::cos(5 * x), std::sin(5 * x), x)
+                    : vector(current + vector(random.normal(), random.normal(), random.normal()) *
+                                           (k % 3 == 1 ? 1 : random.log_uniform(1e-6, 1)));
     }
     CAPTURE(k);
     CHECK(check(time_optimal_trajectory(waypoints, v, a), waypoints, v, a) > .8);
@@ -299,7 +301,7 @@ TEST_CASE("limits hold to rounding between waypoints that nearly repeat") {
   };
   for (const double tiny : {1e-6, 1e-7, 1e-9}) {
     for (const waypoint_interpolation curve :
-         {waypoint_interpolation::monotone, waypoint_interpolation::smooth}) {
+         {waypoint_interpolation::pchip, waypoint_interpolation::natural_cubic}) {
       for (int kind = 0; kind < 4; ++kind) {
         std::vector<vector> waypoints{vector(.1, .2, .3)};
         for (int k = 0; k < 5; ++k) {
@@ -393,11 +395,12 @@ TEST_CASE("on the same curve hardly longer than where limits are kept at many pl
                                      : vector(random.normal(), random.normal(), random.normal());
       waypoints.push_back(waypoints.back() + (k % 3 == 2 ? random.log_uniform(1e-4, 1) : 1) * step);
     }
-    for (const auto kind : {waypoint_interpolation::monotone, waypoint_interpolation::smooth}) {
+    for (const auto kind : {waypoint_interpolation::pchip, waypoint_interpolation::natural_cubic}) {
       const detail::joint_polygon<vector> polygon(waypoints);
-      const auto curve = detail::hermite_curve(polygon, kind == waypoint_interpolation::smooth
-                                                            ? detail::smooth_slopes(polygon)
-                                                            : detail::monotone_slopes(polygon));
+      const auto curve =
+          detail::hermite_curve(polygon, kind == waypoint_interpolation::natural_cubic
+                                             ? detail::natural_cubic_slopes(polygon)
+                                             : detail::pchip_slopes(polygon));
       const double sampled = sampled_optimum(curve, v, a);
       const double time = time_optimal_trajectory(waypoints, v, a, {.curve = kind}).duration();
       CHECK(time < 1.03 * sampled);
@@ -419,7 +422,7 @@ TEST_CASE(
       polygon.first_slope = vector(.6, 0, .8);
       polygon.last_slope = vector(0, -1, 0);
     }
-    const auto curve = detail::hermite_curve(polygon, detail::smooth_slopes(polygon));
+    const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
     for (std::size_t k = 0; k < curve.size(); ++k) {
       const auto& q = curve[k];
       CHECK((q.value(0) - waypoints[k]).norm() < 1e-14);
@@ -463,22 +466,22 @@ TEST_CASE("starts and ends in motion") {
   // Too fast to slow down; with what is said to be possible it is, a little faster not.
   for (const bool at_end : {false, true}) {
     CAPTURE(at_end);
-    const std::vector<vector> short_way{vector(0, 0, 0), vector(.02, 0, 0)};
+    const std::vector<vector> short_path{vector(0, 0, 0), vector(.02, 0, 0)};
     auto& rates = at_end ? options.final_velocities : options.initial_velocities;
     auto& other = at_end ? options.initial_velocities : options.final_velocities;
     other.clear();
     rates = {.9, 0, 0};
     const auto message =
-        duet_test::message_of([&] { (void)time_optimal_trajectory(short_way, v, a, options); });
+        duet_test::message_of([&] { (void)time_optimal_trajectory(short_path, v, a, options); });
     const std::string before = std::string("duet: time_optimal_trajectory: the ") +
                                (at_end ? "final" : "initial") + " rates are too fast: at most ";
     REQUIRE(message.substr(0, before.size()) == before);
     const double part = std::stod(message.substr(before.size()));
     CHECK(message.substr(message.find(" of")) == " of them can be kept");
     rates[0] = .9 * part;
-    CHECK(time_optimal_trajectory(short_way, v, a, options).duration() > 0);
+    CHECK(time_optimal_trajectory(short_path, v, a, options).duration() > 0);
     rates[0] = .9 * part * 1.003;
-    CHECK_THROWS_AS((void)time_optimal_trajectory(short_way, v, a, options), invalid_input);
+    CHECK_THROWS_AS((void)time_optimal_trajectory(short_path, v, a, options), invalid_input);
     // v² = 2 a s
     CHECK(.9 * part == doctest::Approx(std::sqrt(2 * 2 * .02)).epsilon(1e-3));
   }
@@ -503,14 +506,14 @@ TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
   int beyond = 0;
   for (int k = 0; k < 300; ++k) {
     std::vector<vector> waypoints;
-    vector here(0, 0, 0);
+    vector current(0, 0, 0);
     for (int i = random.integer(2, 15); i >= 0; --i) {
       const vector step(random.normal(), random.normal(), random.normal());
-      here = (here + random.log_uniform(.01, 2) * step).cwiseMin(1).cwiseMax(-1);
-      waypoints.push_back(here);
+      current = (current + random.log_uniform(.01, 2) * step).cwiseMin(1).cwiseMax(-1);
+      waypoints.push_back(current);
     }
     const detail::joint_polygon<vector> polygon(waypoints);
-    const auto smooth = detail::smooth_slopes(polygon);
+    const auto smooth = detail::natural_cubic_slopes(polygon);
     const detail::time_parametrisation_input<3> problem{
         polygon, waypoints.size(), none, one, none, 0, 0, 1, -one, one};
     const auto largest = [&](const std::vector<vector>& slopes) {
@@ -541,9 +544,10 @@ TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
   const vector v(1, 2, 3);
   CHECK(check_shares(q, v, a) > .99);
   CHECK(q.duration() ==
-        time_optimal_trajectory(plan, v, a, {.curve = waypoint_interpolation::smooth}).duration());
+        time_optimal_trajectory(plan, v, a, {.curve = waypoint_interpolation::natural_cubic})
+            .duration());
   CHECK(q.duration() == time_optimal_trajectory(chain, plan.joints, a).duration());
-  CHECK(time_optimal_trajectory(chain, plan, a, {.curve = waypoint_interpolation::monotone})
+  CHECK(time_optimal_trajectory(chain, plan, a, {.curve = waypoint_interpolation::pchip})
             .duration() == time_optimal_trajectory(plan, v, a).duration());
 
   // The first joint turns back at its limit: beyond it on the spline.
@@ -556,13 +560,13 @@ TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
     }
     return result;
   };
-  CHECK(largest(time_optimal_trajectory(plan, v, a, {.curve = waypoint_interpolation::smooth}))[0] >
-        1.01);
+  CHECK(largest(time_optimal_trajectory(
+            plan, v, a, {.curve = waypoint_interpolation::natural_cubic}))[0] > 1.01);
   CHECK(largest(time_optimal_trajectory(chain, plan, a)).maxCoeff() < 1 + 1e-12);
   // From its limit on outwards: on every curve.
   plan.joints[0][0] = 1;
   plan.joints[1][0] = .8;
-  for (const auto kind : {waypoint_interpolation::smooth, waypoint_interpolation::monotone}) {
+  for (const auto kind : {waypoint_interpolation::natural_cubic, waypoint_interpolation::pchip}) {
     const auto message = duet_test::message_of([&] {
       (void)time_optimal_trajectory(chain, plan, a,
                                     {.initial_velocities = {.1, 0, 0}, .curve = kind});

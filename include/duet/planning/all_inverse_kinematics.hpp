@@ -40,16 +40,17 @@ namespace duet {
 /// \tparam N  as in `serial_chain`
 template <int N>
 struct inverse_kinematics_solution {
-  /// Coordinates: of revolute joints within (−π, π], or a full turn from there if that is within
-  /// the limits.
+  /// Coordinates; those of revolute joints are within (−π, π], or a full turn from there if that is
+  /// within the limits.
   detail::joint_vector<double, N> joints =
       detail::zero_initialized<detail::joint_vector<double, N>>();
-  /// Error of the tip relative to the goal: radians, or lengths relative to the arm's size or the
-  /// largest displacement of a prismatic joint, if that is more; whichever is larger.
+  /// Error of the tip relative to the goal: the larger one of the rotation angle and of the
+  /// distance relative to the arm's size, or to the largest prismatic displacement if that is
+  /// larger.
   double residual = 0;
-  /// Smallest singular value of the Jacobian in `frame::hybrid`; 0 where branches meet.
+  /// Smallest singular value of the Jacobian in `frame::hybrid`; 0 at a branch point.
   double smallest_singular_value = 0;
-  /// Multiplicity; 2 where branches meet: between it and another solution the tip stays within
+  /// Multiplicity; 2 at a branch point: between this solution and another one the tip stays within
   /// 3e-13 of the goal.
   int multiplicity = 1;
   bool within_limits = true; ///< true if all joints are within their limits
@@ -74,9 +75,9 @@ struct all_inverse_kinematics_result {
   /// Number of complex solutions: 16 at most in all. (An upper bound for arms of special geometry
   /// that are not solved in closed form.)
   int complex_solutions = 0;
-  solution_method method = solution_method::elimination; ///< method by which they were found
+  solution_method method = solution_method::elimination; ///< method that found the solutions
   /// True if it is certain, to round-off, that there are no other regular solutions. False if the
-  /// joints have a self-motion, and if such a curve might pass and nothing was found.
+  /// joints have a self-motion, or if nothing was found and there may be one.
   bool is_complete = false;
 
   /// For those who extend duet: for `to_text`.
@@ -94,21 +95,21 @@ namespace detail {
 template <class C>
 void require_six_joints(const C& chain) {
   require(chain.size() == 6, "duet: all_inverse_kinematics: the chain has ", chain.size(),
-          " moving joints, not 6");
-  int sliding = 0;
+          " moving joints (expected 6)");
+  int prismatic_count = 0;
   for (int i = 0; i < chain.size(); ++i) {
     require(chain.kind(i) != joint_kind::helical, "duet: all_inverse_kinematics: joint ", i,
-            " is helical: its equations are not algebraic");
-    sliding += chain.kind(i) == joint_kind::prismatic ? 1 : 0;
+            " is helical (expected revolute or prismatic)");
+    prismatic_count += chain.kind(i) == joint_kind::prismatic ? 1 : 0;
   }
-  require(sliding <= 3, "duet: all_inverse_kinematics: ", sliding,
-          " sliding joints, of which 3 are the most");
+  require(prismatic_count <= 3, "duet: all_inverse_kinematics: the chain has ", prismatic_count,
+          " prismatic joints (expected at most 3)");
 }
 
 /// θ moved by a full turn into the limits, if that is possible.
 [[nodiscard]] inline double wrap_into_limits(double theta, const joint_limits<double>& limits) {
-  constexpr double turn = 2 * std::numbers::pi;
-  for (const double x : {theta, theta + turn, theta - turn}) {
+  constexpr double full_turn = 2 * std::numbers::pi;
+  for (const double x : {theta, theta + full_turn, theta - full_turn}) {
     if (x >= limits.lower && x <= limits.upper) {
       return x;
     }
@@ -128,59 +129,59 @@ public:
 
   [[nodiscard]] const loop_equation& loop() const { return loop_; }
 
-  /// Solution in the chain's coordinates, without its singular value.
+  /// Solution in the coordinates of the chain, without its singular value.
   [[nodiscard]] branch
   operator()(const loop_solution& x,
-             const std::optional<coupled_prismatic_pair>& in_place = {}) const {
-    constexpr double rounding = 2e-13; // closed forms have more near singularities
-    branch result = described(x, in_place);
-    if (!in_place && result.residual * max_prismatic_travel(result.joints) > rounding) {
+             const std::optional<coupled_prismatic_pair>& coupled_pair = {}) const {
+    constexpr double rounding = 2e-13; // closed forms have larger errors near singularities
+    branch result = described(x, coupled_pair);
+    if (!coupled_pair && result.residual * max_prismatic_travel(result.joints) > rounding) {
       loop_solution refined = x;
       static_cast<void>(close_loop(loop_, refined.theta, 1));
-      const branch other = described(refined, in_place);
-      result = other.residual < result.residual ? other : result; // it may run away
+      const branch other = described(refined, coupled_pair);
+      result = other.residual < result.residual ? other : result; // the refinement may diverge
     }
     return result;
   }
 
-  /// True if it is a solution and none of `others`.
-  [[nodiscard]] bool is_new(const branch& found, const std::vector<branch>& others) const {
-    return found.residual < as_good_as_none &&
+  /// True if the candidate is a solution and not among `others`.
+  [[nodiscard]] bool is_new(const branch& solution, const std::vector<branch>& others) const {
+    return solution.residual < max_residual &&
            std::none_of(others.begin(), others.end(),
-                        [&](const branch& other) { return is_same(found, other); });
+                        [&](const branch& other) { return is_same(solution, other); });
   }
 
 private:
-  static constexpr double as_good_as_none = 1e-8;
+  static constexpr double max_residual = 1e-8;
 
   /// Largest prismatic displacement relative to the arm's size; at least 1.
   [[nodiscard]] double max_prismatic_travel(const joint_vector<double, C::joints>& theta) const {
     double result = 1;
     for (int i = 0; i < 6; ++i) {
-      if (!loop_.joints[std::size_t(i)].turns) {
+      if (!loop_.joints[std::size_t(i)].is_revolute) {
         result = std::max(result, std::abs(theta[i]) / axes_.size);
       }
     }
     return result;
   }
 
-  /// Moves two joints to the middle of what the limits of both allow, or as little as they need, if
-  /// they can.
-  void slide_within_limits(joint_vector<double, C::joints>& theta,
-                           const coupled_prismatic_pair& slides) const {
-    double &first = theta[slides.first], &second = theta[slides.second];
-    const auto &one = chain_.limits(slides.first), &other = chain_.limits(slides.second);
-    const double way = slides.second_way;
-    // Range of the first by its own limits, and by those of the second.
-    const auto [least, most] =
-        std::minmax({way * (other.lower - second), way * (other.upper - second)});
-    const double lower = std::max(one.lower - first, least),
-                 upper = std::min(one.upper - first, most);
+  /// Moves two coupled prismatic joints to the centre of the range that the limits of both admit,
+  /// or by the smallest displacement into an unbounded one.
+  void move_within_limits(joint_vector<double, C::joints>& theta,
+                          const coupled_prismatic_pair& pair) const {
+    double &first = theta[pair.first], &second = theta[pair.second];
+    const auto &one = chain_.limits(pair.first), &other = chain_.limits(pair.second);
+    const double factor = pair.second_factor;
+    // Range of the displacement of the first joint by its limits and by those of the second.
+    const auto [min_step, max_step] =
+        std::minmax({factor * (other.lower - second), factor * (other.upper - second)});
+    const double lower = std::max(one.lower - first, min_step),
+                 upper = std::min(one.upper - first, max_step);
     if (lower <= upper) {
       const double middle = (lower + upper) / 2,
                    by = std::isfinite(middle) ? middle : std::clamp(0., lower, upper);
       first = std::clamp(first + by, one.lower, one.upper);
-      second = std::clamp(second + way * by, other.lower, other.upper);
+      second = std::clamp(second + factor * by, other.lower, other.upper);
     }
   }
 
@@ -189,24 +190,24 @@ private:
     bool result = true;
     for (int i = 0; i < 6 && result; ++i) {
       const double d = a.joints[i] - b.joints[i];
-      const bool turns = loop_.joints[std::size_t(i)].turns;
-      result = std::abs(turns ? wrap_angle(d) : d / axes_.size) < as_good_as_none;
+      const bool is_revolute = loop_.joints[std::size_t(i)].is_revolute;
+      result = std::abs(is_revolute ? wrap_angle(d) : d / axes_.size) < max_residual;
     }
     return result;
   }
 
   [[nodiscard]] branch described(const loop_solution& x,
-                                 const std::optional<coupled_prismatic_pair>& in_place) const {
+                                 const std::optional<coupled_prismatic_pair>& coupled_pair) const {
     branch result;
     result.joints.resize(chain_.size());
     result.multiplicity = x.multiplicity;
     for (int i = 0; i < 6; ++i) {
-      const bool turns = loop_.joints[std::size_t(i)].turns;
-      result.joints[i] = turns ? wrap_into_limits(wrap_angle(x.theta[i]), chain_.limits(i))
-                               : axes_.size * x.theta[i];
+      const bool is_revolute = loop_.joints[std::size_t(i)].is_revolute;
+      result.joints[i] = is_revolute ? wrap_into_limits(wrap_angle(x.theta[i]), chain_.limits(i))
+                                     : axes_.size * x.theta[i];
     }
-    if (in_place) {
-      slide_within_limits(result.joints, *in_place);
+    if (coupled_pair) {
+      move_within_limits(result.joints, *coupled_pair);
     }
     for (int i = 0; i < 6; ++i) {
       const auto& limits = chain_.limits(i);
@@ -215,9 +216,9 @@ private:
     }
     const tip_pose tip =
         attached(walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
-    const pose_error left = deviation_of(error_twist(tip, goal_));
+    const pose_error error = deviation_of(error_twist(tip, goal_));
     result.residual = std::max(
-        left.translation / (axes_.size * max_prismatic_travel(result.joints)), left.rotation);
+        error.translation / (axes_.size * max_prismatic_travel(result.joints)), error.rotation);
     return result;
   }
 
@@ -227,13 +228,13 @@ private:
   loop_equation loop_;
 };
 
-/// Computes the singular values in SIMD batches of eight: a batch takes little more than one.
+/// Computes the singular values in SIMD batches of eight, which take little longer than one value.
 template <class C>
 void fill_singular_values(const C& chain,
                           std::vector<inverse_kinematics_solution<C::joints>>& all) {
   using eight = batch<double, 8>;
   for (std::size_t first = 0; first < all.size(); first += 8) {
-    Eigen::Matrix<eight, 6, 1> theta; // the last one again if there are fewer
+    Eigen::Matrix<eight, 6, 1> theta; // if there are fewer, the last one is repeated
     for (int k = 0; k < 6; ++k) {
       theta[k] = eight::from_lanes(
           [&](int i) { return all[std::min(first + std::size_t(i), all.size() - 1)].joints[k]; });
@@ -256,8 +257,8 @@ void fill_singular_values(const C& chain,
 /// displaced from the given ones by 1e-4 and less of the arm's size, so that no solutions coincide,
 /// and Newton's method from there (docs/all_inverse_kinematics.md). Joints beyond their limits are
 /// reported by `within_limits`. If the joints have a self-motion, some of its configurations are
-/// returned: for two prismatic joints that slide along each other wherever the others are, one for
-/// each solution of these, in the middle of what the limits of both allow.
+/// returned: for two prismatic joints that are parallel in every configuration, one for each
+/// solution of the other joints, at the centre of the range that the limits of both admit.
 ///
 /// \param chain  six joints, revolute or prismatic, at most three of them prismatic
 /// \throws invalid_input for other chains, and for a goal that is not a pose
@@ -274,11 +275,11 @@ all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {
   result.is_complete = search.answer().is_complete;
   result.solutions.reserve(search.answer().solutions.size());
   for (const detail::loop_solution& x : search.answer().solutions) {
-    const auto found = branches(x, search.answer().in_place);
-    if (branches.is_new(found, result.solutions)) {
-      result.solutions.push_back(found);
+    const auto solution = branches(x, search.answer().coupled_pair);
+    if (branches.is_new(solution, result.solutions)) {
+      result.solutions.push_back(solution);
     } else {
-      result.complex_solutions += x.multiplicity; // two that nearly coincide, not quite real
+      result.complex_solutions += x.multiplicity; // two that nearly coincide, complex by round-off
     }
   }
   detail::fill_singular_values(chain, result.solutions);
@@ -292,12 +293,13 @@ all_inverse_kinematics(const C& chain, const dual_quaternion<double>& goal) {
 DUET_ASKS_FOR_ONE_CONFIGURATION(all_inverse_kinematics, all_inverse_kinematics_result<C::joints>)
 
 template <SerialChain C, VectorLike Start>
-DUET_REFUSED("all solutions are found without a start: all_inverse_kinematics(chain, goal)")
+DUET_REFUSED(
+    "all solutions are found without an initial guess: all_inverse_kinematics(chain, goal)")
 all_inverse_kinematics_result<C::joints> all_inverse_kinematics(const C&,
                                                                 const dual_quaternion<double>&,
                                                                 const Start&);
 template <SerialChain C, Real T>
-DUET_REFUSED("the goal is a rotation, which says nothing of where: pose(q, t)")
+DUET_REFUSED("the goal is a rotation, which has no position: pose(q, t)")
 all_inverse_kinematics_result<C::joints> all_inverse_kinematics(const C&, const quaternion<T>&);
 
 } // namespace duet

@@ -51,13 +51,13 @@ struct joint_cubic {
 };
 
 /// Position on a segment of a path, with derivatives with respect to time.
-struct path_place {
+struct path_state {
   double s, speed, acceleration, jerk;
 };
 
 /// Time scaling of a segment of a path: s = a τ + b τ² + c τ³, where τ starts with a speed and an
 /// acceleration and τ⃛ = growth τ̇; so τ̈ = acceleration + growth τ.
-struct time_law {
+struct time_scaling {
   double time;         ///< time at the beginning
   double speed;        ///< τ̇ at the beginning
   double acceleration; ///< τ̈ at the beginning
@@ -65,7 +65,7 @@ struct time_law {
   double a = 1, b = 0, c = 0;
 
   /// Position at time t, not beyond the end of a segment of that length.
-  [[nodiscard]] path_place at(double t, double length) const {
+  [[nodiscard]] path_state at(double t, double length) const {
     const double since = t - time;
     double tau = since * (speed + since * acceleration / 2);
     double rate = speed + since * acceleration;
@@ -90,14 +90,14 @@ struct time_law {
 /// Segment of a path with its time scaling.
 template <class V>
 struct timed_piece {
-  time_law law;
+  time_scaling scaling;
   joint_cubic<V> path;
 };
 
 } // namespace detail
 
-/// Joint coordinates as a function of time, once continuously differentiable, and twice if there
-/// are limits of jerk.
+/// Joint coordinates as a function of time, once continuously differentiable; twice with jerk
+/// limits.
 ///
 /// \tparam N  as in `serial_chain`
 template <int N>
@@ -110,25 +110,25 @@ public:
 
   /// Duration, in seconds if limits are per second.
   [[nodiscard]] double duration() const { return times_.back(); }
-  /// Times at which it passes the waypoints.
+  /// Times at which the waypoints are passed.
   [[nodiscard]] const std::vector<double>& times() const { return times_; }
-  /// Coordinates, velocities and accelerations at time t; where the acceleration jumps, one of the
-  /// two. Up to 8 ulp of the duration beyond an end is that end.
+  /// Coordinates, velocities and accelerations at time t; at a jump of the acceleration, one of
+  /// both values. A t up to 8 ulp of the duration beyond an end counts as that end.
   ///
   /// \throws invalid_input for t outside 0 … duration()
   [[nodiscard]] joint_state<vector> operator()(double t) const {
-    const auto& [law, path] = piece_at(t);
-    const auto [s, speed, acceleration, jerk] = law.at(t, path.length);
+    const auto& [scaling, path] = piece_at(t);
+    const auto [s, speed, acceleration, jerk] = scaling.at(t, path.length);
     const vector slope = path.first(s);
     return {path.value(s), vector(speed * slope),
             vector(acceleration * slope + speed * speed * path.second(s))};
   }
-  /// Jerk at time t, the derivatives of the accelerations; where they jump, one of the two.
+  /// Jerk at time t, the derivative of the acceleration; at a jump, one of both values.
   ///
   /// \throws invalid_input as `operator()`
   [[nodiscard]] vector jerk(double t) const {
-    const auto& [law, path] = piece_at(t);
-    const auto [s, speed, acceleration, jerk] = law.at(t, path.length);
+    const auto& [scaling, path] = piece_at(t);
+    const auto [s, speed, acceleration, jerk] = scaling.at(t, path.length);
     return jerk * path.first(s) + 3 * speed * acceleration * path.second(s) +
            speed * speed * speed * 6 * path.c3;
   }
@@ -140,13 +140,13 @@ private:
       t = detail::clamp_rounding(t, 0.0, duration());
       if (!(t >= 0 && t <= duration())) {
         detail::raise(invalid_input("duet: joint_trajectory: t is " + to_text(t) +
-                                    ", outside 0 to " + to_text(duration()) +
-                                    "; std::clamp makes it stay at its end"));
+                                    " (expected 0 to " + to_text(duration()) +
+                                    "; std::clamp gives the state at an end)"));
       }
     }
     const auto next =
         std::upper_bound(pieces_.begin() + 1, pieces_.end(), t,
-                         [](double at, const auto& piece) { return at < piece.law.time; });
+                         [](double at, const auto& piece) { return at < piece.scaling.time; });
     return *(next - 1);
   }
 

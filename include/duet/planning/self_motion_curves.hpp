@@ -25,7 +25,7 @@ namespace duet {
 /// Options of `self_motion_curves`.
 struct self_motion_options {
   /// Maximum distance from one point of a curve to the next, and between the values at which each
-  /// joint is held in turn to find curves: radians, or lengths relative to the arm's size.
+  /// joint is fixed in the search for curves: radians, or lengths relative to the arm's size.
   double resolution = .1;
 };
 
@@ -60,15 +60,15 @@ namespace detail {
 template <class C>
 void require_seven_joints(const C& chain) {
   require(chain.size() == 7, "duet: self_motion_curves: the chain has ", chain.size(),
-          " moving joints, not 7");
-  int sliding = 0;
+          " moving joints (expected 7)");
+  int prismatic_count = 0;
   for (int i = 0; i < chain.size(); ++i) {
     require(chain.kind(i) != joint_kind::helical, "duet: self_motion_curves: joint ", i,
-            " is helical: its equations are not algebraic");
-    sliding += chain.kind(i) == joint_kind::prismatic;
+            " is helical (expected revolute or prismatic)");
+    prismatic_count += chain.kind(i) == joint_kind::prismatic;
   }
-  require(sliding <= 1, "duet: self_motion_curves: ", sliding,
-          " sliding joints, of which 1 is the most");
+  require(prismatic_count <= 1, "duet: self_motion_curves: the chain has ", prismatic_count,
+          " prismatic joints (expected at most 1)");
 }
 
 /// Chain and goal as the search uses them; refers to the chain.
@@ -80,25 +80,26 @@ template <class C>
   result.size = model.length;
   result.goal = goal;
   for (std::size_t i = 0; i < 7; ++i) {
-    result.turns[i] = model.turns[i];
+    result.is_revolute[i] = model.turns[i];
   }
-  result.gap = [model, place = tip_pose{goal.rotation, 1 / model.length * goal.translation}](
-                   const seven_coordinates& x, seven_columns& jacobian) {
+  result.tip_error = [model,
+                      scaled_goal = tip_pose{goal.rotation, 1 / model.length * goal.translation}](
+                         const seven_coordinates& x, seven_columns& jacobian) {
     const auto state = model.at(model.joints(x));
-    const small_twist e = error_twist(state.tip, place);
-    six_coordinates left;
+    const small_twist e = error_twist(state.tip, scaled_goal);
+    six_coordinates error;
     for (int k = 0; k < 6; ++k) {
-      left[k] = e[k];
+      error[k] = e[k];
       for (int i = 0; i < 7; ++i) {
         jacobian(k, i) = state.jacobian(k, i);
       }
     }
-    return left;
+    return error;
   };
-  result.axes_beside = [&chain](int held, double value) {
+  result.axes_without = [&chain](int fixed, double value) {
     joints theta = joints::Zero(chain.size());
-    theta[held] = value;
-    return chain_screws(chain, theta, held);
+    theta[fixed] = value;
+    return chain_screws(chain, theta, fixed);
   };
   return result;
 }
@@ -109,11 +110,12 @@ template <class C>
 /// holds its tip at the pose `goal`, within limits or not, and at singular poses the components of
 /// other dimensions.
 ///
-/// Each revolute joint is held in turn at values a `resolution` apart, where the solutions of the
-/// other six are found as by `all_inverse_kinematics`; from these the curves are traced by
+/// Each revolute joint is fixed at values at intervals of `resolution`, where
+/// `all_inverse_kinematics` solves for the other six. From these solutions the curves are traced by
 /// predictor–corrector continuation: steps along the null space of the Jacobian and projections by
-/// the Levenberg–Marquardt method. Curves that cross are followed straight on and are as many as
-/// cross. A component on which every joint moves less than `resolution` may be missed.
+/// the Levenberg–Marquardt method. Curves that cross are continued smoothly through the crossing
+/// and are separate elements. A component on which every joint moves less than `resolution` may be
+/// missed.
 ///
 /// At a singular pose, as with a straight elbow, wrist or shoulder, solutions from 256 random
 /// configurations are added. The dimension at a solution is that of the span of the solutions near
@@ -136,13 +138,13 @@ self_motion_curves(const C& chain, const dual_quaternion<double>& goal,
   const auto arm = detail::seven_joints_of(chain, detail::to_tip_pose(normalized(goal)));
   std::vector<self_motion_curve<C::joints>> result;
   for (const detail::traced_curve& curve : detail::all_curves(arm, options.resolution)) {
-    self_motion_curve<C::joints> own;
-    own.is_closed = curve.is_closed;
-    own.dimension = curve.dimension;
+    self_motion_curve<C::joints> configurations;
+    configurations.is_closed = curve.is_closed;
+    configurations.dimension = curve.dimension;
     for (const auto& x : curve.points) {
-      own.joints.push_back(detail::to_chain_joints(chain, x));
+      configurations.joints.push_back(detail::to_chain_joints(chain, x));
     }
-    result.push_back(std::move(own));
+    result.push_back(std::move(configurations));
   }
   return result;
 }

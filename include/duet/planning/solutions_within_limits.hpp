@@ -21,14 +21,14 @@ namespace duet::detail {
 /// `self_motion_curves` require.
 template <class C>
 [[nodiscard]] bool is_algebraic(const C& chain, int n) {
-  int sliding = 0;
+  int prismatic_count = 0;
   for (int i = 0; i < chain.size(); ++i) {
     if (chain.kind(i) == joint_kind::helical) {
       return false;
     }
-    sliding += chain.kind(i) == joint_kind::prismatic;
+    prismatic_count += chain.kind(i) == joint_kind::prismatic;
   }
-  return chain.size() == n && sliding <= (n == 6 ? 3 : 1);
+  return chain.size() == n && prismatic_count <= (n == 6 ? 3 : 1);
 }
 
 /// Solutions of inverse kinematics, and whether there are no others.
@@ -44,22 +44,22 @@ template <class C>
 [[nodiscard]] solution_list<C::joints> solutions_within_limits(const C& chain,
                                                                const dual_quaternion<double>& goal,
                                                                const pose_tolerance& tolerance) {
-  constexpr double turn = 2 * std::numbers::pi;
+  constexpr double full_turn = 2 * std::numbers::pi;
   const auto all = all_inverse_kinematics(chain, goal);
   solution_list<C::joints> result{{}, all.is_complete};
   for (const auto& each : all.solutions) {
     auto theta = each.joints;
     bool is_within = true;
     for (int i = 0; i < chain.size(); ++i) {
-      const bool slides = chain.kind(i) == joint_kind::prismatic;
-      const double slack = slides ? tolerance.translation : tolerance.rotation;
-      const double least = chain.limits(i).lower - slack, most = chain.limits(i).upper + slack;
-      if (!slides && theta[i] < least) {
-        theta[i] += turn * std::ceil((least - theta[i]) / turn);
-      } else if (!slides && theta[i] > most) {
-        theta[i] -= turn * std::ceil((theta[i] - most) / turn);
+      const bool is_prismatic = chain.kind(i) == joint_kind::prismatic;
+      const double slack = is_prismatic ? tolerance.translation : tolerance.rotation;
+      const double lower = chain.limits(i).lower - slack, upper = chain.limits(i).upper + slack;
+      if (!is_prismatic && theta[i] < lower) {
+        theta[i] += full_turn * std::ceil((lower - theta[i]) / full_turn);
+      } else if (!is_prismatic && theta[i] > upper) {
+        theta[i] -= full_turn * std::ceil((theta[i] - upper) / full_turn);
       }
-      is_within = is_within && theta[i] >= least && theta[i] <= most;
+      is_within = is_within && theta[i] >= lower && theta[i] <= upper;
       theta[i] = std::clamp(theta[i], chain.limits(i).lower, chain.limits(i).upper);
     }
     if (is_within) {

@@ -46,13 +46,13 @@ bool visit_zeros(const first_harmonic& f, const Visit& visit, double error = 0) 
   if (!(r > rounding)) {
     return std::abs(f.a) > rounding;
   }
-  const double cosine = -f.a / r, middle = std::atan2(f.c, f.b);
+  const double cosine = -f.a / r, centre = std::atan2(f.c, f.b);
   if (std::abs(cosine) <= 1 - one_angle * one_angle) {
-    const double turn = std::acos(cosine);
-    visit(middle + turn, 1);
-    visit(middle - turn, 1);
+    const double half_distance = std::acos(cosine);
+    visit(centre + half_distance, 1);
+    visit(centre - half_distance, 1);
   } else if (std::abs(cosine) <= 1 + std::max(nearly, error / r)) {
-    visit(cosine > 0 ? middle : middle + std::acos(-1.), 2);
+    visit(cosine > 0 ? centre : centre + std::acos(-1.), 2);
   }
   return std::abs(std::abs(cosine) - 1) * r >= error;
 }
@@ -68,18 +68,18 @@ struct angle_pairs {
   bool operator()(const Visit& visit) const {
     const double by_theta = regularity(f), by_phi = regularity(g);
     const auto swapped = [&](double x, double y, int m) { visit(y, x, m); };
-    if (is_still(f) || is_still(g)) {
-      is_still(f) ? by_rest(f, g, visit) : by_rest(g, f, swapped);
+    if (is_constant(f) || is_constant(g)) {
+      is_constant(f) ? solve_constant(f, g, visit) : solve_constant(g, f, swapped);
       return false;
     }
     constexpr double singular = 1e-9;
     if (std::min(by_theta, by_phi) > singular) {
       if (by_theta >= by_phi) {
-        return by_both(f, g, visit);
+        return solve_regular(f, g, visit);
       }
-      return by_both(g, f, swapped);
+      return solve_regular(g, f, swapped);
     }
-    return by_theta < by_phi ? by_one(f, g, visit) : by_one(g, f, swapped);
+    return by_theta < by_phi ? solve_dependent(f, g, visit) : solve_dependent(g, f, swapped);
   }
 
 private:
@@ -95,14 +95,14 @@ private:
   }
 
   /// True if f does not depend on its angle, to round-off.
-  [[nodiscard]] static bool is_still(const two_values& f) {
+  [[nodiscard]] static bool is_constant(const two_values& f) {
     constexpr double rounding = 1e-12;
     return std::max(f[0].square(), f[1].square()) <= rounding * rounding;
   }
   /// Solves for φ if θ is arbitrary: by the equation with the larger amplitude, where the other one
   /// holds, too.
   template <class Visit>
-  static void by_rest(const two_values& f, const two_values& g, const Visit& visit) {
+  static void solve_constant(const two_values& f, const two_values& g, const Visit& visit) {
     constexpr double rounding = 1e-6; // for φ where the zeros nearly coincide
     const std::size_t k = g[0].square() >= g[1].square() ? 0 : 1;
     static_cast<void>(
@@ -115,16 +115,16 @@ private:
 
   /// Solves a system of which a linear combination of both equations does not depend on θ.
   template <class Visit>
-  static bool by_one(const two_values& f, const two_values& g, const Visit& visit) {
+  static bool solve_dependent(const two_values& f, const two_values& g, const Visit& visit) {
     const double at_0 = std::hypot(f[0].b, f[0].c), at_1 = std::hypot(f[1].b, f[1].c);
     const std::size_t larger = at_0 >= at_1 ? 0 : 1, other = 1 - larger;
     const first_harmonic &fl = f[larger], &fo = f[other], &gl = g[larger], &go = g[other];
     const double size = fl.b * fl.b + fl.c * fl.c;
     const double ratio = size > 0 ? (fl.b * fo.b + fl.c * fo.c) / size : 0;
     bool is_determined = true;
-    const first_harmonic left{go.a - fo.a - ratio * (gl.a - fl.a), go.b - ratio * gl.b,
-                              go.c - ratio * gl.c};
-    const bool has_phi = visit_zeros(left, [&](double phi, int m) {
+    const first_harmonic in_phi{go.a - fo.a - ratio * (gl.a - fl.a), go.b - ratio * gl.b,
+                                go.c - ratio * gl.c};
+    const bool has_phi = visit_zeros(in_phi, [&](double phi, int m) {
       const bool has_theta = visit_zeros({fl.a - gl.at(phi), fl.b, fl.c},
                                          [&](double theta, int n) { visit(theta, phi, m * n); });
       is_determined = is_determined && has_theta;
@@ -136,7 +136,7 @@ private:
   ///
   /// \return false if the equation is zero to round-off
   template <class Visit>
-  static bool by_both(const two_values& f, const two_values& g, const Visit& visit) {
+  static bool solve_regular(const two_values& f, const two_values& g, const Visit& visit) {
     const double d = determinant(f);
     const auto solved = [&](double r0, double r1) {
       return std::array{(r0 * f[1].c - r1 * f[0].c) / d, (f[0].b * r1 - f[1].b * r0) / d};
@@ -147,16 +147,17 @@ private:
     using complex = std::complex<double>;
     const complex q0(v[0] / 2, -w[0] / 2), q1(v[1] / 2, -w[1] / 2);
     const double squares = u[0] * u[0] + u[1] * u[1] + 2 * (std::norm(q0) + std::norm(q1));
-    const std::array<complex, 3> left{squares - 1, 2. * (u[0] * q0 + u[1] * q1), q0 * q0 + q1 * q1};
+    const std::array<complex, 3> coefficients{squares - 1, 2. * (u[0] * q0 + u[1] * q1),
+                                              q0 * q0 + q1 * q1};
     // Ratio of round-off to that of coefficients of which the largest is 1.
     const double noise =
-        (squares + 1) /
-        std::sqrt(std::max({std::norm(left[0]), std::norm(left[1]), std::norm(left[2])}));
+        (squares + 1) / std::sqrt(std::max({std::norm(coefficients[0]), std::norm(coefficients[1]),
+                                            std::norm(coefficients[2])}));
     constexpr double vanishing = 1e12;
     if (noise > vanishing) {
       return false; // for every φ there is a θ
     }
-    const circle_roots<2> roots(left);
+    const circle_roots<2> roots(coefficients);
     std::array<bool, 4> is_done{};
     for (int i = 0; i < 4; ++i) {
       const complex z = roots[i];

@@ -43,7 +43,7 @@ private:
   branch_search() = default;
 
   void search(const loop_equation& loop);
-  void search_beside(const loop_equation& loop);
+  void search_near_goal(const loop_equation& loop);
   /// Solves the loop that begins with its joint number `first` as a loop of the type `Form`.
   ///
   /// \return false if no solution is found and coordinates are undetermined

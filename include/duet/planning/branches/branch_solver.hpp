@@ -32,8 +32,8 @@ namespace duet::detail {
 [[nodiscard]] inline std::optional<vector3d> common_point(const loop_joint& a, const loop_joint& b,
                                                           const loop_joint& c) {
   constexpr double rounding = 1e-9, across = 1e-6;
-  if (!a.turns || !b.turns || !c.turns || length_of(cross(a.axis, b.axis)) < across ||
-      length_of(cross(b.axis, c.axis)) < across) {
+  if (!a.is_revolute || !b.is_revolute || !c.is_revolute ||
+      length_of(cross(a.axis, b.axis)) < across || length_of(cross(b.axis, c.axis)) < across) {
     return {};
   }
   const vector3d point = nearest_point(a, b);
@@ -44,31 +44,31 @@ namespace duet::detail {
 }
 
 [[nodiscard]] inline bool are_parallel(const loop_joint& a, const loop_joint& b) {
-  return a.turns && b.turns && is_on(a.axis, b.axis);
+  return a.is_revolute && b.is_revolute && is_on(a.axis, b.axis);
 }
 
 template <class Form, class... Rest>
 bool branch_search::solve(solution_method method, int first, const loop_equation& loop,
                           const Rest&... rest) {
-  constexpr int most = std::same_as<Form, three_prismatic_loop> ? 2 : 8;
-  constexpr double rounding = 1e-13, beside = .01;
+  constexpr int max_solutions = std::same_as<Form, three_prismatic_loop> ? 2 : 8;
+  constexpr double rounding = 1e-13, nearby = .01;
   const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
-    const closure_error gap(loop, theta);
-    if (gap.twist.norm() > rounding * gap.size) { // near a singularity
+    const closure_error closure(loop, theta);
+    if (closure.twist.norm() > rounding * closure.size) { // near a singularity
       six_coordinates refined = theta;
-      if (close_loop(loop, refined) && (refined - theta).norm() < beside * gap.size) {
+      if (close_loop(loop, refined) && (refined - theta).norm() < nearby * closure.size) {
         theta = refined;
       } else if (multiplicity > 1) {
         return; // a complex pair that is nearly real
       }
     }
-    loop_solution found{theta, multiplicity};
+    loop_solution solution{theta, multiplicity};
     for (int k = 0; k < 6; ++k) {
       const auto i = std::size_t((k + first) % 6);
-      found.theta[Eigen::Index(i)] =
-          loop.joints[std::size_t(k)].turns ? wrap_angle(theta[k]) : theta[k];
+      solution.theta[Eigen::Index(i)] =
+          loop.joints[std::size_t(k)].is_revolute ? wrap_angle(theta[k]) : theta[k];
     }
-    answer_.solutions.push_back(found);
+    answer_.solutions.push_back(solution);
     answer_.complex_solutions -= multiplicity;
   });
   if (!is_determined && answer_.solutions.empty()) {
@@ -76,7 +76,7 @@ bool branch_search::solve(solution_method method, int first, const loop_equation
     return false;
   }
   method_ = method;
-  answer_.complex_solutions = std::max(0, answer_.complex_solutions + most);
+  answer_.complex_solutions = std::max(0, answer_.complex_solutions + max_solutions);
   answer_.is_complete = is_determined;
   return true;
 }
@@ -88,25 +88,27 @@ DUET_COMPILED_FUNCTION loop_solution_set eliminated(const loop_equation& loop) {
 DUET_COMPILED_FUNCTION branch_search::branch_search(const loop_equation& loop) {
   search(loop);
   const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop),
-             is_general = method_ == solution_method::elimination ||
-                          method_ == solution_method::two_prismatic; // both displace by themselves
+             is_general =
+                 method_ == solution_method::elimination ||
+                 method_ == solution_method::two_prismatic; // these search near the goal themselves
   if (answer_.solutions.empty() && !is_certain && !is_general) {
-    search_beside(loop);
+    search_near_goal(loop);
   }
-  if (method_ != solution_method::two_prismatic) { // which detects permanent self-motion itself
+  if (method_ !=
+      solution_method::two_prismatic) { // that method detects permanent self-motion itself
     answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
   }
 }
 
 /// Searches for solutions with slightly displaced goals: round-off may have made a double solution
 /// complex, and with a nearby goal it is complex or two real ones.
-inline void branch_search::search_beside(const loop_equation& loop) {
-  constexpr int times = 6;
-  constexpr double by = 1e-7;
-  for (int k = 0; k < times && answer_.solutions.empty(); ++k) {
-    branch_search beside;
-    beside.search(with_disturbed_goal(loop, by, std::uint64_t(k) + 1));
-    for (loop_solution x : beside.answer_.solutions) {
+inline void branch_search::search_near_goal(const loop_equation& loop) {
+  constexpr int attempts = 6;
+  constexpr double displacement = 1e-7;
+  for (int k = 0; k < attempts && answer_.solutions.empty(); ++k) {
+    branch_search nearby;
+    nearby.search(with_disturbed_goal(loop, displacement, std::uint64_t(k) + 1));
+    for (loop_solution x : nearby.answer_.solutions) {
       answer_.is_complete = false;
       if (answer_.solutions.empty() && close_loop(loop, x.theta)) {
         answer_.solutions.push_back(x);
@@ -118,16 +120,15 @@ inline void branch_search::search_beside(const loop_equation& loop) {
 
 inline void branch_search::search(const loop_equation& loop) {
   const auto& joints = loop.joints;
-  const auto sliding =
-      std::count_if(joints.begin(), joints.end(), [](const loop_joint& j) { return !j.turns; });
-  if (sliding == 3) {
+  const auto prismatic_count = std::count_if(joints.begin(), joints.end(),
+                                             [](const loop_joint& j) { return !j.is_revolute; });
+  if (prismatic_count == 3) {
     solve<three_prismatic_loop>(solution_method::three_prismatic, 0, loop);
     return;
   }
-  if (sliding == 2) {
-    const auto in_place = parallel_prismatic_of(loop);
-    answer_ =
-        in_place ? solve_parallel_prismatic(*in_place) : solve_general_loop<two_prismatic>(loop);
+  if (prismatic_count == 2) {
+    const auto pair = parallel_prismatic_of(loop);
+    answer_ = pair ? solve_parallel_prismatic(*pair) : solve_general_loop<two_prismatic>(loop);
     method_ = solution_method::two_prismatic;
     return;
   }
@@ -138,7 +139,7 @@ inline void branch_search::search(const loop_equation& loop) {
     }
     return result;
   };
-  for (std::size_t i = 0; i < 4 && sliding == 0; ++i) {
+  for (std::size_t i = 0; i < 4 && prismatic_count == 0; ++i) {
     const loop_joint &a = joints[i], &b = joints[i + 1], &c = joints[i + 2];
     const int first = int(i), after = (first + 3) % 6;
     if (const auto centre = common_point(a, b, c)) {

@@ -20,7 +20,7 @@ namespace duet::detail {
 struct chain_screws {
   std::array<loop_joint, 6> joints{};
   tip_pose tip{}; ///< pose in the zero configuration, in the frame and units of the base
-  three_vector<double> middle{};
+  three_vector<double> centre{};
   double size = 1;
 
   /// Takes the axes from a chain.
@@ -46,7 +46,7 @@ struct chain_screws {
   /// \param goal  tip pose in the base frame
   [[nodiscard]] loop_equation loop_to(const tip_pose& goal) const {
     tip_pose closing = goal * inverse_pose(tip);
-    closing.translation = 1 / size * (closing.point(middle) - middle);
+    closing.translation = 1 / size * (closing.point(centre) - centre);
     return {joints, closing};
   }
 

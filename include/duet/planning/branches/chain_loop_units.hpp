@@ -31,19 +31,19 @@ DUET_COMPILED_FUNCTION void chain_screws::normalise() {
   // refined as often as is needed to remove the effect of the damping otherwise. (Eigen's
   // decompositions take g++ two seconds to compile.)
   const Eigen::Matrix3d damped = (squares + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
-  Eigen::Vector3d least = Eigen::Vector3d::Zero();
+  Eigen::Vector3d solution = Eigen::Vector3d::Zero();
   for (int k = 0; k < 6; ++k) {
-    least += damped * (sum - squares * least);
+    solution += damped * (sum - squares * solution);
   }
-  middle = components(least);
-  double largest = 0, reach = length_of(middle);
+  centre = components(solution);
+  double largest = 0, reach = length_of(centre);
   for (loop_joint& j : joints) {
     reach = std::max(reach, length_of(j.point));
-    const auto from_middle = j.point - middle;
-    j.point = from_middle - dot(from_middle, j.axis) * j.axis;
+    const auto from_centre = j.point - centre;
+    j.point = from_centre - dot(from_centre, j.axis) * j.axis;
     largest = std::max(largest, length_of(j.point));
   }
-  const double to_tip = length_of(tip.translation - middle), rounding = 1e-12 * reach;
+  const double to_tip = length_of(tip.translation - centre), rounding = 1e-12 * reach;
   size = largest > rounding ? largest : to_tip > rounding ? to_tip : 1; // all axes meet
   for (loop_joint& j : joints) {
     j.point = 1 / size * j.point;

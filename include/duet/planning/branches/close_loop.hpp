@@ -20,30 +20,30 @@ DUET_COMPILED_FUNCTION bool close_loop(const loop_equation& loop, six_coordinate
   double before = HUGE_VAL;
   six_coordinates last = six_coordinates::Zero(), measured = theta;
   for (int k = 0; k < 60; ++k) {
-    const closure_error gap(loop, theta);
-    const double to_angle = gap.size / std::min(gap.size, size_of_angles);
-    const double left = std::sqrt(gap.twist.head<3>().squaredNorm() +
-                                  to_angle * to_angle * gap.twist.tail<3>().squaredNorm()) /
-                        gap.size;
-    if (left <= rounding || (left <= good && left >= before / 2)) {
+    const closure_error closure(loop, theta);
+    const double to_angle = closure.size / std::min(closure.size, size_of_angles);
+    const double residual = std::sqrt(closure.twist.head<3>().squaredNorm() +
+                                      to_angle * to_angle * closure.twist.tail<3>().squaredNorm()) /
+                            closure.size;
+    if (residual <= rounding || (residual <= good && residual >= before / 2)) {
       return true;
     }
-    if ((k >= 20 && !(left < .1)) || (k >= 40 && !(left < hopeful))) {
+    if ((k >= 20 && !(residual < .1)) || (k >= 40 && !(residual < hopeful))) {
       return false;
     }
-    before = left;
+    before = residual;
     measured = theta;
-    six_coordinates step = least_solution(gap.jacobian, gap.twist);
-    if (left <= good && !(step.norm() < singular)) {
+    six_coordinates step = least_solution(closure.jacobian, closure.twist);
+    if (residual <= good && !(step.norm() < singular)) {
       return true; // the residual is round-off, which a step would amplify
     }
     // Steps of this length close an error of fourth order.
-    const double longest = std::min(.5, 2 * gap.size * std::sqrt(std::sqrt(left)));
-    if (!(step.norm() < longest)) { // damped least squares: min |J x − e|² + |e|² |x|²
+    const double max_step = std::min(.5, 2 * closure.size * std::sqrt(std::sqrt(residual)));
+    if (!(step.norm() < max_step)) { // damped least squares: min |J x − e|² + |e|² |x|²
       Eigen::Matrix<double, 6, 12> damped;
-      damped << gap.jacobian, left * six_columns::Identity();
-      step = least_solution(damped, gap.twist).head<6>();
-      step *= std::min(1.0, longest / step.norm());
+      damped << closure.jacobian, residual * six_columns::Identity();
+      step = least_solution(damped, closure.twist).head<6>();
+      step *= std::min(1.0, max_step / step.norm());
       if (!step.allFinite()) {
         return false;
       }

@@ -65,8 +65,8 @@ public:
     const rotating_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
     const auto height = [&](const rotating_vector& x) { return part_along(second.axis, x); };
     const auto square = [&](const rotating_vector& x) {
-      const double still = dot(x.across, x.across) + dot(x.along, x.along);
-      return first_harmonic{still, 2 * dot(x.along, x.across), 2 * dot(x.along, x.beside)};
+      const double constant = dot(x.across, x.across) + dot(x.along, x.along);
+      return first_harmonic{constant, 2 * dot(x.along, x.across), 2 * dot(x.along, x.normal)};
     };
     const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
     connecting_rotation middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
@@ -87,10 +87,10 @@ private:
   /// \return false if coordinates are undetermined
   template <class Visit>
   bool wrist(six_coordinates& theta, int multiplicity, double error, const Visit& visit) const {
-    const quaternion<double> turn =
+    const quaternion<double> rotation =
         conj(product_of_joints(loop_, theta, 0, 3).rotation) * loop_.closing.rotation;
     const double nearest = for_each_three_axis_decomposition(
-        loop_.joints[3], loop_.joints[4], loop_.joints[5], turn,
+        loop_.joints[3], loop_.joints[4], loop_.joints[5], rotation,
         [&](double alpha, double beta, double gamma, int m) {
           theta.tail<3>() << alpha, beta, gamma;
           visit(theta, multiplicity * m);
@@ -106,11 +106,11 @@ private:
     constexpr double rounding = 3e-15;
     const six_columns all = closure_error(loop_, theta).jacobian;
     const Eigen::Vector3d goal = loop_.closing.point(centre_);
-    Eigen::Matrix3d ways;
+    Eigen::Matrix3d velocities;
     for (int i = 0; i < 3; ++i) {
-      ways.col(i) = all.col(i).head<3>() + all.col(i).tail<3>().cross(goal);
+      velocities.col(i) = all.col(i).head<3>() + all.col(i).tail<3>().cross(goal);
     }
-    return rounding * ways.inverse().norm();
+    return rounding * velocities.inverse().norm();
   }
 
   const loop_equation& loop_;
@@ -176,14 +176,15 @@ private:
     };
     const tip_pose after = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 5, 1)),
                    before = inverse_pose(product_of_joints(loop_, theta, 3, 1));
-    const rotating_vector way(-1 * fifth.axis, before.point(third.point) - fifth.point);
-    const vector3d still = across(fifth, fifth.point - inverse_pose(after).point(first.point));
-    const double a = length_of(across(first, second.point - first.point)), c = length_of(still),
+    const rotating_vector offset(-1 * fifth.axis, before.point(third.point) - fifth.point);
+    const vector3d fixed_part = across(fifth, fifth.point - inverse_pose(after).point(first.point));
+    const double a = length_of(across(first, second.point - first.point)),
+                 c = length_of(fixed_part),
                  b = length_of(across(first, third.point - second.point)),
-                 d = length_of(way.across),
+                 d = length_of(offset.across),
                  radius = (std::max(std::abs(a - b), std::abs(c - d)) + std::min(a + b, c + d)) / 2;
-    return {c * c + d * d - radius * radius, 2 * dot(still, way.across),
-            2 * dot(still, way.beside)};
+    return {c * c + d * d - radius * radius, 2 * dot(fixed_part, offset.across),
+            2 * dot(fixed_part, offset.normal)};
   }
 
   template <class Visit>
@@ -191,27 +192,27 @@ private:
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
     const tip_pose motion = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 3, 3));
     const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
-    const double whole = angle_of(motion.rotation, n); // sum of angles about n and −n
+    const double total_angle = angle_of(motion.rotation, n); // sum of angles about n and −n
     const vector3d offset = second.point - first.point;
     const rotating_vector arm(second.axis, third.point - second.point, offset);
     const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
     const vector3d across = in_plane(offset), goal = in_plane(to);
-    connecting_rotation turn(n, arm, to);
+    connecting_rotation rotation(n, arm, to);
     const double error = multiplicity > 1 ? 2 * one_angle : 0; // error of the other angles
     const bool has_second = visit_zeros(
         {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
-         2 * dot(across, arm.across), 2 * dot(across, arm.beside)},
+         2 * dot(across, arm.across), 2 * dot(across, arm.normal)},
         [&](double near2, int near_multiplicity) {
-          turn(near2, 0, near_multiplicity, [&](double theta2, double, double theta1, int m) {
+          rotation(near2, 0, near_multiplicity, [&](double theta2, double, double theta1, int m) {
             theta[0] = theta1;
             theta[1] = theta2;
-            theta[2] = dot(n, third.axis) * (whole - theta1 - dot(n, second.axis) * theta2);
+            theta[2] = dot(n, third.axis) * (total_angle - theta1 - dot(n, second.axis) * theta2);
             visit(theta, multiplicity * m);
           });
         },
         error);
     // Angles that count as one may have put the third axis on the first.
-    return has_second && turn.nearest() > error;
+    return has_second && rotation.nearest() > error;
   }
 
   const loop_equation& loop_;
@@ -228,30 +229,30 @@ public:
   /// \return false if coordinates are undetermined
   template <class Visit>
   bool operator()(const Visit& visit) const {
-    std::array<int, 3> turning{}, sliding{};
-    for (int i = 0, turns = 0, slides = 0; i < 6; ++i) {
-      (loop_.joints[std::size_t(i)].turns ? turning[std::size_t(turns++)]
-                                          : sliding[std::size_t(slides++)]) = i;
+    std::array<int, 3> revolute{}, prismatic{};
+    for (int i = 0, revolute_count = 0, prismatic_count = 0; i < 6; ++i) {
+      (loop_.joints[std::size_t(i)].is_revolute ? revolute[std::size_t(revolute_count++)]
+                                                : prismatic[std::size_t(prismatic_count++)]) = i;
     }
-    const auto joint = [&](std::size_t k) { return loop_.joints[std::size_t(turning[k])]; };
+    const auto joint = [&](std::size_t k) { return loop_.joints[std::size_t(revolute[k])]; };
     bool is_determined = true;
     const double nearest = for_each_three_axis_decomposition(
         joint(0), joint(1), joint(2), loop_.closing.rotation,
         [&](double alpha, double beta, double gamma, int multiplicity) {
           six_coordinates theta = six_coordinates::Zero();
-          theta[turning[0]] = alpha;
-          theta[turning[1]] = beta;
-          theta[turning[2]] = gamma;
-          const closure_error gap(loop_, theta);
-          Eigen::Matrix3d ways;
+          theta[revolute[0]] = alpha;
+          theta[revolute[1]] = beta;
+          theta[revolute[2]] = gamma;
+          const closure_error closure(loop_, theta);
+          Eigen::Matrix3d directions;
           for (int k = 0; k < 3; ++k) {
-            ways.col(k) = gap.jacobian.col(sliding[std::size_t(k)]).head<3>();
+            directions.col(k) = closure.jacobian.col(prismatic[std::size_t(k)]).head<3>();
           }
-          const Eigen::Matrix3d inverse = ways.inverse();
-          is_determined = is_determined && inverse.norm() < 1e15 / ways.norm();
-          const Eigen::Vector3d d = inverse * gap.twist.head<3>();
+          const Eigen::Matrix3d inverse = directions.inverse();
+          is_determined = is_determined && inverse.norm() < 1e15 / directions.norm();
+          const Eigen::Vector3d d = inverse * closure.twist.head<3>();
           for (int k = 0; k < 3; ++k) {
-            theta[sliding[std::size_t(k)]] = d[k];
+            theta[prismatic[std::size_t(k)]] = d[k];
           }
           visit(theta, multiplicity);
         });

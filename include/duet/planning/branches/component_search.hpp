@@ -44,7 +44,7 @@ public:
         add(x, int(kernel));
       }
     }
-    return std::move(found_);
+    return std::move(components_);
   }
 
 private:
@@ -52,21 +52,22 @@ private:
   /// resolution apart.
   void add_slices() {
     const int count = int(std::ceil(2 * std::numbers::pi / resolution_));
-    for (int held = 0; held < 7; ++held) {
-      for (int k = 0; k < count && arm_.turns[std::size_t(held)]; ++k) {
+    for (int fixed = 0; fixed < 7; ++fixed) {
+      for (int k = 0; k < count && arm_.is_revolute[std::size_t(fixed)]; ++k) {
         // not at round numbers from tables, where arms are singular
-        add_slice(held, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
+        add_slice(fixed, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
       }
     }
   }
-  void add_slice(int held, double value) {
-    const chain_screws axes = arm_.axes_beside(held, value);
+  void add_slice(int fixed, double value) {
+    const chain_screws axes = arm_.axes_without(fixed, value);
     const branch_search search(axes.loop_to(arm_.goal));
     for (const loop_solution& x : search.answer().solutions) {
       seven_coordinates theta;
       for (int i = 0, k = 0; i < 7; ++i) {
-        theta[i] = i == held ? value : x.theta[k] * (arm_.turns[std::size_t(i)] ? 1 : axes.size);
-        k += i != held;
+        theta[i] =
+            i == fixed ? value : x.theta[k] * (arm_.is_revolute[std::size_t(i)] ? 1 : axes.size);
+        k += i != fixed;
       }
       // If other joints can move while this one is fixed, its value is singular, or the set has
       // more dimensions.
@@ -95,7 +96,7 @@ private:
   }
 
   [[nodiscard]] bool is_known(const seven_coordinates& x, int kernel) {
-    return std::any_of(found_.begin(), found_.end(), [&](const traced_curve& component) {
+    return std::any_of(components_.begin(), components_.end(), [&](const traced_curve& component) {
       return component.dimension > 1 ? kernel > 1 && sampler_.is_on(component, x, random_)
                                      : tracer_.is_on(component, x, kernel);
     });
@@ -106,41 +107,41 @@ private:
       return;
     }
     if (kernel == 1) {
-      found_.push_back(tracer_.trace(x, set_.kernel(x).col(0), 1));
+      components_.push_back(tracer_.trace(x, set_.kernel(x).col(0), 1));
     } else if (set_.dimension(x, step, random_) == 0) {
-      found_.push_back({{x}, false, 0, kernel});
+      components_.push_back({{x}, false, 0, kernel});
     } else {
-      add_beside(x);
+      add_near(x);
     }
   }
 
   /// Adds components near a singular point, at which several of them may cross.
-  void add_beside(const seven_coordinates& singular) {
-    struct place {
+  void add_near(const seven_coordinates& singular) {
+    struct neighbour {
       seven_coordinates x;
       int kernel;
     };
     const auto basis = set_.kernel(singular);
-    std::vector<place> beside;
+    std::vector<neighbour> neighbours;
     for (int k = 0; k < 4 * basis.cols(); ++k) {
       const auto x = set_.neighbour(singular, step, basis, random_);
       if (x && set_.difference(*x, singular).norm() > small_step) {
-        beside.push_back({*x, int(set_.kernel(*x).cols())});
+        neighbours.push_back({*x, int(set_.kernel(*x).cols())});
       }
     }
-    std::sort(beside.begin(), beside.end(),
-              [](const place& a, const place& b) { return a.kernel < b.kernel; });
-    for (const auto& [x, kernel] : beside) {
+    std::sort(neighbours.begin(), neighbours.end(),
+              [](const neighbour& a, const neighbour& b) { return a.kernel < b.kernel; });
+    for (const auto& [x, kernel] : neighbours) {
       if (is_known(x, kernel)) {
         continue;
       }
       const int dimension = std::min(set_.dimension(x, small_step, random_),
                                      set_.dimension(x, small_step / 8, random_));
       if (dimension > 1) {
-        found_.push_back(sampler_.sample(x, dimension, kernel, random_));
+        components_.push_back(sampler_.sample(x, dimension, kernel, random_));
       } else if (dimension == 1) {
         const seven_coordinates along = set_.difference(x, singular).normalized();
-        found_.push_back(tracer_.trace(x, along, kernel));
+        components_.push_back(tracer_.trace(x, along, kernel));
       }
     }
   }
@@ -155,7 +156,7 @@ private:
   splitmix64 random_{1};
   bool is_degenerate_ = false; ///< true if the tip pose is known to be singular
   std::array<std::vector<seven_coordinates>, 8> seeds_; ///< seeds by null-space dimension
-  std::vector<traced_curve> found_;
+  std::vector<traced_curve> components_;
 };
 
 #ifdef DUET_DEFINES_COMPILED

@@ -18,28 +18,28 @@ namespace duet::detail {
 using vector3d = three_vector<double>;
 
 /// Vector R v + t with a rotation R by θ about a unit vector n: `along` + cos θ
-/// `across` + sin θ `beside`.
+/// `across` + sin θ `normal`.
 struct rotating_vector {
-  vector3d along{}, across{}, beside{};
+  vector3d along{}, across{}, normal{};
 
   rotating_vector(const vector3d& n, const vector3d& v, const vector3d& t = {})
-      : along(dot(n, v) * n), across(v - along), beside(cross(n, v)) {
+      : along(dot(n, v) * n), across(v - along), normal(cross(n, v)) {
     along = along + t;
   }
   /// Constant vector.
   explicit rotating_vector(const vector3d& t) : along(t) {}
 
   [[nodiscard]] vector3d at(double theta) const {
-    return along + std::cos(theta) * across + std::sin(theta) * beside;
+    return along + std::cos(theta) * across + std::sin(theta) * normal;
   }
   [[nodiscard]] vector3d rate(double theta) const {
-    return std::cos(theta) * beside - std::sin(theta) * across;
+    return std::cos(theta) * normal - std::sin(theta) * across;
   }
 };
 
 /// Component n·v.
 [[nodiscard]] inline first_harmonic part_along(const vector3d& n, const rotating_vector& v) {
-  return {dot(n, v.along), dot(n, v.across), dot(n, v.beside)};
+  return {dot(n, v.along), dot(n, v.across), dot(n, v.normal)};
 }
 
 /// Angle of the rotation about n that maps u to v (Paden–Kahan subproblem 1), given n × u and
@@ -75,12 +75,12 @@ public:
   /// round-off; near the axis for all solutions close to them that have not been visited before.
   template <class Visit>
   void operator()(double theta, double phi, int multiplicity, const Visit& visit) {
-    const place x{theta, phi};
-    const ways w(*this, x);
+    const angles x{theta, phi};
+    const perpendiculars w(*this, x);
     if (w.square < close_by_) {
-      const beside here(*this, x);
-      if (here.is_close(1)) {
-        visit_beside(x, here, visit);
+      const local_quadratic local(*this, x);
+      if (local.is_close(1)) {
+        visit_near_axis(x, local, visit);
         return;
       }
     }
@@ -99,42 +99,44 @@ private:
   /// Angle within which second order suffices for an initial guess.
   static constexpr double reach = 1e-3;
 
-  struct place {
+  struct angles {
     double theta = 0, phi = 0;
   };
 
-  struct ways {
+  struct perpendiculars {
     vector3d from, to;
     double square; ///< squared distance from the axis
 
-    ways(const connecting_rotation& turn, const place& x)
-        : from(cross(turn.axis_, turn.start_.at(x.theta))),
-          to(cross(turn.axis_, turn.end_.at(x.phi))), square(dot(from, from)) {}
+    perpendiculars(const connecting_rotation& rotation, const angles& x)
+        : from(cross(rotation.axis_, rotation.start_.at(x.theta))),
+          to(cross(rotation.axis_, rotation.end_.at(x.phi))), square(dot(from, from)) {}
   };
 
   /// Quadratic a t² + 2 b t + c = |U + U′t|² − |V + V′t|² along the line
   /// through `at` on which f = g.
-  struct beside {
-    place at, way{1, 0};
+  struct local_quadratic {
+    angles at, direction{1, 0};
     double a = 0, b = 0, c = 0;
     double distance = 0;     ///< |U| + |V|
     double rate = 0;         ///< (U′² + V′²)^½
     double error = rounding; ///< error of U and V
     bool is_fold = false;    ///< f and g do not change to first order: `at` itself counts twice
 
-    beside(const connecting_rotation& turn, const place& x) : at(x) {
-      const double level = turn.f_.at(x.theta) - turn.g_.at(x.phi);
-      const double by_theta = turn.f_.rate(x.theta), by_phi = -turn.g_.rate(x.phi);
-      const double slope = by_theta * by_theta + by_phi * by_phi;
-      is_fold = !(slope > 2 * one_angle * one_angle * (turn.f_.square() + turn.g_.square()));
+    local_quadratic(const connecting_rotation& rotation, const angles& x) : at(x) {
+      const double difference = rotation.f_.at(x.theta) - rotation.g_.at(x.phi);
+      const double by_theta = rotation.f_.rate(x.theta), by_phi = -rotation.g_.rate(x.phi);
+      const double squared_gradient = by_theta * by_theta + by_phi * by_phi;
+      is_fold = !(squared_gradient >
+                  2 * one_angle * one_angle * (rotation.f_.square() + rotation.g_.square()));
       if (!is_fold) {
-        const double size = std::sqrt(slope);
-        way = {by_phi / size, -by_theta / size};
-        at = {x.theta - level * by_theta / slope, x.phi - level * by_phi / slope};
+        const double size = std::sqrt(squared_gradient);
+        direction = {by_phi / size, -by_theta / size};
+        at = {x.theta - difference * by_theta / squared_gradient,
+              x.phi - difference * by_phi / squared_gradient};
       }
-      const ways w(turn, at);
-      const vector3d by_start = cross(turn.axis_, turn.start_.rate(at.theta)),
-                     by_end = cross(turn.axis_, turn.end_.rate(at.phi));
+      const perpendiculars w(rotation, at);
+      const vector3d by_start = cross(rotation.axis_, rotation.start_.rate(at.theta)),
+                     by_end = cross(rotation.axis_, rotation.end_.rate(at.phi));
       // The error of f − g, at its smallest, moves the line; along the line |U| = |V| compensates
       // for it as far as possible.
       const double start = length_of(by_start), end = length_of(by_end),
@@ -142,7 +144,7 @@ private:
       if (!is_fold && along > 0) {
         error = std::max(rounding, 1e-14 * start * end / along);
       }
-      const vector3d from_rate = way.theta * by_start, to_rate = way.phi * by_end;
+      const vector3d from_rate = direction.theta * by_start, to_rate = direction.phi * by_end;
       const double from = std::sqrt(w.square), to = length_of(w.to);
       const double square = dot(from_rate, from_rate), other = dot(to_rate, to_rate);
       distance = from + to;
@@ -153,62 +155,63 @@ private:
     }
 
     [[nodiscard]] bool is_close(double times) const { return distance < times * 2 * reach * rate; }
-    [[nodiscard]] place after(double t) const {
-      return {at.theta + t * way.theta, at.phi + t * way.phi};
+    [[nodiscard]] angles point_at(double t) const {
+      return {at.theta + t * direction.theta, at.phi + t * direction.phi};
     }
-    [[nodiscard]] bool has_middle() const { return std::abs(b) < 2 * reach * std::abs(a); }
-    [[nodiscard]] place middle() const { return after(-b / a); }
+    [[nodiscard]] bool has_centre() const { return std::abs(b) < 2 * reach * std::abs(a); }
+    [[nodiscard]] angles centre() const { return point_at(-b / a); }
     [[nodiscard]] double discriminant() const { return b * b - a * c; }
     /// Nearer or farther zero of the quadratic.
-    [[nodiscard]] place zero(bool is_nearer) const {
+    [[nodiscard]] angles zero(bool is_nearer) const {
       const double q = -b - std::copysign(std::sqrt(std::max(0., discriminant())), b);
-      return after(is_nearer ? c / q : q / a);
+      return point_at(is_nearer ? c / q : q / a);
     }
   };
 
   template <class Visit>
-  void visit_beside(const place& seed, beside here, const Visit& visit) {
+  void visit_near_axis(const angles& seed, local_quadratic local, const Visit& visit) {
     constexpr int steps = 5; // the error is squared in each
-    for (int k = 0; k < steps && here.has_middle(); ++k) {
-      here = beside(*this, here.middle());
+    for (int k = 0; k < steps && local.has_centre(); ++k) {
+      local = local_quadratic(*this, local.centre());
     }
-    const double off = here.discriminant(),
-                 half = here.rate * std::sqrt(std::abs(off)) / std::abs(here.a);
-    const bool is_on_axis = here.distance + half <= here.error,
-               is_double = half <= .01 * here.distance &&
-                           std::abs(off) <= rounding * here.distance * std::abs(here.a);
-    const int folds = here.is_fold ? 2 : 1;
-    if (here.has_middle() && (is_on_axis || is_double)) {
-      visit_new(here.middle(), here.error, 2 * folds, visit);
+    const double off = local.discriminant(),
+                 half = local.rate * std::sqrt(std::abs(off)) / std::abs(local.a);
+    const bool is_on_axis = local.distance + half <= local.error,
+               is_double = half <= .01 * local.distance &&
+                           std::abs(off) <= rounding * local.distance * std::abs(local.a);
+    const int folds = local.is_fold ? 2 : 1;
+    if (local.has_centre() && (is_on_axis || is_double)) {
+      visit_new(local.centre(), local.error, 2 * folds, visit);
       return;
     }
-    if (!here.has_middle() && std::abs(here.b) <= rounding * here.rate) { // all along the line
+    if (!local.has_centre() &&
+        std::abs(local.b) <= rounding * local.rate) { // all points of the line are solutions
       nearest_ = 0;
-      visit_new(seed, here.error, 2 * folds, visit);
+      visit_new(seed, local.error, 2 * folds, visit);
       return;
     }
     if (off < 0) {
-      return; // a complex pair
+      return; // the zeros are a complex pair
     }
     for (const bool is_nearer : {true, false}) {
-      place x = here.zero(is_nearer);
+      angles x = local.zero(is_nearer);
       for (int k = 0; k < steps; ++k) {
-        x = beside(*this, x).zero(true);
+        x = local_quadratic(*this, x).zero(true);
       }
-      if (beside(*this, x).is_close(2)) { // others are separate solutions
-        visit_new(x, here.error, folds, visit);
+      if (local_quadratic(*this, x).is_close(2)) { // otherwise it is a separate solution
+        visit_new(x, local.error, folds, visit);
       }
     }
   }
 
   template <class Visit>
-  void visit_new(const place& x, double error, int multiplicity, const Visit& visit) {
-    const ways w(*this, x);
-    const double apart = 1e-8 * std::sqrt(std::max(rounding, std::sqrt(w.square)));
-    const auto is_same = [&](const place& y) {
-      const double turn = 2 * std::numbers::pi;
-      return std::abs(std::remainder(x.theta - y.theta, turn)) < apart &&
-             std::abs(std::remainder(x.phi - y.phi, turn)) < apart;
+  void visit_new(const angles& x, double error, int multiplicity, const Visit& visit) {
+    const perpendiculars w(*this, x);
+    const double separation = 1e-8 * std::sqrt(std::max(rounding, std::sqrt(w.square)));
+    const auto is_same = [&](const angles& y) {
+      const double full_turn = 2 * std::numbers::pi;
+      return std::abs(std::remainder(x.theta - y.theta, full_turn)) < separation &&
+             std::abs(std::remainder(x.phi - y.phi, full_turn)) < separation;
     };
     if (std::none_of(visited_.begin(), visited_.end(), is_same)) {
       visited_.push_back(x);
@@ -217,7 +220,7 @@ private:
   }
 
   template <class Visit>
-  void visit_one(const place& x, const ways& w, double error, int multiplicity,
+  void visit_one(const angles& x, const perpendiculars& w, double error, int multiplicity,
                  const Visit& visit) {
     is_open_ = !(w.square > error * error);
     nearest_ = is_open_ ? 0 : std::min(nearest_, std::sqrt(w.square));
@@ -230,7 +233,7 @@ private:
   double close_by_; ///< squared distance from the axis
   double nearest_ = HUGE_VAL;
   bool is_open_ = false;
-  std::vector<place> visited_; ///< solutions near the axis
+  std::vector<angles> visited_; ///< solutions near the axis
 };
 
 } // namespace duet::detail

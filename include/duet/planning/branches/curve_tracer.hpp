@@ -49,8 +49,8 @@ public:
                            int kernel) const {
     const double same = curve.kernel == 1 && kernel == 1 ? self_motion_tolerance::same
                                                          : self_motion_tolerance::same_rough;
-    const std::size_t n = curve.points.size(), pieces = curve.is_closed ? n : n - 1;
-    for (std::size_t k = 0; k < pieces; ++k) {
+    const std::size_t n = curve.points.size(), segments = curve.is_closed ? n : n - 1;
+    for (std::size_t k = 0; k < segments; ++k) {
       const seven_coordinates& a = curve.points[k];
       const seven_coordinates to_x = set_.difference(x, a),
                               chord = set_.difference(curve.points[(k + 1) % n], a);
@@ -59,24 +59,24 @@ public:
       }
       // If x is on the curve, it is the point of the curve that is nearest to x,
       // found along the chord.
-      double part = std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.);
-      for (int round = 0; round < 8 && part > -.5 && part < 1.5; ++round) {
-        const auto between = set_.projected(set_.moved(a, part * chord), step_);
+      double fraction = std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.);
+      for (int round = 0; round < 8 && fraction > -.5 && fraction < 1.5; ++round) {
+        const auto between = set_.projected(set_.moved(a, fraction * chord), step_);
         if (!between) {
           break;
         }
-        const seven_coordinates left = set_.difference(x, *between);
-        if (left.norm() < same) {
+        const seven_coordinates residual = set_.difference(x, *between);
+        if (residual.norm() < same) {
           return true;
         }
-        part += left.dot(chord) / chord.squaredNorm();
+        fraction += residual.dot(chord) / chord.squaredNorm();
       }
     }
     return set_.difference(x, curve.points.front()).norm() < same;
   }
 
 private:
-  struct landing {
+  struct continuation_step {
     seven_coordinates x, ahead; ///< new point, direction of the curve there
     double bend, length;        ///< deflection and length of the step
     bool is_crossing;           ///< true if the null space has more dimensions than on the curve
@@ -92,34 +92,35 @@ private:
   }
 
   /// Step along the curve; empty if the curve does not continue in about the same direction.
-  [[nodiscard]] std::optional<landing>
-  land(const seven_coordinates& x, const seven_coordinates& along, double step, int kernel) const {
+  [[nodiscard]] std::optional<continuation_step> take_step(const seven_coordinates& x,
+                                                           const seven_coordinates& along,
+                                                           double step, int kernel) const {
     const auto next = set_.projected(set_.moved(x, step * along), step_);
     if (!next) {
       return {};
     }
-    const seven_coordinates way = set_.difference(*next, x);
+    const seven_coordinates displacement = set_.difference(*next, x);
     const auto basis = set_.kernel(*next);
-    const auto ahead = direction(basis, basis.cols() == 1 ? along : way.normalized());
-    if (basis.cols() < kernel || !ahead || way.norm() > step_) {
+    const auto ahead = direction(basis, basis.cols() == 1 ? along : displacement.normalized());
+    if (basis.cols() < kernel || !ahead || displacement.norm() > step_) {
       return {};
     }
     const double bend = (*ahead - along).norm();
-    return bend < .3
-               ? std::optional<landing>({*next, *ahead, bend, way.norm(), basis.cols() > kernel})
-               : std::nullopt;
+    return bend < .3 ? std::optional<continuation_step>(
+                           {*next, *ahead, bend, displacement.norm(), basis.cols() > kernel})
+                     : std::nullopt;
   }
 
   /// Step past points where curves cross, if they are not too close to each other.
-  [[nodiscard]] std::optional<landing> land_past(const seven_coordinates& x,
-                                                 const seven_coordinates& along, double step,
-                                                 int kernel) const {
-    auto result = land(x, along, step, kernel);
-    for (const double part : {.62, .81, .38}) {
+  [[nodiscard]] std::optional<continuation_step> step_past_crossing(const seven_coordinates& x,
+                                                                    const seven_coordinates& along,
+                                                                    double step, int kernel) const {
+    auto result = take_step(x, along, step, kernel);
+    for (const double fraction : {.62, .81, .38}) {
       if (!result || !result->is_crossing) {
         break;
       }
-      const auto other = land(x, along, part * step, kernel);
+      const auto other = take_step(x, along, fraction * step, kernel);
       result = other && !other->is_crossing ? other : result;
     }
     return result;
@@ -129,26 +130,26 @@ private:
   ///
   /// \return true if it does
   bool follow(traced_curve& curve, seven_coordinates along) const {
-    constexpr double smallest = 1e-5, longest_crossing = .6;
-    const int most = int(400 / step_);
-    const seven_coordinates home = curve.points.front(), leaving = along;
+    constexpr double min_step = 1e-5, max_crossing = .6;
+    const int max_points = int(400 / step_);
+    const seven_coordinates start = curve.points.front(), leaving = along;
     double step = step_ / 2, crossing = 0;
-    for (int k = 0; k < most && step > smallest; ++k) {
+    for (int k = 0; k < max_points && step > min_step; ++k) {
       const seven_coordinates last = curve.points.back();
-      const auto next = land_past(last, along, step, curve.kernel);
+      const auto next = step_past_crossing(last, along, step, curve.kernel);
       if (!next) {
         step *= .6; // not a half: structured curves cross at such fractions
         continue;
       }
       crossing = next->is_crossing ? crossing + next->length : 0;
-      if (crossing > longest_crossing) {
+      if (crossing > max_crossing) {
         return false; // it has reached a component of more dimensions
       }
-      const seven_coordinates back = set_.difference(home, last);
-      const double left = back.dot(along);
-      const bool is_home = curve.points.size() > 3 && left > 0 && left <= 1.5 * step &&
-                           back.norm() < std::min(2 * left, step_) && along.dot(leaving) > .5;
-      if (is_home) {
+      const seven_coordinates back = set_.difference(start, last);
+      const double remaining = back.dot(along);
+      const bool is_back = curve.points.size() > 3 && remaining > 0 && remaining <= 1.5 * step &&
+                           back.norm() < std::min(2 * remaining, step_) && along.dot(leaving) > .5;
+      if (is_back) {
         curve.is_closed = true;
         return true;
       }

@@ -84,13 +84,13 @@ public:
   /// Matrix at an angle θ₃. Columns: cos θ₄/2, sin θ₄/2, cos 3θ₄/2, sin 3θ₄/2, or 1, d₄, d₄², d₄³,
   /// each times 1, cos θ₅, sin θ₅, or 1, d₅, d₅².
   [[nodiscard]] matrix at(double theta) const {
-    const auto left = arm_.bottomRows<6>();
-    const Eigen::Matrix<double, 6, 9> a = left.leftCols<9>() +
-                                          std::cos(theta) * left.middleCols<9>(9) +
-                                          std::sin(theta) * left.rightCols<9>();
+    const auto remaining = arm_.bottomRows<6>();
+    const Eigen::Matrix<double, 6, 9> a = remaining.leftCols<9>() +
+                                          std::cos(theta) * remaining.middleCols<9>(9) +
+                                          std::sin(theta) * remaining.rightCols<9>();
     const auto one = a.leftCols<3>(), cosine = a.middleCols<3>(3), sine = a.rightCols<3>();
     matrix m;
-    if (loop_.joints[3].turns) {
+    if (loop_.joints[3].is_revolute) {
       m.topLeftCorner<6, 3>() = one + .5 * cosine;
       m.block<6, 3>(0, 3) = .5 * sine;
       m.block<6, 3>(0, 6) = .5 * cosine;
@@ -107,7 +107,7 @@ public:
     return m;
   }
 
-  static constexpr int most = 16;  ///< maximum number of solutions
+  static constexpr int max_solutions = 16; ///< maximum number of solutions
   static constexpr int hidden = 2; ///< index of the joint whose angle the determinant depends on
 
   struct zeros {
@@ -123,13 +123,13 @@ public:
   /// coincide have an error of ε^{1/m}.)
   [[nodiscard]] zeros roots() const {
     constexpr double start = .7345;
-    const matrix here = at(start), opposite = at(start + std::numbers::pi),
-                 slope = at(start + std::numbers::pi / 2) - .5 * (here + opposite);
-    const Eigen::PartialPivLU<matrix> lu(opposite);
+    const matrix constant = at(start), quadratic = at(start + std::numbers::pi),
+                 linear = at(start + std::numbers::pi / 2) - .5 * (constant + quadratic);
+    const Eigen::PartialPivLU<matrix> lu(quadratic);
     Eigen::Matrix<double, 24, 24> companion;
     companion.topRows<12>() << matrix::Zero(), matrix::Identity();
-    companion.bottomLeftCorner<12, 12>() = -lu.solve(here);
-    companion.bottomRightCorner<12, 12>() = -2 * lu.solve(slope);
+    companion.bottomLeftCorner<12, 12>() = -lu.solve(constant);
+    companion.bottomRightCorner<12, 12>() = -2 * lu.solve(linear);
     const Eigen::RealSchur<Eigen::Matrix<double, 24, 24>> schur(companion, false);
     const auto& t = schur.matrixT();
     zeros result;
@@ -168,8 +168,8 @@ public:
     // The products of a solution times e^{iθ₄}, or d₄, are products of the same solution.
     const complex i(0, 1);
     Eigen::Matrix<complex, 9, 1> low, high;
-    const bool turns = loop_.joints[3].turns;
-    if (turns) {
+    const bool is_revolute = loop_.joints[3].is_revolute;
+    if (is_revolute) {
       low.head<3>() = kernel.segment<3>(6) - i * kernel.tail<3>();
       low.segment<3>(3) = kernel.head<3>() - i * kernel.segment<3>(3);
       low.tail<3>() = kernel.head<3>() + i * kernel.segment<3>(3);
@@ -180,19 +180,20 @@ public:
       high = kernel.tail<9>().cast<complex>();
     }
     const complex z = low.dot(high) / low.squaredNorm();
-    if (!(turns ? std::abs(std::log(std::abs(z))) < nearly_real
-                : std::abs(z.imag()) < nearly_real * (1 + std::abs(z)))) {
+    if (!(is_revolute ? std::abs(std::log(std::abs(z))) < nearly_real
+                      : std::abs(z.imag()) < nearly_real * (1 + std::abs(z)))) {
       return;
     }
     // Products of 1, cos θ₅, sin θ₅, or 1, d₅, d₅², which are real except for a common factor.
     Eigen::Vector3cd factor = Eigen::Vector3cd::Zero();
     for (int k = 0; k < 3; ++k) { // phases −3θ₄/2, −θ₄/2, θ₄/2; or weights 1, d₄, d₄²
       const complex weight =
-          turns ? std::polar(1., (1.5 - k) * std::arg(z)) : complex(std::pow(z.real(), k));
+          is_revolute ? std::polar(1., (1.5 - k) * std::arg(z)) : complex(std::pow(z.real(), k));
       factor += weight * low.segment<3>(3 * k);
     }
     const complex phase = std::sqrt(factor.cwiseProduct(factor).sum());
-    visit_factor(theta3, turns ? std::arg(z) : z.real(), (factor * std::conj(phase)).real(), visit);
+    visit_factor(theta3, is_revolute ? std::arg(z) : z.real(), (factor * std::conj(phase)).real(),
+                 visit);
   }
 
 private:
@@ -204,7 +205,7 @@ private:
     six_coordinates theta;
     theta[2] = theta3;
     theta[3] = theta4;
-    if (loop_.joints[4].turns) {
+    if (loop_.joints[4].is_revolute) {
       factor *= std::copysign(1., factor[0]);
       theta[4] = std::atan2(factor[2], factor[1]);
     } else {
@@ -214,8 +215,8 @@ private:
     // The eliminated products, and θ₁ and θ₂ from them.
     const auto weights = [&](std::size_t joint) {
       const double x = theta[Eigen::Index(joint)];
-      return loop_.joints[joint].turns ? Eigen::Vector3d(1, std::cos(x), std::sin(x))
-                                       : Eigen::Vector3d(1, x, x * x);
+      return loop_.joints[joint].is_revolute ? Eigen::Vector3d(1, std::cos(x), std::sin(x))
+                                             : Eigen::Vector3d(1, x, x * x);
     };
     const Eigen::Vector3d by3 = weights(2), by4 = weights(3), by5 = weights(4);
     Eigen::Matrix<double, 27, 1> all;
@@ -225,8 +226,8 @@ private:
       }
     }
     const Eigen::Matrix<double, 8, 1> x = eliminated_ * all;
-    theta[1] = loop_.joints[1].turns ? std::atan2(x[1], x[0]) : x[0];
-    theta[0] = loop_.joints[0].turns ? std::atan2(x[5], x[2]) : x[2];
+    theta[1] = loop_.joints[1].is_revolute ? std::atan2(x[1], x[0]) : x[0];
+    theta[0] = loop_.joints[0].is_revolute ? std::atan2(x[5], x[2]) : x[2];
     const tip_pose rest = inverse_pose(product_of_joints(loop_, theta, 0, 5)) * loop_.closing;
     const three_vector<double>& n = loop_.joints[5].axis;
     const quaternion<double>& q = rest.rotation;

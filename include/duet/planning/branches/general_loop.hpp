@@ -53,19 +53,19 @@ struct loop_order {
 [[nodiscard]] inline double quality_of(const loop_equation& loop, const elimination*) {
   const loop_joint &a = loop.joints[0], &b = loop.joints[1];
   const auto across = cross(a.axis, b.axis);
-  return !loop.joints[2].turns || !loop.joints[5].turns ? 0
-         : a.turns && b.turns                           ? std::abs(dot(a.point - b.point, across))
-         : a.turns || b.turns                           ? length_of(across) / 4
-                                                        : length_of(across);
+  return !loop.joints[2].is_revolute || !loop.joints[5].is_revolute ? 0
+         : a.is_revolute && b.is_revolute ? std::abs(dot(a.point - b.point, across))
+         : a.is_revolute || b.is_revolute ? length_of(across) / 4
+                                          : length_of(across);
 }
 /// Quality of an order for two prismatic joints: the first joint must be revolute, and no axis of
 /// the other three revolute joints parallel to the next.
 [[nodiscard]] inline double quality_of(const loop_equation& loop, const two_prismatic*) {
-  double result = loop.joints[0].turns ? 1 : 0;
+  double result = loop.joints[0].is_revolute ? 1 : 0;
   const loop_joint* before = nullptr;
   for (std::size_t i = 1; i < 6; ++i) {
     const loop_joint& j = loop.joints[i];
-    if (j.turns) {
+    if (j.is_revolute) {
       result = std::min(result, before == nullptr ? 1 : length_of(cross(before->axis, j.axis)));
       before = &j;
     }
@@ -81,21 +81,21 @@ template <class System>
                                                 const loop_equation& general) {
   std::vector<loop_order> result;
   result.reserve(12);
-  const auto add = [&](const loop_equation& l, const loop_equation& judged, int first,
+  const auto add = [&](const loop_equation& l, const loop_equation& rated, int first,
                        bool is_reversed) {
-    const double quality = quality_of(judged, static_cast<const System*>(nullptr));
+    const double quality = quality_of(rated, static_cast<const System*>(nullptr));
     if (quality > 0) {
       const loop_order next{l, first, is_reversed, quality};
       const auto is_better = [](const auto& a, const auto& b) { return a.quality > b.quality; };
       result.insert(std::upper_bound(result.begin(), result.end(), next, is_better), next);
     }
   };
-  loop_equation from = loop, judged = general;
+  loop_equation from = loop, rated = general;
   for (int first = 0; first < 6; ++first) {
-    add(from, judged, first, false);
-    add(from.reversed(), judged.reversed(), first, true);
+    add(from, rated, first, false);
+    add(from.reversed(), rated.reversed(), first, true);
     from = from.shifted();
-    judged = judged.shifted();
+    rated = rated.shifted();
   }
   const auto is_worse = [&](const loop_order& o) { return o.quality < .01 * result[0].quality; };
   result.erase(std::find_if(result.begin(), result.end(), is_worse), result.end());
@@ -150,17 +150,17 @@ struct zero_on_circle {
 
 [[nodiscard]] inline std::vector<zero_on_circle>
 zeros_on_circle(std::span<const std::complex<double>> roots) {
-  constexpr double real = 1e-9, nearly_real = .2, beside = .02;
+  constexpr double real = 1e-9, nearly_real = .2, neighbourhood = .02;
   std::vector<zero_on_circle> result;
   for (const std::complex<double>& z : roots) {
-    const double off = std::log(std::abs(z)); // the other one of a complex pair has −off
+    const double off = std::log(std::abs(z)); // the conjugate pair has −off
     if (off > -real && off < nearly_real) {
       result.push_back({std::arg(z), off, off < real});
     }
   }
   for (zero_on_circle& one : result) {
     one.is_single = std::count_if(result.begin(), result.end(), [&](const zero_on_circle& other) {
-                      return std::abs(wrap_angle(other.angle - one.angle)) < beside;
+                      return std::abs(wrap_angle(other.angle - one.angle)) < neighbourhood;
                     }) == 1;
   }
   return result;
@@ -170,9 +170,9 @@ zeros_on_circle(std::span<const std::complex<double>> roots) {
 template <class System>
 class general_solver {
 public:
-  explicit general_solver(const loop_equation& loop) : found_(loop) {}
+  explicit general_solver(const loop_equation& loop) : solutions_(loop) {}
 
-  [[nodiscard]] const loop_solutions& found() const { return found_; }
+  [[nodiscard]] const loop_solutions& solutions() const { return solutions_; }
   /// True if there may be solutions on curves of which no point was found.
   [[nodiscard]] bool is_doubtful() const { return is_doubtful_; }
 
@@ -185,7 +185,7 @@ public:
 
   /// Adds solutions from random initial guesses: on curves of solutions those of a displaced loop
   /// may all be complex.
-  void add_from_anywhere() {
+  void add_from_random_guesses() {
     constexpr int starts = 12;
     splitmix64 random(1);
     for (int k = 0; k < starts; ++k) {
@@ -193,7 +193,7 @@ public:
       for (double& x : theta) {
         x = 6 * random() - 3;
       }
-      static_cast<void>(found_.add(theta));
+      static_cast<void>(solutions_.add(theta));
     }
   }
 
@@ -203,49 +203,49 @@ public:
   /// separate solution
   bool add(const loop_order& order, double by, std::uint64_t seed) {
     constexpr double singular = 1e-4, vanishing = 1e-6, sound = .05, nearly_real = .05;
-    constexpr int most_coinciding = 4;
+    constexpr int max_coinciding = 4;
     const System system(disturbed(order.loop, by, seed));
     const auto roots = system.roots();
     if (!is_doubtful_ && !(roots.regularity > singular)) {
       is_doubtful_ = true;
-      add_from_anywhere();
+      add_from_random_guesses();
     }
-    std::vector<std::size_t> led_to;
+    std::vector<std::size_t> hits;
     bool is_clear = roots.regularity * squared_travel(order.loop) > vanishing;
     is_certain_ = roots.regularity > 100 * singular && order.quality > sound;
     for (const zero_on_circle& zero : zeros_on_circle(roots.values)) {
-      std::size_t at = zero.is_real && zero.is_single ? known(order, zero.angle) : nowhere;
-      if (at == nowhere) {
+      std::size_t at = zero.is_real && zero.is_single ? known(order, zero.angle) : not_found;
+      if (at == not_found) {
         system.solution_at(zero.angle, [&](const six_coordinates& theta) {
-          at = found_.add(order.in_loop(theta));
+          at = solutions_.add(order.in_loop(theta));
         });
       }
       is_certain_ = is_certain_ && zero.is_real && zero.is_single;
       has_close_pair_ = has_close_pair_ || (!zero.is_real && zero.off < nearly_real);
       if (zero.is_real) {
-        const auto times = at == nowhere ? 0 : std::count(led_to.begin(), led_to.end(), at);
-        is_clear =
-            is_clear && at != nowhere &&
-            times < (found_.is_singular(at) ? most_coinciding : found_.all()[at].multiplicity);
-        led_to.push_back(at);
+        const auto times = at == not_found ? 0 : std::count(hits.begin(), hits.end(), at);
+        is_clear = is_clear && at != not_found &&
+                   times < (solutions_.is_singular(at) ? max_coinciding
+                                                       : solutions_.all()[at].multiplicity);
+        hits.push_back(at);
       }
     }
     return is_clear;
   }
 
 private:
-  static constexpr std::size_t nowhere = loop_solutions::nowhere;
+  static constexpr std::size_t not_found = loop_solutions::not_found;
 
   /// Index of the only solution near an angle at which the determinant vanishes, if it was found.
   [[nodiscard]] std::size_t known(const loop_order& order, double angle) const {
-    constexpr double beside = .02, close = 1e-3;
-    std::size_t result = nowhere;
-    for (std::size_t i = 0; i < found_.all().size(); ++i) {
-      const double theta = found_.all()[i].theta[order.joint(System::hidden)];
+    constexpr double neighbourhood = .02, close = 1e-3;
+    std::size_t result = not_found;
+    for (std::size_t i = 0; i < solutions_.all().size(); ++i) {
+      const double theta = solutions_.all()[i].theta[order.joint(System::hidden)];
       const double off = std::abs(wrap_angle(theta - angle));
-      if (off < beside) {
-        if (result != nowhere || off > close) {
-          return nowhere;
+      if (off < neighbourhood) {
+        if (result != not_found || off > close) {
+          return not_found;
         }
         result = i;
       }
@@ -253,7 +253,7 @@ private:
     return result;
   }
 
-  loop_solutions found_;
+  loop_solutions solutions_;
   bool is_doubtful_ = false, is_certain_ = false, has_close_pair_ = false;
 };
 
@@ -261,7 +261,7 @@ private:
 [[nodiscard]] inline bool is_beyond_reach(const loop_equation& loop) {
   double reach = 0; // upper bound
   for (const loop_joint& j : loop.joints) {
-    reach += j.turns ? 2 * length_of(j.point) : HUGE_VAL;
+    reach += j.is_revolute ? 2 * length_of(j.point) : HUGE_VAL;
   }
   return length_of(loop.closing.translation) > reach;
 }
@@ -289,35 +289,36 @@ template <class System>
   constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-5};
   const auto orders = orders_of<System>(loop, disturbed(loop, by[0], 1));
   general_solver<System> solver(loop);
-  const loop_solutions& found = solver.found();
+  const loop_solutions& solutions = solver.solutions();
   const auto needed = [&] {
-    const double sigma = found.smallest_singular_value();
-    return found.all().empty()                      ? 5 // each may make a double solution complex
+    const double sigma = solutions.smallest_singular_value();
+    return solutions.all().empty()                  ? 5 // each may make a double solution complex
            : sigma < .01 || solver.has_close_pair() ? 3
            : sigma < .04 || !solver.is_certain()    ? 2
                                                     : 1;
   };
   int agreeing = 0, quiet = 0;
-  const auto is_even = [&] { return !found.is_count_certain() || found.count() % 2 == 0; };
+  const auto is_even = [&] { return !solutions.is_count_certain() || solutions.count() % 2 == 0; };
   const auto is_enough = [&](std::size_t loops) {
-    return agreeing >= needed() || (found.on_curves() > 0 && loops == 5);
+    return agreeing >= needed() || (solutions.on_curves() > 0 && loops == 5);
   };
   for (std::size_t k = 0; k < by.size() && !is_enough(k); ++k) {
-    const auto before = found.all().size();
+    const auto before = solutions.all().size();
     const bool is_clear = solver.add(orders[k % orders.size()], by[k], k + 2) && is_even();
-    const bool is_news = found.all().size() != before;
-    quiet = is_news ? 0 : quiet + 1;
-    agreeing = is_news ? int(is_clear) : agreeing + is_clear;
+    const bool has_grown = solutions.all().size() != before;
+    quiet = has_grown ? 0 : quiet + 1;
+    agreeing = has_grown ? int(is_clear) : agreeing + is_clear;
   }
   const bool agree = agreeing >= needed() || (quiet >= 3 && agreeing > 0 && is_even());
-  if (found.all().empty()) {
-    solver.add_from_anywhere(); // finds a singular solution, or a curve of them
+  if (solutions.all().empty()) {
+    solver.add_from_random_guesses(); // finds a singular solution, or a curve of them
   }
   loop_solution_set result;
-  result.solutions = found.all();
-  result.complex_solutions = std::max(0, System::most - found.count());
-  result.is_complete = agree && found.on_curves() == 0 && !found.is_near_curve() &&
-                       !(found.all().empty() && (solver.is_doubtful() || solver.has_close_pair()));
+  result.solutions = solutions.all();
+  result.complex_solutions = std::max(0, System::max_solutions - solutions.count());
+  result.is_complete =
+      agree && solutions.on_curves() == 0 && !solutions.is_near_curve() &&
+      !(solutions.all().empty() && (solver.is_doubtful() || solver.has_close_pair()));
   return result;
 }
 

@@ -52,7 +52,7 @@ struct line_coordinates {
                                                               const line_coordinates& x) {
   const three_vector<double>& n = j.axis;
   const three_vector<double> none{0, 0, 0};
-  if (!j.turns) {
+  if (!j.is_revolute) {
     return {x,
             {x.one * n, none, cross(n, x.l), -2 * (cross(n, x.m) + x.pl * n), 0, 2 * dot(n, x.p),
              dot(n, x.l)},

@@ -26,7 +26,7 @@ namespace duet::detail {
 /// Joint in the zero configuration: revolute about the line through `point` along `axis`, or
 /// prismatic along `axis`. All in one frame.
 struct loop_joint {
-  bool turns = true;
+  bool is_revolute = true;
   three_vector<double> axis{}, point{};
 };
 
@@ -36,7 +36,7 @@ struct loop_joint {
 }
 
 [[nodiscard]] inline loop_joint displaced(const tip_pose& by, const loop_joint& j) {
-  return {j.turns, rotated(by.rotation, j.axis), by.point(j.point)};
+  return {j.is_revolute, rotated(by.rotation, j.axis), by.point(j.point)};
 }
 
 /// Point on the axis of `a` that is nearest to that of `b`.
@@ -73,8 +73,8 @@ struct loop_equation {
 };
 
 /// Rotation about an axis, from the sine and the cosine of half its angle.
-[[nodiscard]] inline quaternion<double> turn_about(const three_vector<double>& axis, double sine,
-                                                   double cosine) {
+[[nodiscard]] inline quaternion<double> rotation_about_axis(const three_vector<double>& axis,
+                                                            double sine, double cosine) {
   return {cosine, sine * axis.x, sine * axis.y, sine * axis.z};
 }
 
@@ -91,9 +91,9 @@ product_of_joints(const loop_equation& loop, const six_coordinates& theta, int f
   tip_pose result{quaternion<double>(1), {0, 0, 0}};
   for (int i = first; i < first + count; ++i) {
     const loop_joint& j = loop.joints[std::size_t(i)];
-    const quaternion<double> q = turn_about(j.axis, halves.sine(i), halves.cosine(i));
-    result = result * (j.turns ? tip_pose{q, j.point - rotated(q, j.point)}
-                               : tip_pose{quaternion<double>(1), theta[i] * j.axis});
+    const quaternion<double> q = rotation_about_axis(j.axis, halves.sine(i), halves.cosine(i));
+    result = result * (j.is_revolute ? tip_pose{q, j.point - rotated(q, j.point)}
+                                     : tip_pose{quaternion<double>(1), theta[i] * j.axis});
   }
   return result;
 }
@@ -111,7 +111,7 @@ struct closure_error {
     for (int column = 0; column < 6; ++column) {
       const loop_joint& j = loop.joints[std::size_t(column)];
       const three_vector<double> n = rotated(link.rotation, j.axis);
-      if (!j.turns) {
+      if (!j.is_revolute) {
         jacobian.col(column) << n.x, n.y, n.z, 0, 0, 0;
         link.translation = link.translation + theta[column] * n;
         size = std::max(size, std::abs(theta[column]));
@@ -120,13 +120,15 @@ struct closure_error {
       const three_vector<double> p = link.point(j.point), m = cross(p, n);
       jacobian.col(column) << m.x, m.y, m.z, n.x, n.y, n.z;
       link.rotation =
-          link.rotation * turn_about(j.axis, halves.sine(column), halves.cosine(column));
+          link.rotation * rotation_about_axis(j.axis, halves.sine(column), halves.cosine(column));
       link.translation = p - rotated(link.rotation, j.point);
     }
-    const tip_pose left = loop.closing * inverse_pose(link);
-    const double twice = left.rotation.w() < 0 ? -2 : 2; // 2 sin(angle/2) rises up to half a turn
-    twist << left.translation.x, left.translation.y, left.translation.z, twice * left.rotation.x(),
-        twice * left.rotation.y(), twice * left.rotation.z();
+    const tip_pose remaining = loop.closing * inverse_pose(link);
+    const double twice =
+        remaining.rotation.w() < 0 ? -2 : 2; // 2 sin(angle/2) rises up to half a turn
+    twist << remaining.translation.x, remaining.translation.y, remaining.translation.z,
+        twice * remaining.rotation.x(), twice * remaining.rotation.y(),
+        twice * remaining.rotation.z();
   }
 };
 

@@ -21,10 +21,10 @@ struct loop_solution {
 };
 
 /// Two prismatic joints that are parallel in every configuration: displacements by x of the first
-/// and by `second_way` x of the second leave the loop closed.
+/// and by `second_factor` x of the second leave the loop closed.
 struct coupled_prismatic_pair {
   int first = 0, second = 0;
-  double second_way = -1;
+  double second_factor = -1;
 };
 
 /// Solutions of a loop, and whether they are complete.
@@ -32,18 +32,18 @@ struct loop_solution_set {
   std::vector<loop_solution> solutions;
   int complex_solutions = 0;
   bool is_complete = false;
-  std::optional<coupled_prismatic_pair> in_place =
+  std::optional<coupled_prismatic_pair> coupled_pair =
       {}; ///< if set, a solution represents all that it makes
 };
 
 /// Angle wrapped to (−π, π].
 [[nodiscard]] inline double wrap_angle(double x) {
-  constexpr double pi = std::numbers::pi, turn = 2 * pi;
+  constexpr double pi = std::numbers::pi, full_turn = 2 * pi;
   const double size = std::abs(x);
   // `std::remainder` alone gives the same, but takes twenty times as long.
   const double r = size <= pi       ? x
-                   : size <= 3 * pi ? x - std::copysign(turn, x)
-                                    : std::remainder(x, turn);
+                   : size <= 3 * pi ? x - std::copysign(full_turn, x)
+                                    : std::remainder(x, full_turn);
   return r <= -pi ? pi : r;
 }
 

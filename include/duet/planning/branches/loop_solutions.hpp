@@ -40,10 +40,10 @@ public:
     return result;
   }
 
-  static constexpr std::size_t nowhere = std::size_t(-1);
+  static constexpr std::size_t not_found = std::size_t(-1);
 
   /// Smallest singular value of all solutions found.
-  [[nodiscard]] double smallest_singular_value() const { return least_sigma_; }
+  [[nodiscard]] double smallest_singular_value() const { return min_sigma_; }
   /// Number of solutions on curves of solutions.
   [[nodiscard]] int on_curves() const { return on_curves_; }
 
@@ -56,14 +56,14 @@ public:
 
   /// Refines θ and adds the solution it leads to, and its neighbour near a singularity.
   ///
-  /// \return the index of the solution, or `nowhere` if there is none
+  /// \return the index of the solution, or `not_found` if there is none
   std::size_t add(six_coordinates theta) {
-    constexpr std::size_t most = 100; // more than there are isolated ones
-    if (all_.size() == most || !close_loop(loop_, theta)) {
-      return nowhere;
+    constexpr std::size_t max_count = 100; // more than there are isolated ones
+    if (all_.size() == max_count || !close_loop(loop_, theta)) {
+      return not_found;
     }
     for (Eigen::Index i = 0; i < 6; ++i) {
-      if (loop_.joints[std::size_t(i)].turns) {
+      if (loop_.joints[std::size_t(i)].is_revolute) {
         theta[i] = wrap_angle(theta[i]);
       }
     }
@@ -74,7 +74,7 @@ public:
     }
     const std::size_t last = all_.size();
     all_.push_back({theta, 1});
-    return look_beside(last);
+    return find_neighbour(last);
   }
 
 private:
@@ -86,7 +86,7 @@ private:
                                            const six_coordinates& b) const {
     six_coordinates result = b - a;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      if (loop_.joints[std::size_t(i)].turns) {
+      if (loop_.joints[std::size_t(i)].is_revolute) {
         result[i] = wrap_angle(result[i]);
       }
     }
@@ -101,23 +101,23 @@ private:
   /// closure error vanishes to round-off on a curve; for two separate ones σ would be as
   /// large as their distance.
   [[nodiscard]] bool is_same_singularity(std::size_t a, std::size_t b) const {
-    constexpr double singular = 1e-8, part = 1e-3;
+    constexpr double singular = 1e-8, fraction = 1e-3;
     const double sigma = std::max(all_[a].sigma, all_[b].sigma),
-                 apart = difference(all_[a].theta, all_[b].theta).cwiseAbs().maxCoeff();
-    return sigma < singular && apart < 2 * close_together && sigma < part * apart;
+                 distance = difference(all_[a].theta, all_[b].theta).cwiseAbs().maxCoeff();
+    return sigma < singular && distance < 2 * close_together && sigma < fraction * distance;
   }
   [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
     constexpr double rounding = 3e-13;
-    const closure_error gap(loop_, theta);
-    return gap.twist.norm() < rounding * gap.size;
+    const closure_error closure(loop_, theta);
+    return closure.twist.norm() < rounding * closure.size;
   }
 
   /// Finds the neighbour of a solution near a singularity. Along the direction v that changes the
   /// loop least, by u σ t, the change is u (σ t + κ t²/2) to second order: near t = −2σ/κ is
   /// another solution. If σ is 0 the solution may be on a curve.
   ///
-  /// \return the index of the solution; `nowhere` for most points of curves
-  std::size_t look_beside(std::size_t at) {
+  /// \return the index of the solution; `not_found` for most points of curves
+  std::size_t find_neighbour(std::size_t at) {
     constexpr double close_by = .05, closer = 1e-2, h = 1e-3, fold = 1e-4,
                      nudge = 1e-9;     // displacement of pivots from zero
     constexpr std::size_t enough = 24; // number of singular solutions: others are on curves
@@ -136,7 +136,7 @@ private:
       v *= sigma;
     }
     all_[at].sigma = sigma;
-    least_sigma_ = std::min(least_sigma_, sigma);
+    min_sigma_ = std::min(min_sigma_, sigma);
     if (!(sigma < close_by)) {
       return at;
     }
@@ -149,7 +149,7 @@ private:
       }
       if (singular_ == enough) {
         all_.pop_back();
-        return nowhere;
+        return not_found;
       }
       ++singular_;
       if (is_on_curve(theta, v) || is_on_curve(theta, -v)) {
@@ -159,13 +159,13 @@ private:
     }
     if (sigma < closer) { // terms of third order may count
       const double almost_none = 1e-5 / squared_travel(loop_);
-      const double forwards = look_along(theta, u, v), backwards = look_along(theta, -u, -v);
+      const double forwards = search_along(theta, u, v), backwards = search_along(theta, -u, -v);
       is_near_curve_ = is_near_curve_ ||
                        (sigma < nearly_singular && std::max(forwards, backwards) < almost_none);
     }
     const auto along = [&](double t) { return u.dot(closure_error(loop_, theta + t * v).twist); };
-    const double slope = u.dot(closure_error(loop_, theta).jacobian * v);
-    const double curvature = (along(h) + along(-h)) / (h * h), t = 2 * slope / curvature;
+    const double derivative = u.dot(closure_error(loop_, theta).jacobian * v);
+    const double curvature = (along(h) + along(-h)) / (h * h), t = 2 * derivative / curvature;
     degenerate_ += sigma < nearly_singular && !(std::abs(curvature) > fold);
     if (!(std::abs(t) < 1)) {
       return at;
@@ -183,20 +183,20 @@ private:
   /// fixed at t, the closure error is made 0 except for μ(t) u; solutions are zeros of μ.
   ///
   /// \return the largest |μ| in the range of the search
-  double look_along(const six_coordinates& theta, const six_coordinates& u,
-                    const six_coordinates& v) {
+  double search_along(const six_coordinates& theta, const six_coordinates& u,
+                      const six_coordinates& v) {
     six_coordinates x = theta, x_before = theta;
     double largest = 0, ratio_before = 0; // ratio of μ to t, without the zero at t = 0
     for (const double t : {.004, .01, .02, .04, .07, .1, .15, .22, .33, .5}) {
       double mu = 0;
       for (int k = 0; k < 2; ++k) {
-        const closure_error gap(loop_, x);
+        const closure_error closure(loop_, x);
         Eigen::Matrix<double, 7, 7> bordered;
-        bordered << gap.jacobian, u, v.transpose(), 0;
-        Eigen::Matrix<double, 7, 1> left;
-        left << gap.twist, t - v.dot(x - theta);
+        bordered << closure.jacobian, u, v.transpose(), 0;
+        Eigen::Matrix<double, 7, 1> right_side;
+        right_side << closure.twist, t - v.dot(x - theta);
         const Eigen::Matrix<double, 7, 1> step =
-            Eigen::PartialPivLU<Eigen::Matrix<double, 7, 7>>(bordered).solve(left);
+            Eigen::PartialPivLU<Eigen::Matrix<double, 7, 7>>(bordered).solve(right_side);
         x += step.head<6>();
         mu = step[6];
       }
@@ -206,8 +206,8 @@ private:
       largest = std::max(largest, std::abs(mu));
       const double ratio = mu / t;
       if (ratio * ratio_before < 0) {
-        const double part = ratio / (ratio - ratio_before);
-        static_cast<void>(add(x + part * (x_before - x)));
+        const double fraction = ratio / (ratio - ratio_before);
+        static_cast<void>(add(x + fraction * (x_before - x)));
       }
       x_before = x;
       ratio_before = ratio;
@@ -217,11 +217,12 @@ private:
 
   /// True if there is another solution, or nearly one, in the direction v from a singular one.
   [[nodiscard]] bool is_on_curve(const six_coordinates& theta, const six_coordinates& v) const {
-    constexpr double part = 1e-2, nearly = 1e-7, rounding = 1e-12;
+    constexpr double fraction = 1e-2, nearly = 1e-7, rounding = 1e-12;
     const double size = closure_error(loop_, theta).size;
     double h = HUGE_VAL;
     for (Eigen::Index i = 0; i < 6; ++i) {
-      h = std::min(h, part * (loop_.joints[std::size_t(i)].turns ? 1 : size) / std::abs(v[i]));
+      h = std::min(h, fraction * (loop_.joints[std::size_t(i)].is_revolute ? 1 : size) /
+                          std::abs(v[i]));
     }
     six_coordinates other = theta + h * v;
     static_cast<void>(close_loop(loop_, other));
@@ -235,7 +236,7 @@ private:
   int on_curves_ = 0, degenerate_ = 0;
   std::size_t singular_ = 0;
   bool is_near_curve_ = false;
-  double least_sigma_ = HUGE_VAL;
+  double min_sigma_ = HUGE_VAL;
 };
 
 } // namespace duet::detail

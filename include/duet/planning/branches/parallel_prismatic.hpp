@@ -20,11 +20,11 @@
 /// \file
 /// Loops with two prismatic joints that are parallel in every configuration.
 ///
-/// Together they can do no more than one of them: the tip reaches a five-dimensional set of poses
-/// only, and at each of these the two joints have a self-motion. With one fixed at 0 there are six
-/// equations for five coordinates. If its axis were perpendicular to the other's, there would be as
-/// many coordinates as equations, and up to eight solutions, as for any two prismatic joints. Those
-/// solutions that do not use it are all there are.
+/// The two joints are redundant: the tip reaches only a five-dimensional set of poses, and at each
+/// of these the joints have a self-motion. With one joint fixed at 0 there are six equations for
+/// five coordinates. If the axis of that joint were perpendicular to the other one, the loop would
+/// have up to eight solutions, as with any two prismatic joints. The solutions of the original loop
+/// are those of the modified loop in which the coordinate of that joint is 0.
 
 namespace duet::detail {
 
@@ -41,12 +41,13 @@ struct parallel_prismatic {
 parallel_prismatic_of(const loop_equation& loop) {
   loop_equation from = loop;
   for (std::size_t first = 0; first < 6; ++first) {
-    const loop_joint& slide = from.joints[0];
+    const loop_joint& prismatic = from.joints[0];
     std::size_t k = 1;
-    while (k < 6 && from.joints[k].turns && is_on(slide.axis, from.joints[k].axis)) {
+    while (k < 6 && from.joints[k].is_revolute && is_on(prismatic.axis, from.joints[k].axis)) {
       ++k;
     }
-    if (!slide.turns && k < 6 && !from.joints[k].turns && is_on(slide.axis, from.joints[k].axis)) {
+    if (!prismatic.is_revolute && k < 6 && !from.joints[k].is_revolute &&
+        is_on(prismatic.axis, from.joints[k].axis)) {
       return parallel_prismatic{from, first, k};
     }
     from = from.shifted();
@@ -57,48 +58,48 @@ parallel_prismatic_of(const loop_equation& loop) {
 /// Gauss–Newton method for all coordinates except one, which is fixed.
 ///
 /// \return true if it closes the loop
-[[nodiscard]] inline bool close_with_held(const loop_equation& loop, Eigen::Index held,
-                                          six_coordinates& theta) {
+[[nodiscard]] inline bool close_with_fixed(const loop_equation& loop, Eigen::Index fixed,
+                                           six_coordinates& theta) {
   constexpr double rounding = 1e-12;
   for (int k = 0; k < 6; ++k) {
-    const closure_error gap(loop, theta);
+    const closure_error closure(loop, theta);
     Eigen::Matrix<double, 6, 5> moving;
-    moving << gap.jacobian.leftCols(held), gap.jacobian.rightCols(5 - held);
+    moving << closure.jacobian.leftCols(fixed), closure.jacobian.rightCols(5 - fixed);
     Eigen::Matrix<double, 5, 5> inverse = Eigen::Matrix<double, 5, 5>::Identity(); // R⁻¹ of Q R
     orthonormalise(moving, inverse);
-    const Eigen::Matrix<double, 5, 1> step = inverse * (moving.transpose() * gap.twist);
-    theta.head(held) += step.head(held);
-    theta.tail(5 - held) += step.tail(5 - held);
+    const Eigen::Matrix<double, 5, 1> step = inverse * (moving.transpose() * closure.twist);
+    theta.head(fixed) += step.head(fixed);
+    theta.tail(5 - fixed) += step.tail(5 - fixed);
   }
-  const closure_error left(loop, theta);
-  return left.twist.norm() <= rounding * left.size;
+  const closure_error closure(loop, theta);
+  return closure.twist.norm() <= rounding * closure.size;
 }
 
 /// Solutions in which the second of the prismatic joints is at 0.
-[[nodiscard]] inline loop_solution_set solve_parallel_prismatic(const parallel_prismatic& slides) {
-  const auto held = Eigen::Index(slides.second);
-  const Eigen::Vector3d n = slides.loop.joints[slides.second].axis, u = n.unitOrthogonal();
-  loop_equation across = slides.loop; // no known arm has an axis in that direction
-  across.joints[slides.second].axis =
+[[nodiscard]] inline loop_solution_set solve_parallel_prismatic(const parallel_prismatic& pair) {
+  const auto fixed = Eigen::Index(pair.second);
+  const Eigen::Vector3d n = pair.loop.joints[pair.second].axis, u = n.unitOrthogonal();
+  loop_equation across = pair.loop; // no known arm has an axis in that direction
+  across.joints[pair.second].axis =
       components(Eigen::Vector3d(std::cos(.7) * u + std::sin(.7) * n.cross(u)));
   const loop_solution_set all = solve_general_loop<two_prismatic>(across);
   loop_solution_set result;
   for (loop_solution each : all.solutions) {
     constexpr double close_to_zero = 1e-5; // double solutions are less accurate
-    const bool is_unused = std::abs(each.theta[held]) < close_to_zero;
-    each.theta[held] = 0;
-    if (is_unused && close_with_held(slides.loop, held, each.theta)) {
+    const bool is_unused = std::abs(each.theta[fixed]) < close_to_zero;
+    each.theta[fixed] = 0;
+    if (is_unused && close_with_fixed(pair.loop, fixed, each.theta)) {
       six_coordinates theta;
       for (Eigen::Index k = 0; k < 6; ++k) {
-        theta[(k + Eigen::Index(slides.first)) % 6] = each.theta[k];
+        theta[(k + Eigen::Index(pair.first)) % 6] = each.theta[k];
       }
       result.solutions.push_back({theta, each.multiplicity});
     }
   }
   result.is_complete = all.is_complete && result.solutions.empty();
-  const double same_way =
-      dot(slides.loop.joints[0].axis, slides.loop.joints[slides.second].axis) > 0 ? -1 : 1;
-  result.in_place = {int(slides.first), int((slides.first + slides.second) % 6), same_way};
+  const double second_factor =
+      dot(pair.loop.joints[0].axis, pair.loop.joints[pair.second].axis) > 0 ? -1 : 1;
+  result.coupled_pair = {int(pair.first), int((pair.first + pair.second) % 6), second_factor};
   return result;
 }
 

@@ -48,46 +48,46 @@ public:
                                              const seven_coordinates& a) const {
     seven_coordinates d = b - a;
     for (int i = 0; i < 7; ++i) {
-      d[i] = arm_.turns[std::size_t(i)] ? wrap_angle(d[i]) : d[i] / arm_.size;
+      d[i] = arm_.is_revolute[std::size_t(i)] ? wrap_angle(d[i]) : d[i] / arm_.size;
     }
     return d;
   }
   [[nodiscard]] seven_coordinates moved(seven_coordinates x, const seven_coordinates& d) const {
     for (int i = 0; i < 7; ++i) {
-      x[i] += arm_.turns[std::size_t(i)] ? d[i] : arm_.size * d[i];
+      x[i] += arm_.is_revolute[std::size_t(i)] ? d[i] : arm_.size * d[i];
     }
     return x;
   }
 
   [[nodiscard]] double error(const seven_coordinates& x) const {
     seven_columns j;
-    return arm_.gap(x, j).norm();
+    return arm_.tip_error(x, j).norm();
   }
 
   /// Point of M that damped least squares (Levenberg–Marquardt) leads to from an initial guess. If
   /// the Jacobian is singular on M convergence is linear, with a factor of one half per step.
   ///
-  /// \param most  maximum distance from the initial guess
+  /// \param max_distance  maximum distance from the initial guess
   /// \return empty if it does not converge within that distance
   [[nodiscard]] std::optional<seven_coordinates> projected(const seven_coordinates& from,
-                                                           double most) const {
+                                                           double max_distance) const {
     constexpr int iterations = 60;
     constexpr double rounding = 1e-15;
     constexpr double enough = 2e-15; // near a double point half of the digits are lost
     seven_coordinates x = from, best = from;
-    double least = std::numeric_limits<double>::infinity();
+    double min_error = std::numeric_limits<double>::infinity();
     int since = 0; // steps since the error last fell
-    for (int k = 0; k < iterations && since < (least < self_motion_tolerance::on_set ? 2 : 8);
+    for (int k = 0; k < iterations && since < (min_error < self_motion_tolerance::on_set ? 2 : 8);
          ++k) {
       seven_columns j;
-      const six_coordinates e = arm_.gap(x, j);
+      const six_coordinates e = arm_.tip_error(x, j);
       const double size = e.norm();
       ++since;
-      if (size < .9 * least) {
+      if (size < .9 * min_error) {
         since = 0;
       }
-      if (size < least) {
-        least = size;
+      if (size < min_error) {
+        min_error = size;
         best = x;
       }
       if (size < enough) {
@@ -96,17 +96,17 @@ public:
       Eigen::Matrix<double, 6, 6> gram = j * j.transpose();
       gram.diagonal().array() += std::min(.02 * size * size, .08) + rounding;
       x = moved(x, j.transpose() * gram.llt().solve(e));
-      if (!(difference(x, from).norm() < most)) {
+      if (!(difference(x, from).norm() < max_distance)) {
         return {};
       }
     }
-    return least < self_motion_tolerance::on_set ? std::optional(best) : std::nullopt;
+    return min_error < self_motion_tolerance::on_set ? std::optional(best) : std::nullopt;
   }
 
   /// Orthonormal basis of the Jacobian's null space.
   [[nodiscard]] null_space kernel(const seven_coordinates& x) const {
     seven_columns j;
-    static_cast<void>(arm_.gap(x, j));
+    static_cast<void>(arm_.tip_error(x, j));
     // The product of the singular values gives a bound on the smallest: the mean square of the
     // others is not below their geometric mean. If it is far from 0 normal equations suffice.
     constexpr double regular = 1e-3;
@@ -115,9 +115,9 @@ public:
     if (gram.info() == Eigen::Success &&
         product > regular * std::sqrt(squares) * std::pow(squares / 5, 2.5)) {
       const square projector = square::Identity() - j.transpose() * gram.solve(j);
-      Eigen::Index longest = 0;
-      projector.diagonal().maxCoeff(&longest);
-      const seven_coordinates column = projector.col(longest);
+      Eigen::Index largest = 0;
+      projector.diagonal().maxCoeff(&largest);
+      const seven_coordinates column = projector.col(largest);
       return (column - j.transpose() * gram.solve(j * column)).normalized();
     }
     square rows = square::Zero();
@@ -152,18 +152,18 @@ public:
     if (basis.cols() == 1) {
       return 1;
     }
-    constexpr double least = .01; // fraction of the mean square; curvature contributes step²
+    constexpr double min_fraction = .01; // fraction of the mean square; curvature contributes step²
     square spread = square::Zero();
     const int count = 4 * int(basis.cols());
     for (int k = 0; k < count; ++k) {
-      const auto beside = neighbour(x, step, basis, random);
-      if (beside) {
-        const seven_coordinates d = difference(*beside, x) / step;
+      const auto point = neighbour(x, step, basis, random);
+      if (point) {
+        const seven_coordinates d = difference(*point, x) / step;
         spread += d * d.transpose() / count;
       }
     }
     const auto sizes = decomposition(spread).singularValues();
-    return int((sizes.array() > least).count());
+    return int((sizes.array() > min_fraction).count());
   }
 
   /// Neighbouring point of M at about the distance `step`, or nearer; empty if
@@ -179,7 +179,7 @@ public:
     seven_coordinates x;
     for (int i = 0; i < 7; ++i) {
       const double part = 2 * random() - 1;
-      x[i] = part * (arm_.turns[std::size_t(i)] ? std::numbers::pi : arm_.size);
+      x[i] = part * (arm_.is_revolute[std::size_t(i)] ? std::numbers::pi : arm_.size);
     }
     return projected(x, std::numeric_limits<double>::infinity());
   }

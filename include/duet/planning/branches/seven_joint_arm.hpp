@@ -21,13 +21,13 @@ using seven_columns = Eigen::Matrix<double, 6, 7>;
 
 /// Arm of seven joints, and the goal of its tip (end effector).
 struct redundant_arm {
-  std::array<bool, 7> turns{};
+  std::array<bool, 7> is_revolute{};
   double size = 1; ///< characteristic length of the arm
   tip_pose goal{};
   /// Pose error of the tip, and the Jacobian; lengths relative to the arm's size.
-  std::function<six_coordinates(const seven_coordinates&, seven_columns&)> gap;
+  std::function<six_coordinates(const seven_coordinates&, seven_columns&)> tip_error;
   /// Axes of the other joints, with one fixed at a coordinate.
-  std::function<chain_screws(int, double)> axes_beside;
+  std::function<chain_screws(int, double)> axes_without;
 };
 
 /// Consecutive points of a curve, or a sample of a component of another dimension.

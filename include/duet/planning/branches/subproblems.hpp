@@ -32,8 +32,8 @@ namespace duet::detail {
 [[nodiscard]] inline quaternion<double> rotation_product(const vector3d& a, double alpha,
                                                          const vector3d& b, double beta) {
   const sines_at_once<2> halves(alpha / 2, beta / 2);
-  return turn_about(a, halves.sine(0), halves.cosine(0)) *
-         turn_about(b, halves.sine(1), halves.cosine(1));
+  return rotation_about_axis(a, halves.sine(0), halves.cosine(0)) *
+         rotation_about_axis(b, halves.sine(1), halves.cosine(1));
 }
 
 /// Two rotations, first by β about b, then by α about a, that map one unit vector to another:
@@ -53,7 +53,7 @@ public:
     const rotating_vector by_b(b, from);
     connecting_rotation first(a, by_b, to);
     const bool has_beta = visit_zeros(
-        {dot(a, by_b.along) - dot(a, to), dot(a, by_b.across), dot(a, by_b.beside)},
+        {dot(a, by_b.along) - dot(a, to), dot(a, by_b.across), dot(a, by_b.normal)},
         [&](double near_beta, int near_multiplicity) {
           first(near_beta, 0, near_multiplicity, [&](double beta, double, double alpha, int m) {
             all_[std::size_t(count_++)] = {alpha, beta, m};
@@ -87,14 +87,14 @@ private:
 /// α or β is undetermined
 template <class Visit>
 double for_each_three_axis_decomposition(const loop_joint& a, const loop_joint& b,
-                                         const loop_joint& c, const quaternion<double>& turn,
+                                         const loop_joint& c, const quaternion<double>& rotation,
                                          const Visit& visit, double error = 0) {
   // The last rotation leaves its axis invariant; the first one preserves the angle between that
   // axis and its own.
-  const subproblem2 both(a.axis, b.axis, c.axis, rotated(turn, c.axis), error);
+  const subproblem2 both(a.axis, b.axis, c.axis, rotated(rotation, c.axis), error);
   for (const auto& [alpha, beta, multiplicity] : both) {
     const quaternion<double> before = rotation_product(a.axis, alpha, b.axis, beta);
-    visit(alpha, beta, angle_of(conj(before) * turn, c.axis), multiplicity);
+    visit(alpha, beta, angle_of(conj(before) * rotation, c.axis), multiplicity);
   }
   return both.nearest();
 }

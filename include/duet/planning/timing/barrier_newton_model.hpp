@@ -33,9 +33,9 @@ struct barrier_newton_model {
 
   explicit barrier_newton_model(std::size_t n) : gradient(n), matrix(n) {}
   /// Adds a function f of a linear form of the coefficients, given f' and f''.
-  void add(std::size_t first, const linear_form& by, double slope, double curvature) {
+  void add(std::size_t first, const linear_form& by, double derivative, double curvature) {
     for (std::size_t i = 0; i < 3; ++i) {
-      gradient[first + i] += slope * by[i];
+      gradient[first + i] += derivative * by[i];
       for (std::size_t j = i; j < 3; ++j) {
         matrix[first + i][j - i] += curvature * by[i] * by[j];
       }

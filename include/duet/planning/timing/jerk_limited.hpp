@@ -29,18 +29,18 @@ struct timed_path {
 
 /// Path arguments s of a motion at n + 1 equidistant times; the last one is the length of the path.
 template <class V>
-[[nodiscard]] std::vector<double> places_of(const timed_path<V>& path, std::size_t n,
-                                            double length) {
+[[nodiscard]] std::vector<double> arc_lengths_of(const timed_path<V>& path, std::size_t n,
+                                                 double length) {
   std::vector<double> result;
   std::size_t at = 0;
   double s = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double t = path.duration * double(i) / double(n);
-    for (; at + 1 < path.pieces.size() && path.pieces[at + 1].law.time <= t; ++at) {
+    for (; at + 1 < path.pieces.size() && path.pieces[at + 1].scaling.time <= t; ++at) {
       s += path.pieces[at].path.length;
     }
-    const auto& [law, edge] = path.pieces[at];
-    result.push_back(std::min(s + law.at(t, edge.length).s, length));
+    const auto& [scaling, edge] = path.pieces[at];
+    result.push_back(std::min(s + scaling.at(t, edge.length).s, length));
   }
   result.push_back(length);
   return result;
@@ -70,13 +70,14 @@ void require_smooth(const time_parametrisation_input<N>& problem,
     Eigen::Index joint = 0;
     const double largest = jump.cwiseAbs().maxCoeff(&joint);
     if (largest * std::min(before.length, after.length) > 1e-9) {
-      const auto& at = problem.polygon.given_at;
-      const auto given = std::lower_bound(at.begin(), at.end(), problem.polygon.s[k]) - at.begin();
+      const auto& at = problem.polygon.waypoint_s;
+      const auto waypoint =
+          std::lower_bound(at.begin(), at.end(), problem.polygon.s[k]) - at.begin();
       raise(invalid_input(
-          message("duet: time_optimal_trajectory: limits of jerk ask for a curve with "
-                  "continuous second derivatives, as waypoint_interpolation::smooth where no "
-                  "joint leaves its range: at waypoint ",
-                  given, " that of joint ", joint, " jumps")));
+          message("duet: time_optimal_trajectory: the second derivative of joint ", joint,
+                  " jumps at waypoint ", waypoint,
+                  " (with jerk limits expected continuous, as of "
+                  "waypoint_interpolation::natural_cubic if no joint leaves its range)")));
     }
   }
 }
@@ -84,8 +85,8 @@ void require_smooth(const time_parametrisation_input<N>& problem,
 /// Velocities of all joints at the first and the last end of a curve.
 template <int N>
 [[nodiscard]] std::array<joint_vector<double, N>, 2>
-rates_at(const time_parametrisation_input<N>& problem,
-         const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+end_velocities(const time_parametrisation_input<N>& problem,
+               const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   const auto& last = curve.back();
   return {problem.initial_speed * curve.front().first(0),
           problem.final_speed * last.first(last.length)};
@@ -95,31 +96,31 @@ rates_at(const time_parametrisation_input<N>& problem,
 ///
 /// \throws invalid_input for a velocity at an end that exceeds its limit by more than round-off
 template <int N>
-void require_slow_ends(const time_parametrisation_input<N>& problem,
-                       const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
-  const auto rates = rates_at(problem, curve);
+void require_feasible_ends(const time_parametrisation_input<N>& problem,
+                           const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
+  const auto velocities = end_velocities(problem, curve);
   for (const bool is_last : {false, true}) {
     for (Eigen::Index i = 0; i < problem.velocity.size(); ++i) {
-      require(std::abs(rates[is_last][i]) <= problem.velocity[i] * (1 + 1e-12),
+      require(std::abs(velocities[is_last][i]) <= problem.velocity[i] * (1 + 1e-12),
               "duet: time_optimal_trajectory: the ", is_last ? "final" : "initial",
-              " rate of joint ", i, " is ", rates[is_last][i], ", beyond its limit ",
-              problem.velocity[i]);
+              " velocity of joint ", i, " is ", velocities[is_last][i], " (expected at most ",
+              problem.velocity[i], " in absolute value)");
     }
   }
 }
 
 /// Trajectory along a curve with a squared path velocity τ̇²(τ) over n intervals of τ, given by its
-/// B-spline coefficients `pace`.
+/// B-spline coefficients.
 template <class V>
-[[nodiscard]] timed_path<V> trajectory_from_path_velocity(const std::vector<joint_cubic<V>>& curve,
-                                                          const std::vector<reference_piece>& path,
-                                                          std::size_t n,
-                                                          const std::vector<double>& pace) {
+[[nodiscard]] timed_path<V>
+trajectory_from_path_velocity(const std::vector<joint_cubic<V>>& curve,
+                              const std::vector<reference_piece>& path, std::size_t n,
+                              const std::vector<double>& squared_velocity) {
   timed_path<V> result;
   result.pieces.reserve(path.size());
   for (const auto& [edge, interval, from, l, start, a, b, c] : path) {
     const auto rows = path_velocity_powers(interval, n);
-    const double* of = &pace[interval];
+    const double* of = &squared_velocity[interval];
     const double curvature = times(rows[2], of), rise = times(rows[1], of) + 2 * from * curvature;
     const double before = times(rows[0], of) + from * (times(rows[1], of) + from * curvature);
     const double rate = std::sqrt(before),
@@ -140,7 +141,7 @@ struct jerk_search_result {
 
   /// End at which the smaller fraction of the velocities is attained.
   [[nodiscard]] std::size_t end() const { return reached[1] < reached[0]; }
-  [[nodiscard]] bool is_allowed() const { return reached[end()] == 1; }
+  [[nodiscard]] bool is_feasible() const { return reached[end()] == 1; }
 };
 
 /// Near-minimum-time trajectory within velocity, acceleration and jerk limits. Its squared path
@@ -156,21 +157,21 @@ template <int N>
                                   std::size_t intervals, double accuracy) {
   const auto& knots = problem.polygon.s;
   const std::array<double, 2> speeds{problem.initial_speed, problem.final_speed};
-  const reference_parametrisation law(places_of(motion, intervals, knots.back()),
-                                      {speeds[0] == 0, speeds[1] == 0});
-  const auto path = law.pieces(knots);
+  const reference_parametrisation reference(arc_lengths_of(motion, intervals, knots.back()),
+                                            {speeds[0] == 0, speeds[1] == 0});
+  const auto path = reference.pieces(knots);
   const path_velocity_constraints bounds(curve, path, intervals, problem.velocity,
                                          problem.acceleration, problem.jerk);
   std::array<double, 2> ends{};
   for (std::size_t e = 0; e < 2; ++e) {
-    const double rate = speeds[e] / (e == 0 ? law.first_slope() : law.last_slope());
+    const double rate = speeds[e] / (e == 0 ? reference.first_slope() : reference.last_slope());
     ends[e] = speeds[e] > 0 ? rate * rate : 0;
   }
-  const path_velocity_result pace = minimum_time_path_velocity(bounds, ends, accuracy);
+  const path_velocity_result velocities = minimum_time_path_velocity(bounds, ends, accuracy);
   jerk_search_result<joint_vector<double, N>> result;
-  result.reached = {std::sqrt(pace.reached[0]), std::sqrt(pace.reached[1])};
-  result.nearest_joint = pace.nearest_joint;
-  result.motion = trajectory_from_path_velocity(curve, path, intervals, pace.coefficients);
+  result.reached = {std::sqrt(velocities.reached[0]), std::sqrt(velocities.reached[1])};
+  result.nearest_joint = velocities.nearest_joint;
+  result.motion = trajectory_from_path_velocity(curve, path, intervals, velocities.coefficients);
   return result;
 }
 

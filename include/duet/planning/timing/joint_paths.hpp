@@ -21,19 +21,19 @@ template <class V>
 struct joint_polygon {
   std::vector<V> points;
   std::vector<double> s;
-  std::vector<double> given_at; ///< arc length s of each given waypoint
+  std::vector<double> waypoint_s; ///< arc length s of each given waypoint
   V first_slope, last_slope; ///< slopes of the curve at its ends; 0: default of the type of curve
 
-  explicit joint_polygon(const std::vector<V>& given)
-      : points{given.front()}, s{0.0}, first_slope(V::Zero(given.front().size())),
+  explicit joint_polygon(const std::vector<V>& waypoints)
+      : points{waypoints.front()}, s{0.0}, first_slope(V::Zero(waypoints.front().size())),
         last_slope(first_slope) {
-    for (const V& each : given) {
-      const double way = (each - points.back()).norm();
-      if (way > 1e-10 * (1 + each.norm())) {
+    for (const V& each : waypoints) {
+      const double distance = (each - points.back()).norm();
+      if (distance > 1e-10 * (1 + each.norm())) {
         points.push_back(each);
-        s.push_back(s.back() + way);
+        s.push_back(s.back() + distance);
       }
-      given_at.push_back(s.back());
+      waypoint_s.push_back(s.back());
     }
   }
   [[nodiscard]] std::size_t edges() const { return points.size() - 1; }
@@ -46,7 +46,7 @@ struct joint_polygon {
 /// mean of the slopes of both edges, and 0 where their signs differ. Every component therefore
 /// rises and falls with the points and stays between them.
 template <class V>
-[[nodiscard]] std::vector<V> monotone_slopes(const joint_polygon<V>& polygon) {
+[[nodiscard]] std::vector<V> pchip_slopes(const joint_polygon<V>& polygon) {
   std::vector<V> slopes{polygon.first_slope.isZero(0) ? polygon.chord(0) : polygon.first_slope};
   for (std::size_t k = 1; k < polygon.edges(); ++k) {
     const V before = polygon.chord(k - 1), after = polygon.chord(k);
@@ -65,11 +65,11 @@ template <class V>
   return slopes;
 }
 
-/// Slopes of the interpolating cubic spline, which has continuous second derivatives; these are 0
-/// at ends whose slopes are not given (natural end conditions). Its equations are h₁ d₀ + 2 (h₀ +
-/// h₁) d₁ + h₀ d₂ = 3 (h₁ c₀ + h₀ c₁) with the lengths h and chords c of both edges.
+/// Slopes of the natural cubic spline through the points, which has continuous second derivatives;
+/// these are 0 at ends whose slopes are not given (natural end conditions). Its equations are h₁ d₀
+/// + 2 (h₀ + h₁) d₁ + h₀ d₂ = 3 (h₁ c₀ + h₀ c₁) with the lengths h and chords c of both edges.
 template <class V>
-[[nodiscard]] std::vector<V> smooth_slopes(const joint_polygon<V>& polygon) {
+[[nodiscard]] std::vector<V> natural_cubic_slopes(const joint_polygon<V>& polygon) {
   const std::size_t n = polygon.edges();
   // Forward elimination: row k is slope_k + above_k slope_{k+1} = slopes[k].
   const bool starts_freely = polygon.first_slope.isZero(0),
@@ -109,9 +109,10 @@ template <class V>
 
 /// Maximum distance of joint i from [lower, upper] inside an edge; 0 if the joint stays within.
 template <class V>
-[[nodiscard]] double excess(const joint_cubic<V>& q, Eigen::Index i, double lower, double upper) {
+[[nodiscard]] double range_violation(const joint_cubic<V>& q, Eigen::Index i, double lower,
+                                     double upper) {
   double result = 0;
-  const auto look = [&](double s) {
+  const auto check_at = [&](double s) {
     if (s > 0 && s < q.length) {
       const double x = q.c0[i] + s * (q.c1[i] + s * (q.c2[i] + s * q.c3[i]));
       result = std::max({result, lower - x, x - upper});
@@ -121,8 +122,8 @@ template <class V>
   const double root = q.c2[i] * q.c2[i] - 3 * q.c1[i] * q.c3[i];
   if (root >= 0) {
     const double u = -(q.c2[i] + std::copysign(std::sqrt(root), q.c2[i]));
-    look(u / (3 * q.c3[i]));
-    look(q.c1[i] / u);
+    check_at(u / (3 * q.c3[i]));
+    check_at(q.c1[i] / u);
   }
   return result;
 }

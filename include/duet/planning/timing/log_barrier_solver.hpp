@@ -47,7 +47,7 @@ public:
       slow = end > 0 ? std::min(slow, end) : slow;
     }
     std::fill(squared_velocity_.begin(), squared_velocity_.end(), slow);
-    is_kept_ = {ends_[0] == slow, ends_[1] == slow};
+    is_attained_ = {ends_[0] == slow, ends_[1] == slow};
   }
 
   /// Phase one: raises the squared path velocities at the ends to the required values. Among all
@@ -89,7 +89,7 @@ public:
   /// Coefficients of a nearly minimum-time squared path velocity: the margins to the limits that
   /// the barrier leaves cost about 10 / accuracy of the time. Ends that were not attained stay near
   /// their values.
-  [[nodiscard]] const std::vector<double>& quickest(double accuracy) {
+  [[nodiscard]] const std::vector<double>& solve(double accuracy) {
     if (are_ends_slow()) {
       for (double& each : squared_velocity_) {
         each *= .95;
@@ -97,7 +97,7 @@ public:
       for (std::size_t e = 0; e < 2; ++e) {
         ends_[e] = ends_[e] > 0 ? squared_velocity_[end_of(e)] : 0;
       }
-      is_kept_ = {true, true};
+      is_attained_ = {true, true};
     }
     const double unit = double(bounds_.pieces.size()) / time(squared_velocity_);
     for (double weight = 40 * unit; weight < accuracy * unit; weight *= 4) {
@@ -108,32 +108,32 @@ public:
   }
 
 private:
-  /// Weights of the objective without the logarithms: `time` · time − `lift` · Σ pace / end.
-  struct aim {
+  /// Weights of the objective without the logarithms: `time` · time − `lift` · Σ b / end.
+  struct barrier_weights {
     double time, lift;
   };
 
   [[nodiscard]] std::size_t end_of(std::size_t e) const {
     return e == 0 ? 0 : squared_velocity_.size() - 1;
   }
-  [[nodiscard]] bool is_slow(std::size_t e) const { return ends_[e] > 0 && !is_kept_[e]; }
+  [[nodiscard]] bool is_slow(std::size_t e) const { return ends_[e] > 0 && !is_attained_[e]; }
   [[nodiscard]] bool are_ends_slow() const { return is_slow(0) || is_slow(1); }
 
-  void for_each_bound(const std::vector<double>& pace, const auto& f) const {
+  void for_each_bound(const std::vector<double>& squared_velocity, const auto& f) const {
     static constexpr linear_form zero{};
     const joint_bounds* joint = bounds_.joints.data();
     const std::size_t joints = bounds_.joints.size() / bounds_.pieces.size();
     for (const piece_bounds& piece : bounds_.pieces) {
-      const double* c = &pace[piece.first];
+      const double* c = &squared_velocity[piece.first];
       const linear_form row = middle_of(piece);
       const double m = times(row, c), scale = 1 / (m * std::sqrt(m));
       std::array<double, 4> limit;
       std::array<linear_form, 4> limit_by;
       for (std::size_t r = 0; r < 4; ++r) {
-        const double p = times(piece.pace[r], c);
+        const double p = times(piece.squared_velocity[r], c);
         limit[r] = (3 * m - p) * scale / 2;
         for (std::size_t i = 0; i < 3; ++i) {
-          limit_by[r][i] = (1.5 * (p / m - 1) * row[i] - piece.pace[r][i]) * scale / 2;
+          limit_by[r][i] = (1.5 * (p / m - 1) * row[i] - piece.squared_velocity[r][i]) * scale / 2;
         }
       }
       const bool is_first = &piece == &bounds_.pieces.front();
@@ -168,21 +168,23 @@ private:
   [[nodiscard]] static linear_form middle_of(const piece_bounds& piece) {
     linear_form result;
     for (std::size_t i = 0; i < 3; ++i) {
-      result[i] =
-          (piece.pace[0][i] + 3 * (piece.pace[1][i] + piece.pace[2][i]) + piece.pace[3][i]) / 8;
+      result[i] = (piece.squared_velocity[0][i] +
+                   3 * (piece.squared_velocity[1][i] + piece.squared_velocity[2][i]) +
+                   piece.squared_velocity[3][i]) /
+                  8;
     }
     return result;
   }
-  void for_each_middle(const std::vector<double>& pace, const auto& f) const {
+  void for_each_middle(const std::vector<double>& squared_velocity, const auto& f) const {
     for (const piece_bounds& piece : bounds_.pieces) {
       const linear_form row = middle_of(piece);
-      f(piece, row, times(row, &pace[piece.first]));
+      f(piece, row, times(row, &squared_velocity[piece.first]));
     }
   }
 
-  [[nodiscard]] double time(const std::vector<double>& pace) const {
+  [[nodiscard]] double time(const std::vector<double>& squared_velocity) const {
     double result = 0;
-    for_each_middle(pace, [&](const piece_bounds& piece, const linear_form&, double m) {
+    for_each_middle(squared_velocity, [&](const piece_bounds& piece, const linear_form&, double m) {
       result += piece.length / std::sqrt(m);
     });
     return result;
@@ -194,10 +196,11 @@ private:
   }
 
   /// Objective with its barrier terms; infinite outside the feasible set.
-  [[nodiscard]] double value(const std::vector<double>& pace, aim weights) const {
-    double sum = weights.time * time(pace), product = 1;
+  [[nodiscard]] double value(const std::vector<double>& squared_velocity,
+                             barrier_weights weights) const {
+    double sum = weights.time * time(squared_velocity), product = 1;
     for (std::size_t e = 0; e < 2; ++e) {
-      sum -= is_slow(e) ? weights.lift * pace[end_of(e)] / ends_[e] : 0;
+      sum -= is_slow(e) ? weights.lift * squared_velocity[end_of(e)] / ends_[e] : 0;
     }
     bool is_inside = true;
     const auto take = [&](double factor) {
@@ -208,19 +211,19 @@ private:
         product = 1;
       }
     };
-    std::for_each(pace.begin(), pace.end(), take);
-    for_each_bound(pace, [&](const barrier_constraint& b) {
+    std::for_each(squared_velocity.begin(), squared_velocity.end(), take);
+    for_each_bound(squared_velocity, [&](const barrier_constraint& b) {
       const double limit = b.limit - b.beyond;
       is_inside = is_inside && limit > 0;
       take((limit - b.x) * (limit + b.x));
     });
-    for_each_middle(pace, [&](const piece_bounds&, const linear_form&, double m) {
+    for_each_middle(squared_velocity, [&](const piece_bounds&, const linear_form&, double m) {
       sum -= rooted_limits() * std::log(m);
     });
     return is_inside ? sum - std::log(product) : std::numeric_limits<double>::infinity();
   }
 
-  [[nodiscard]] barrier_newton_model model_of(aim weights) const {
+  [[nodiscard]] barrier_newton_model model_of(barrier_weights weights) const {
     barrier_newton_model result(squared_velocity_.size());
     for (std::size_t i = 0; i < squared_velocity_.size(); ++i) {
       const double inverse = 1 / squared_velocity_[i];
@@ -257,36 +260,37 @@ private:
   /// Takes one Newton step with a backtracking line search.
   ///
   /// \return twice the decrease that the model predicts; 0 if no step is found
-  double step(aim weights) {
-    barrier_newton_model here = model_of(weights);
-    const std::vector<double> slope = here.gradient, way = here.solution();
-    double fall = 0;
-    for (std::size_t i = 0; i < way.size(); ++i) {
-      fall -= slope[i] * way[i];
+  double step(barrier_weights weights) {
+    barrier_newton_model model = model_of(weights);
+    const std::vector<double> gradient = model.gradient, newton_step = model.solution();
+    double decrease = 0;
+    for (std::size_t i = 0; i < newton_step.size(); ++i) {
+      decrease -= gradient[i] * newton_step[i];
     }
     // Step length at which an end attains its required value.
     std::array<double, 2> arrival{2, 2};
     for (std::size_t e = 0; e < 2; ++e) {
       const std::size_t i = end_of(e);
-      if (is_slow(e) && squared_velocity_[i] + way[i] >= ends_[e]) {
-        arrival[e] = (ends_[e] - squared_velocity_[i]) / way[i];
+      if (is_slow(e) && squared_velocity_[i] + newton_step[i] >= ends_[e]) {
+        arrival[e] = (ends_[e] - squared_velocity_[i]) / newton_step[i];
       }
     }
     const double before = value(squared_velocity_, weights);
-    std::vector<double> next(way.size());
-    for (double part = std::min({1.0, arrival[0], arrival[1]}); part > 1e-6; part /= 2) {
-      for (std::size_t i = 0; i < way.size(); ++i) {
-        next[i] = squared_velocity_[i] + part * way[i];
+    std::vector<double> next(newton_step.size());
+    for (double fraction = std::min({1.0, arrival[0], arrival[1]}); fraction > 1e-6;
+         fraction /= 2) {
+      for (std::size_t i = 0; i < newton_step.size(); ++i) {
+        next[i] = squared_velocity_[i] + fraction * newton_step[i];
       }
-      if (value(next, weights) < before - 1e-3 * part * fall) {
+      if (value(next, weights) < before - 1e-3 * fraction * decrease) {
         squared_velocity_ = next;
         for (std::size_t e = 0; e < 2; ++e) {
-          if (part == arrival[e]) {
+          if (fraction == arrival[e]) {
             squared_velocity_[end_of(e)] = ends_[e];
-            is_kept_[e] = true;
+            is_attained_[e] = true;
           }
         }
-        return fall;
+        return decrease;
       }
     }
     return 0;
@@ -294,7 +298,7 @@ private:
 
   const path_velocity_constraints& bounds_;
   std::array<double, 2> ends_;
-  std::array<bool, 2> is_kept_{};
+  std::array<bool, 2> is_attained_{};
   std::vector<double> squared_velocity_;
 };
 
@@ -305,7 +309,7 @@ DUET_COMPILED_FUNCTION path_velocity_result minimum_time_path_velocity(
   path_velocity_result result;
   result.reached = search.find_feasible_start();
   result.nearest_joint = search.nearest_joint();
-  result.coefficients = search.quickest(accuracy);
+  result.coefficients = search.solve(accuracy);
   return result;
 }
 #endif

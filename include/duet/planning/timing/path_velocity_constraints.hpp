@@ -56,7 +56,7 @@ struct joint_bounds {
 struct piece_bounds {
   std::size_t first; ///< index of the coefficient that c[0] is
   double length;     ///< length of the segment in τ
-  std::array<linear_form, 4> pace{};
+  std::array<linear_form, 4> squared_velocity{};
   std::array<linear_form, 10> square_rate{};
 };
 
@@ -80,14 +80,14 @@ struct piece_bounds {
   return result;
 }
 
-/// Constraints on a squared path velocity `pace` = τ̇² that is a quadratic B-spline of τ
+/// Constraints on a squared path velocity b = τ̇² that is a quadratic B-spline of τ
 /// with positive coefficients, one more than nodes of τ; the outer ones are its values at
-/// the ends. Joint velocities are q' s' √pace with s' = ds/dτ; accelerations and jerks /
-/// √pace are linear in it:
+/// the ends. Joint velocities are q' s' √b with s' = ds/dτ; accelerations and jerks /
+/// √b are linear in it:
 ///
-///     q̈     = q'' s'² pace + q' change,            change = s̈ = s'' pace + s' pace' / 2
+///     q̈     = q'' s'² b + q' change,               change = s̈ = s'' b + s' b' / 2
 ///     q⃛ / τ̇ = q''' s'³ pace + 3 q'' s' change + q' third,
-///     third  = s''' pace + 3/2 s'' pace' + s' pace'' / 2
+///     third  = s''' b + 3/2 s'' b' + s' b'' / 2
 struct path_velocity_constraints {
   std::vector<piece_bounds> pieces;
   std::vector<joint_bounds> joints; ///< constraints of each segment, one per joint
@@ -112,15 +112,15 @@ private:
            const V& velocity, const V& acceleration, const V& jerk) {
     using polynomial = piece_polynomial;
     const double l = piece.length, f = piece.from;
-    // With `way` = s − start: q' = p_0 + p_1 way + p_2 way² / 2, q'' = p_1 + p_2 way, q''' = p_2.
+    // With x = s − start: q' = p_0 + p_1 x + p_2 x² / 2, q'' = p_1 + p_2 x, q''' = p_2.
     const std::array<V, 3> p{q.first(piece.start), q.second(piece.start), V(6 * q.c3)};
-    const polynomial way{{0, piece.a * l, piece.b * l * l, piece.c * l * l * l}};
+    const polynomial offset{{0, piece.a * l, piece.b * l * l, piece.c * l * l * l}};
     const polynomial slope{{piece.a, 2 * piece.b * l, 3 * piece.c * l * l}};
     const polynomial bend{{2 * piece.b, 6 * piece.c * l}};
-    const polynomial half_square = .5 * (way * way);
+    const polynomial half_square = .5 * (offset * offset);
 
     // Factors of p_0, p_1 and p_2; those of accelerations and jerks for each coefficient.
-    const std::array rates{cubic_approximation(slope), cubic_approximation(way * slope),
+    const std::array rates{cubic_approximation(slope), cubic_approximation(offset * slope),
                            cubic_approximation(half_square * slope)};
     std::array<std::array<cubic_approximation, 3>, 3> changes, jerks;
     piece_bounds bounds{piece.interval, l, {}, {}};
@@ -128,20 +128,21 @@ private:
     for (std::size_t i = 0; i < 3; ++i) {
       const double start = b[0][i] + f * (b[1][i] + f * b[2][i]);
       const double rise = b[1][i] + 2 * f * b[2][i], curvature = b[2][i];
-      bounds.pace[0][i] = start;
-      bounds.pace[1][i] = start + rise * l / 3;
-      bounds.pace[2][i] = start + l * (2 * rise + l * curvature) / 3;
-      bounds.pace[3][i] = start + l * (rise + l * curvature);
-      const polynomial pace{{start, rise * l, curvature * l * l}};
+      bounds.squared_velocity[0][i] = start;
+      bounds.squared_velocity[1][i] = start + rise * l / 3;
+      bounds.squared_velocity[2][i] = start + l * (2 * rise + l * curvature) / 3;
+      bounds.squared_velocity[3][i] = start + l * (rise + l * curvature);
+      const polynomial squared_velocity{{start, rise * l, curvature * l * l}};
       const polynomial half_rise{{rise / 2, curvature * l}};
-      const polynomial square = slope * slope * pace;
-      const polynomial change = bend * pace + slope * half_rise;
+      const polynomial square = slope * slope * squared_velocity;
+      const polynomial change = bend * squared_velocity + slope * half_rise;
       const polynomial both = 3 * (slope * change);
-      const polynomial third = 6 * piece.c * pace + 3 * (bend * half_rise) + curvature * slope;
-      changes[i] = {cubic_approximation(change), cubic_approximation(square + way * change),
-                    cubic_approximation(way * square + half_square * change)};
-      jerks[i] = {cubic_approximation(third), cubic_approximation(both + way * third),
-                  cubic_approximation(slope * square + way * both + half_square * third)};
+      const polynomial third =
+          6 * piece.c * squared_velocity + 3 * (bend * half_rise) + curvature * slope;
+      changes[i] = {cubic_approximation(change), cubic_approximation(square + offset * change),
+                    cubic_approximation(offset * square + half_square * change)};
+      jerks[i] = {cubic_approximation(third), cubic_approximation(both + offset * third),
+                  cubic_approximation(slope * square + offset * both + half_square * third)};
     }
     std::array<double, 4> largest_rate{};
     for (Eigen::Index j = 0; j < velocity.size(); ++j) {
@@ -169,7 +170,7 @@ private:
       }
       joints.push_back(rows);
     }
-    bounds.square_rate = times_square(bounds.pace, largest_rate);
+    bounds.square_rate = times_square(bounds.squared_velocity, largest_rate);
     pieces.push_back(bounds);
   }
 };

@@ -26,40 +26,40 @@ struct speed_bound {
   double slope, reach;
 };
 
-/// Interval of the y between `least` and `most` that satisfy all constraints for a given x, from
+/// Interval of the y between `lower` and `upper` that satisfy all constraints for a given x, from
 /// the value of one line at x to that of another.
 struct feasible_path_velocities {
   struct line {
     double at_zero, slope, value;
   };
-  line least, most;
+  line lower, upper;
 
   feasible_path_velocities(std::span<const speed_bound> bounds, double x, double from, double to)
-      : least{from, 0, from}, most{to, 0, to} {
+      : lower{from, 0, from}, upper{to, 0, to} {
     for (const auto& [slope, reach] : bounds) {
       const double middle = -slope * x;
-      if (middle + reach < most.value) {
-        most = {reach, -slope, middle + reach};
+      if (middle + reach < upper.value) {
+        upper = {reach, -slope, middle + reach};
       }
-      if (middle - reach > least.value) {
-        least = {-reach, -slope, middle - reach};
+      if (middle - reach > lower.value) {
+        lower = {-reach, -slope, middle - reach};
       }
     }
   }
 };
 
-/// Nearest value to x for which some y between `least` and `most` satisfies all constraints;
+/// Nearest value to x for which some y between `lower` and `upper` satisfies all constraints;
 /// NaN if there is none. The length of the interval of such y is a concave function of x.
 /// Newton's method approaches its nearer zero from outside without passing it, from one pair of
 /// active lines to the next.
 [[nodiscard]] inline double nearest_speed(std::span<const speed_bound> bounds, double x,
-                                          double least, double most) {
+                                          double lower, double upper) {
   for (double direction = 0;;) {
-    const feasible_path_velocities y(bounds, x, least, most);
-    if (y.least.value <= y.most.value) {
+    const feasible_path_velocities y(bounds, x, lower, upper);
+    if (y.lower.value <= y.upper.value) {
       return x;
     }
-    const double next = (y.most.at_zero - y.least.at_zero) / (y.least.slope - y.most.slope);
+    const double next = (y.upper.at_zero - y.lower.at_zero) / (y.lower.slope - y.upper.slope);
     const double step = next - x;
     if (!(step * direction > 0) && direction != 0) {
       // Converged to round-off, or between the zeros of a function that has none.
@@ -76,7 +76,7 @@ struct feasible_path_velocities {
 /// Constraints on ṡ² at the starts and ends of the segments of a path, between which it is linear
 /// in s.
 struct path_bounds {
-  std::vector<double> before, after; ///< largest ṡ² there by velocity limits
+  std::vector<double> before, after; ///< largest ṡ² that velocity limits admit
   std::vector<speed_bound> bounds;   ///< constraints, as many for each segment
   std::size_t bounds_each;
 
@@ -105,7 +105,7 @@ struct path_bounds {
     bounds.resize(at + bounds_each);
     for (Eigen::Index i = 0; i < second.size(); ++i) {
       const std::array<double, 3> p{slopes[0][i], slopes[1][i], slopes[2][i]};
-      keep_velocity(p, velocity[i]);
+      apply_velocity_limit(p, velocity[i]);
       bounds[at++] = bound(second[i] - p[0] * half, p[0] * half, acceleration[i]);
       bounds[at++] = bound(last[i] / 2 - p[1] * half, second[i] / 2 + p[1] * half, acceleration[i]);
       bounds[at++] = bound(-p[2] * half, last[i] + p[2] * half, acceleration[i]);
@@ -125,7 +125,7 @@ private:
   /// Applies a velocity limit. If |q'| is below a line from l to r l, ṡ² may be below (limit /
   /// line)², which is a convex function, and is above its chord divided by the largest ratio of the
   /// two. That ratio is attained at (2 r + 1) / (3 r + 3) of the segment.
-  void keep_velocity(const std::array<double, 3>& p, double limit) {
+  void apply_velocity_limit(const std::array<double, 3>& p, double limit) {
     const double l_0 = std::abs(p[0]), l_1 = std::abs(p[1]), l_2 = std::abs(p[2]);
     double at_start = limit / std::max({l_0, l_1, l_2, 1e-50}), at_end = at_start; // ṡ
     if (at_start * at_start >= std::max(before.back(), after.back())) {
@@ -155,25 +155,25 @@ struct infeasible_boundary {
 /// range from which the given end can be reached; the forward pass takes the largest values that
 /// this range and the constraints admit.
 ///
-/// \param refusal  set if a boundary velocity is infeasible; then the result has no meaning
+/// \param infeasible  set if a boundary velocity is infeasible; then the result has no meaning
 [[nodiscard]] inline std::vector<double> phase_plane_velocities(const path_bounds& path,
                                                                 double first, double last,
-                                                                infeasible_boundary& refusal) {
+                                                                infeasible_boundary& infeasible) {
   const std::size_t n = path.size();
   const auto cap = [&](std::size_t i) {
     return std::min(i < n ? path.before[i] : path.after[n - 1],
                     i > 0 ? path.after[i - 1] : path.before[0]);
   };
-  std::vector<double> most(n + 1), least(n + 1), speeds(n + 1);
+  std::vector<double> upper(n + 1), lower(n + 1), speeds(n + 1);
   const auto backwards = [&](double lowest, double highest) {
-    most[n] = highest;
-    least[n] = lowest;
+    upper[n] = highest;
+    lower[n] = lowest;
     for (std::size_t i = n; i-- > 0;) {
-      most[i] = nearest_speed(path.of(i), cap(i), least[i + 1], most[i + 1]);
-      if (most[i] > cap(i)) {
-        most[i] = std::numeric_limits<double>::quiet_NaN();
+      upper[i] = nearest_speed(path.of(i), cap(i), lower[i + 1], upper[i + 1]);
+      if (upper[i] > cap(i)) {
+        upper[i] = std::numeric_limits<double>::quiet_NaN();
       }
-      least[i] = least[i + 1] > 0 ? nearest_speed(path.of(i), 0, least[i + 1], most[i + 1]) : 0;
+      lower[i] = lower[i + 1] > 0 ? nearest_speed(path.of(i), 0, lower[i + 1], upper[i + 1]) : 0;
     }
   };
   const auto forwards = [&] {
@@ -181,22 +181,23 @@ struct infeasible_boundary {
     for (std::size_t i = 0; i < n; ++i) {
       speeds[i + 1] = std::max(
           0.0,
-          feasible_path_velocities(path.of(i), speeds[i], least[i + 1], most[i + 1]).most.value);
+          feasible_path_velocities(path.of(i), speeds[i], lower[i + 1], upper[i + 1]).upper.value);
     }
     return speeds[n];
   };
   constexpr double tolerance = 1 + 1e-9;
   backwards(last, last);
-  if (first <= most[0] * tolerance && first * tolerance >= least[0] && last <= cap(n) * tolerance) {
+  if (first <= upper[0] * tolerance && first * tolerance >= lower[0] &&
+      last <= cap(n) * tolerance) {
     forwards();
     return speeds;
   }
   backwards(0, std::min(last, cap(n)));
-  if (first > most[0] * tolerance) {
-    refusal = {true, false, most[0]};
+  if (first > upper[0] * tolerance) {
+    infeasible = {true, false, upper[0]};
   } else {
     backwards(0, cap(n));
-    refusal = {false, true, forwards()};
+    infeasible = {false, true, forwards()};
   }
   return speeds;
 }

@@ -33,22 +33,24 @@ class reference_parametrisation {
 public:
   /// Approximates given arc lengths.
   ///
-  /// \param places  approximate s at τ = 0, 1, …, n, n ≥ 4; exact at τ = 0 and n
-  explicit reference_parametrisation(const std::vector<double>& places, ends_at_rest rest = {}) {
-    const std::size_t n = places.size() - 1;
-    c_.assign(n + 3, places.back());
-    std::fill_n(c_.begin(), 3, places.front());
+  /// \param arc_lengths  approximate s at τ = 0, 1, …, n, n ≥ 4; exact at τ = 0 and n
+  explicit reference_parametrisation(const std::vector<double>& arc_lengths,
+                                     ends_at_rest rest = {}) {
+    const std::size_t n = arc_lengths.size() - 1;
+    c_.assign(n + 3, arc_lengths.back());
+    std::fill_n(c_.begin(), 3, arc_lengths.front());
     const std::size_t first = rest.first ? 2 : 1, last = rest.last ? n - 2 : n - 1;
     for (std::size_t i = first; i <= last; ++i) {
       // Subtracting a sixth of the second difference reproduces cubic polynomials.
-      const double before = places[i] - places[i - 1], after = places[i + 1] - places[i];
-      c_[i + 1] = places[i] - std::clamp((after - before) / 6, -after / 2, before / 2);
+      const double before = arc_lengths[i] - arc_lengths[i - 1],
+                   after = arc_lengths[i + 1] - arc_lengths[i];
+      c_[i + 1] = arc_lengths[i] - std::clamp((after - before) / 6, -after / 2, before / 2);
     }
     if (!rest.first) {
-      advance(places[0], places[1], places[2], c_[2], c_[1], c_[0]);
+      advance(arc_lengths[0], arc_lengths[1], arc_lengths[2], c_[2], c_[1], c_[0]);
     }
     if (!rest.last) {
-      advance(places[n], places[n - 1], places[n - 2], c_[n], c_[n + 1], c_[n + 2]);
+      advance(arc_lengths[n], arc_lengths[n - 1], arc_lengths[n - 2], c_[n], c_[n + 1], c_[n + 2]);
     }
   }
 
@@ -64,19 +66,19 @@ public:
     std::size_t edge = 0;
     for (std::size_t k = 0; k + 3 < c_.size(); ++k) {
       const auto [p_0, p_1, p_2, p_3] = powers(k);
-      const auto place = [p_0 = p_0, p_1 = p_1, p_2 = p_2, p_3 = p_3](double t) {
+      const auto arc_length = [p_0 = p_0, p_1 = p_1, p_2 = p_2, p_3 = p_3](double t) {
         return p_0 + t * (p_1 + t * (p_2 + t * p_3));
       };
       for (double from = 0; from < 1;) {
         const bool is_last = edge + 2 == knots.size();
         const double end = knots[edge + 1];
-        const double to = is_last || place(1) <= end ? 1 : crossing(place, end, from);
+        const double to = is_last || arc_length(1) <= end ? 1 : crossing(arc_length, end, from);
         if (to > from) {
           result.push_back({edge, k, from, to - from,
-                            std::clamp(place(from) - knots[edge], 0.0, end - knots[edge]),
+                            std::clamp(arc_length(from) - knots[edge], 0.0, end - knots[edge]),
                             p_1 + from * (2 * p_2 + 3 * from * p_3), p_2 + 3 * from * p_3, p_3});
         }
-        edge += !is_last && (to < 1 || place(1) >= end);
+        edge += !is_last && (to < 1 || arc_length(1) >= end);
         from = to;
       }
     }
@@ -88,9 +90,10 @@ private:
   /// positions and the coefficient before them.
   static void advance(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0) {
     // The differences have one sign. ds/dτ at the end is c_2 + 2 c_1 − 3 p_0: at least a twentieth
-    // of c_2 − p_0 is kept.
-    const double near_end = p_1 - p_0, next = p_2 - p_1, most = 2.85 * (c_2 - p_0);
-    const double bend = std::clamp((next - near_end) / near_end, -.5, most / near_end) * near_end;
+    // of c_2 − p_0 remains.
+    const double near_end = p_1 - p_0, next = p_2 - p_1, max_bend = 2.85 * (c_2 - p_0);
+    const double bend =
+        std::clamp((next - near_end) / near_end, -.5, max_bend / near_end) * near_end;
     c_1 = p_0 - bend / 6;
     c_0 = 6 * p_0 - 4 * c_1 - c_2;
   }

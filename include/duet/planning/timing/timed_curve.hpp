@@ -29,14 +29,14 @@ template <class V>
                                                    double length, int parts) {
   std::vector<joint_cubic<V>> result;
   for (const auto& edge : curve) {
-    const double share = edge.length / length;
-    const double count = share < 1e-6 ? 8 : std::max(16.0, std::ceil(share * parts));
-    const auto place = [&](double k) {
+    const double fraction = edge.length / length;
+    const double count = fraction < 1e-6 ? 8 : std::max(16.0, std::ceil(fraction * parts));
+    const auto boundary = [&](double k) {
       const double u = k / count;
       return edge.length * (u * u * (3 - 2 * u));
     };
     for (double k = 0; k < count; ++k) {
-      result.push_back(edge.part(place(k), place(k + 1) - place(k)));
+      result.push_back(edge.part(boundary(k), boundary(k + 1) - boundary(k)));
     }
   }
   return result;
@@ -44,14 +44,15 @@ template <class V>
 
 /// Checks that the boundary velocities are feasible.
 ///
-/// \throws invalid_input if they are not, with the fraction of them that is feasible
-inline void require_rates(const infeasible_boundary& refusal, double first, double last) {
-  if (refusal.at_start || refusal.at_end) {
-    const double asked = refusal.at_start ? first : last;
+/// \throws invalid_input if they are not, with the fraction that is feasible
+inline void require_feasible_velocities(const infeasible_boundary& infeasible, double first,
+                                        double last) {
+  if (infeasible.at_start || infeasible.at_end) {
+    const double required = infeasible.at_start ? first : last;
     raise(invalid_input(message(
-        "duet: time_optimal_trajectory: the ", refusal.at_start ? "initial" : "final",
-        " rates are too fast: at most ",
-        std::floor(9999 * std::sqrt(refusal.largest) / asked) / 1e4, " of them can be kept")));
+        "duet: time_optimal_trajectory: the ", infeasible.at_start ? "initial" : "final",
+        " velocities are infeasible (expected at most ",
+        std::floor(9999 * std::sqrt(infeasible.largest) / required) / 1e4, " times as large)")));
   }
 }
 
@@ -84,15 +85,15 @@ template <class V>
 
 /// Largest fraction of an acceleration limit that a motion uses, by Bernstein coefficients.
 template <class V>
-[[nodiscard]] double largest_share(const timed_path<V>& motion, const V& limits) {
+[[nodiscard]] double largest_fraction(const timed_path<V>& motion, const V& limits) {
   double result = 0;
-  for (const auto& [law, q] : motion.pieces) {
-    const double x = law.speed * law.speed, y = x + 2 * q.length * law.acceleration;
+  for (const auto& [scaling, q] : motion.pieces) {
+    const double x = scaling.speed * scaling.speed, y = x + 2 * q.length * scaling.acceleration;
     const V second = q.second(0), last = q.second(q.length);
     for (const V& coefficient :
-         {V(law.acceleration * q.first(0) + x * second),
-          V(law.acceleration * (q.c1 + q.length * q.c2) + x / 2 * last + y / 2 * second),
-          V(law.acceleration * q.first(q.length) + y * last)}) {
+         {V(scaling.acceleration * q.first(0) + x * second),
+          V(scaling.acceleration * (q.c1 + q.length * q.c2) + x / 2 * last + y / 2 * second),
+          V(scaling.acceleration * q.first(q.length) + y * last)}) {
       result = std::max(result, coefficient.cwiseQuotient(limits).cwiseAbs().maxCoeff());
     }
   }
@@ -113,15 +114,15 @@ timed_by_accelerations(const time_parametrisation_input<N>& problem,
   joint_vector<double, N> limits = problem.acceleration;
   std::optional<timed_path<joint_vector<double, N>>> result;
   for (int round = 0; round < 8; ++round) {
-    infeasible_boundary refusal;
+    infeasible_boundary infeasible;
     const std::vector<double> squares = phase_plane_velocities(
-        bounds_of(parts, problem.velocity, limits), first * first, last * last, refusal);
-    if (result && (refusal.at_start || refusal.at_end)) {
+        bounds_of(parts, problem.velocity, limits), first * first, last * last, infeasible);
+    if (result && (infeasible.at_start || infeasible.at_end)) {
       break; // velocities at their limits
     }
-    require_rates(refusal, first, last);
+    require_feasible_velocities(infeasible, first, last);
     result = timed_by_squares(parts, squares);
-    const double excess = largest_share(*result, problem.acceleration) - 1;
+    const double excess = largest_fraction(*result, problem.acceleration) - 1;
     if (!(excess > 1e-13)) {
       break;
     }
@@ -141,25 +142,25 @@ min_acceleration_motion(const time_parametrisation_input<N>& problem,
   const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
   std::array<double, 2> ends{problem.initial_speed * problem.initial_speed,
                              problem.final_speed * problem.final_speed};
-  infeasible_boundary refusal;
+  infeasible_boundary infeasible;
   std::vector<double> squares;
-  const auto is_found = [&](double scale) {
+  const auto is_feasible = [&](double scale) {
     const joint_vector<double, N> acceleration = scale * problem.acceleration;
-    refusal = {};
+    infeasible = {};
     squares = phase_plane_velocities(bounds_of(parts, problem.velocity, acceleration), ends[0],
-                                     ends[1], refusal);
-    return !refusal.at_start && !refusal.at_end;
+                                     ends[1], infeasible);
+    return !infeasible.at_start && !infeasible.at_end;
   };
-  while (!is_found(1)) {
-    ends[refusal.at_start ? 0 : 1] = refusal.largest > 0 ? .99 * refusal.largest : 0;
+  while (!is_feasible(1)) {
+    ends[infeasible.at_start ? 0 : 1] = infeasible.largest > 0 ? .99 * infeasible.largest : 0;
   }
   if (ends[0] + ends[1] > 0) {
     double low = 1e-4, high = 1;
     for (int i = 0; i < 8; ++i) {
       const double middle = std::sqrt(low * high);
-      (is_found(middle) ? high : low) = middle;
+      (is_feasible(middle) ? high : low) = middle;
     }
-    (void)is_found(high);
+    (void)is_feasible(high);
   }
   return timed_by_squares(parts, squares);
 }
@@ -179,12 +180,12 @@ public:
       : problem_(problem), curve_(curve), gentle_(min_acceleration_motion(problem, curve)) {}
 
   /// Motion within the limits; empty if none is found.
-  [[nodiscard]] std::optional<motion> found() {
+  [[nodiscard]] std::optional<motion> run() {
     std::optional<motion> result;
     motion last = gentle_;
-    for (const double share : {6, 3, 2}) {
-      auto next = find(last, share, 1);
-      if (next.is_allowed()) {
+    for (const double divisor : {6, 3, 2}) {
+      auto next = find(last, divisor, 1);
+      if (next.is_feasible()) {
         result = next.motion;
       } else if (next.reached[next.end()] > nearest_.reached[nearest_.end()]) {
         nearest_ = next;
@@ -198,26 +199,27 @@ public:
 
 private:
   /// Searches with jerk limits multiplied by `scale`, coarsely if that is not 1.
-  [[nodiscard]] jerk_search_result<vector> find(const motion& from, double share, double scale) {
+  [[nodiscard]] jerk_search_result<vector> find(const motion& from, double divisor, double scale) {
     time_parametrisation_input<N> loose = problem_;
     loose.jerk *= scale;
-    return timed_by_jerks(loose, curve_, from, std::size_t(std::max(16.0, problem_.parts / share)),
+    return timed_by_jerks(loose, curve_, from,
+                          std::size_t(std::max(16.0, problem_.parts / divisor)),
                           scale > 1 ? 200 : 5e4);
   }
   [[nodiscard]] std::optional<motion> narrowed() {
     double scale = 2;
     auto last = find(gentle_, 3, scale);
-    while (!last.is_allowed() && scale < 1e4) {
+    while (!last.is_feasible() && scale < 1e4) {
       scale *= 2;
       last = find(gentle_, 3, scale);
     }
-    for (double step = 1.5; last.is_allowed() && step > 1.01;) {
+    for (double step = 1.5; last.is_feasible() && step > 1.01;) {
       const double narrower = std::max(1.0, scale / step);
       auto next = find(last.motion, 2, narrower);
-      if (!next.is_allowed()) {
+      if (!next.is_feasible()) {
         next = find(last.motion, 1, narrower);
       }
-      if (!next.is_allowed()) {
+      if (!next.is_feasible()) {
         step = std::sqrt(step);
       } else if (narrower == 1) {
         return next.motion;
@@ -243,19 +245,19 @@ template <int N>
 timed_within_jerks(const time_parametrisation_input<N>& problem,
                    const std::vector<joint_cubic<joint_vector<double, N>>>& curve) {
   require_smooth(problem, curve);
-  require_slow_ends(problem, curve);
+  require_feasible_ends(problem, curve);
   jerk_search<N> search(problem, curve);
-  if (auto result = search.found()) {
+  if (auto result = search.run()) {
     return *result;
   }
   const auto& nearest = search.nearest();
   const std::size_t end = nearest.end(), joint = nearest.nearest_joint;
-  const char* towards = end == 0 ? "from" : "up to";
-  raise(invalid_input(message("duet: time_optimal_trajectory: the limits could not be kept ",
-                              towards, " the ", end == 0 ? "initial" : "final", " rates, only ",
-                              towards, " ", std::floor(1e4 * nearest.reached[end]) / 1e4,
-                              " of them, by reason of joint ", joint, ", whose rate is ",
-                              rates_at(problem, curve)[end][Eigen::Index(joint)])));
+  raise(invalid_input(message(
+      "duet: time_optimal_trajectory: no motion ", end == 0 ? "from the initial" : "to the final",
+      " velocities is found within the limits (expected at most ",
+      std::floor(1e4 * nearest.reached[end]) / 1e4, " times as large; joint ", joint,
+      ", with the velocity ", end_velocities(problem, curve)[end][Eigen::Index(joint)],
+      ", is nearest to its limits)")));
 }
 
 /// Minimum-time motion along a curve, as `joint_trajectory`.
@@ -270,8 +272,9 @@ timed(const time_parametrisation_input<N>& problem,
   for (const auto& piece : path.pieces) {
     const double h = piece.path.length;
     // Segments end where edges do, to round-off.
-    while (times.size() < problem.waypoints && problem.polygon.given_at[times.size()] < s + h / 2) {
-      times.push_back(piece.law.time);
+    while (times.size() < problem.waypoints &&
+           problem.polygon.waypoint_s[times.size()] < s + h / 2) {
+      times.push_back(piece.scaling.time);
     }
     s += h;
   }
