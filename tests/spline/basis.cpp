@@ -25,7 +25,7 @@ namespace {
 
 constexpr double tolerance = 1e-13;
 
-/// The cumulative functions of a basis, one by one.
+/// Cumulative function i of a basis, 0 and 1 outside its support included.
 template <int Order>
 double cumulative(const duet::bspline_basis<Order>& basis, std::size_t i, double u) {
   const std::size_t span = basis.find_span(u);
@@ -58,7 +58,7 @@ void for_each_case(F&& f) {
 
 } // namespace
 
-TEST_CASE("P1: the recurrence and the stored polynomials are the same functions") {
+TEST_CASE("P1: the recurrence, its definition and the stored polynomials agree") {
   for_each_case([](auto order, const std::vector<double>& knots) {
     constexpr int k = order;
     const duet::bspline_basis<k> basis(knots);
@@ -76,7 +76,7 @@ TEST_CASE("P1: the recurrence and the stored polynomials are the same functions"
   });
 }
 
-TEST_CASE("P1: the functions are not negative, local, and sum to 1") {
+TEST_CASE("P1: basis functions are non-negative, have local support and sum to 1") {
   for_each_case([](auto order, const std::vector<double>& knots) {
     constexpr int k = order;
     const std::size_t size = knots.size() - std::size_t(k);
@@ -96,7 +96,7 @@ TEST_CASE("P1: the functions are not negative, local, and sum to 1") {
   });
 }
 
-TEST_CASE("P2: cumulative functions are the sums of the plain ones") {
+TEST_CASE("P2: cumulative functions are the sums of basis functions") {
   for_each_case([](auto order, const std::vector<double>& knots) {
     constexpr int k = order;
     const duet::bspline_basis<k> basis(knots);
@@ -111,7 +111,7 @@ TEST_CASE("P2: cumulative functions are the sums of the plain ones") {
   });
 }
 
-TEST_CASE("P3, P4: derivatives of the weights, closed form against Taylor and dual numbers") {
+TEST_CASE("P3, P4: closed-form derivatives of the weights agree with Taylor and dual numbers") {
   for_each_case([](auto order, const std::vector<double>& knots) {
     constexpr int k = order;
     constexpr std::size_t count = std::size_t(k) - 1;
@@ -151,11 +151,11 @@ TEST_CASE("P3, P4: derivatives of the weights, closed form against Taylor and du
       }
     }
     CHECK(worst <= tolerance + duet_test::if_fused(2 * tolerance));
-    CHECK(worst_of_definition <= 100 * tolerance); // where the recurrence itself cancels
+    CHECK(worst_of_definition <= 100 * tolerance); // the recurrence itself has cancellation
   });
 }
 
-TEST_CASE("a basis over other real numbers") {
+TEST_CASE("bspline_basis: float and long double agree with double") {
   const std::vector<double> knots = knot_vectors(4)[4].knots;
   const duet::bspline_basis<4> basis(knots);
   const duet::bspline_basis<4, float> in_float(duet_test::cast<float>(knots));

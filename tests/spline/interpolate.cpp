@@ -28,18 +28,18 @@ using table = std::vector<quaternion>;
 
 namespace {
 
-parameters uniform(std::size_t rows) {
+parameters uniform(std::size_t count) {
   parameters result;
-  for (std::size_t i = 0; i < rows; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     result.push_back(-0.5 + 0.25 * double(i));
   }
   return result;
 }
 
-parameters uneven(std::size_t rows) {
-  duet_test::random_source random(rows);
+parameters uneven(std::size_t count) {
+  duet_test::random_source random(count);
   parameters result = {3};
-  for (std::size_t i = 1; i < rows; ++i) {
+  for (std::size_t i = 1; i < count; ++i) {
     result.push_back(result.back() + random.log_uniform(0.1, 1));
   }
   return result;
@@ -54,7 +54,7 @@ double worst_miss(const spline& s, const parameters& u, const table& q) {
   return worst;
 }
 
-/// The largest acceleration: what the ends of a natural spline are zero against.
+/// Largest acceleration at the knots, to which those at natural ends are compared.
 double largest_acceleration(const spline& s) {
   double result = 0;
   for (const double u : s.basis().breaks()) {
@@ -80,13 +80,14 @@ void check_clamped(const parameters& u, const table& q, const vector& start, con
 
 } // namespace
 
-TEST_CASE("the curve passes through the data and meets its end conditions") {
-  for (const std::size_t rows : {2, 3, 4, 7, 30}) {
+TEST_CASE("interpolate, cumulative cubic: the curve passes through the data and meets its end "
+          "conditions") {
+  for (const std::size_t count : {2, 3, 4, 7, 30}) {
     for (const double step : {0.0, 1e-9, 0.003, 0.3, 1.5}) {
-      CAPTURE(rows);
+      CAPTURE(count);
       CAPTURE(step);
-      const table q = random_orientations(rows, step, rows);
-      for (const parameters& u : {uniform(rows), uneven(rows)}) {
+      const table q = random_orientations(count, step, count);
+      for (const parameters& u : {uniform(count), uneven(count)}) {
         check_natural(u, q);
         check_clamped(u, q, vector(0.3, -0.2, 0.5), vector(-1, 0, 0.4));
         check_clamped(u, q, vector::Zero(), vector::Zero());
@@ -95,7 +96,8 @@ TEST_CASE("the curve passes through the data and meets its end conditions") {
   }
 }
 
-TEST_CASE("steps of 2.8 rad between rows, on random axes") {
+TEST_CASE("interpolate, cumulative cubic: rotations of 2.8 rad about random axes between samples "
+          "converge") {
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     CAPTURE(seed);
     const table q = duet_test::rotated_by(2.8, 20, seed);
@@ -112,7 +114,8 @@ TEST_CASE("steps of 2.8 rad between rows, on random axes") {
   }
 }
 
-TEST_CASE("steps of 2.9 rad between rows, on slowly turning axes") {
+TEST_CASE(
+    "interpolate, cumulative cubic: rotations of 2.9 rad about slowly changing axes converge") {
   table q = {quaternion(1)};
   for (int i = 1; i < 20; ++i) {
     const vector axis(std::cos(0.1 * i), std::sin(0.1 * i), 0);
@@ -121,22 +124,22 @@ TEST_CASE("steps of 2.9 rad between rows, on slowly turning axes") {
   check_natural(uniform(20), q);
 }
 
-TEST_CASE("a curve is copied by its knots, control quaternions and increments") {
+TEST_CASE("interpolate: a copy from knots, control quaternions and increments is the same curve") {
   const table q = duet_test::rotated_by(2, 20, 1);
   const spline s = interpolate<spline>(uniform(20), q);
   const spline copy(s.basis().knots(), s.control_points(), s.increments());
-  bool beyond_half_a_turn = false;
+  bool has_long_arc = false;
   for (std::size_t i = 1; i < s.control_points().size(); ++i) {
-    beyond_half_a_turn =
-        beyond_half_a_turn || dot(s.control_points()[i - 1], s.control_points()[i]) < 0;
+    has_long_arc = has_long_arc || dot(s.control_points()[i - 1], s.control_points()[i]) < 0;
   }
-  CHECK(beyond_half_a_turn); // so that aligning signs would make it another curve
+  CHECK(has_long_arc); // alignment of the signs would change the curve
   for (double u = s.basis().front(); u <= s.basis().back(); u += 0.07) {
     CHECK(max_abs_difference(copy(u), s(u)) < 1e-14);
   }
 }
 
-TEST_CASE("two rows and natural ends: the shortest turn at constant rate") {
+TEST_CASE(
+    "interpolate: two samples with natural ends give the shortest rotation at a constant rate") {
   const table q = random_orientations(2, 1.4);
   const spline s = interpolate<spline>(parameters{1, 3}, q);
   for (const double u : {1.0, 1.3, 2.0, 2.9, 3.0}) {
@@ -145,8 +148,8 @@ TEST_CASE("two rows and natural ends: the shortest turn at constant rate") {
   }
 }
 
-TEST_CASE("about one axis the curve is the scalar cubic spline") {
-  // Clamped with the slopes of a cubic, the spline is that cubic.
+TEST_CASE("interpolate, cumulative cubic: about one axis the curve is the scalar cubic spline") {
+  // Clamped with the slopes of a cubic, the spline equals this cubic.
   const auto angle = [](double u) { return 0.3 + u - 0.8 * u * u + 0.3 * u * u * u; };
   const auto slope = [](double u) { return 1 - 1.6 * u + 0.9 * u * u; };
   const vector axis(2.0 / 3, -1.0 / 3, 2.0 / 3);
@@ -163,24 +166,24 @@ TEST_CASE("about one axis the curve is the scalar cubic spline") {
   }
 }
 
-TEST_CASE("at an inner knot of uniform ones: Q_i = q_i exp(−ω_i/6) exp(ω_{i+1}/6)") {
-  const std::size_t rows = 12;
-  const table q = random_orientations(rows, 1.2);
-  const spline s = interpolate<spline>(uniform(rows), q);
+TEST_CASE("interpolate, uniform knots: Q_i = q_i exp(−ω_i/6) exp(ω_{i+1}/6) at inner knots") {
+  const std::size_t samples = 12;
+  const table q = random_orientations(samples, 1.2);
+  const spline s = interpolate<spline>(uniform(samples), q);
   const auto sixth = [&](std::size_t i, double sign) {
     return duet::exp(vector(s.increments()[i] * (sign / 6)));
   };
   int count = 0;
-  for (std::size_t row = 3; row + 3 < rows; ++row) { // where repeated end knots do not reach
-    const std::size_t i = row + 1;                   // the control quaternion of that knot
+  for (std::size_t k = 3; k + 3 < samples; ++k) { // beyond the influence of repeated end knots
+    const std::size_t i = k + 1;                  // the control quaternion of the knot
     const quaternion expected = s.control_points()[i] * sixth(i, -1) * sixth(i + 1, 1);
-    CHECK(max_abs_difference(s(uniform(rows)[row]), expected) < 1e-14);
+    CHECK(max_abs_difference(s(uniform(samples)[k]), expected) < 1e-14);
     ++count;
   }
   CHECK(count == 6);
 }
 
-TEST_CASE("signs and norms of the data do not matter") {
+TEST_CASE("interpolate: signs and rounded norms of the samples do not affect the curve") {
   const table q = random_orientations(15, 1.5);
   table flipped = q;
   for (std::size_t i = 1; i < q.size(); i += 3) {

@@ -39,7 +39,7 @@ struct passing {
                                        S(0.8 * u * exp(-0.3 * u)));
   }
 };
-/// One that turns right round and returns, of period 2.
+/// Motion of period 2 with a full turn.
 struct returning {
   template <class S>
   duet::quaternion<S> operator()(const S& u) const {
@@ -49,7 +49,7 @@ struct returning {
   }
 };
 
-/// Such a motion and its derivatives.
+/// Value of a motion at u and its derivatives.
 struct reference {
   template <class Path = passing>
   explicit reference(double u, const Path& path = {}) {
@@ -67,14 +67,14 @@ struct reference {
 /// corrected).
 using errors = std::array<double, 5>;
 
-/// Errors between the parameters a and b of a table with so many steps.
-template <class Place, class Ends, class Path = passing>
-errors measure(int steps, Place place, const Ends& ends, double a, double b,
+/// Errors between the parameters a and b of the curve through samples at spacing(2 i/steps).
+template <class Spacing, class Ends, class Path = passing>
+errors measure(int steps, Spacing spacing, const Ends& ends, double a, double b,
                const Path& path = {}) {
   std::vector<double> u;
   std::vector<quaternion> q;
   for (int i = 0; i <= steps; ++i) {
-    u.push_back(place(2.0 * i / steps));
+    u.push_back(spacing(2.0 * i / steps));
     q.push_back(path(u.back()));
   }
   const spline s = duet::interpolate<spline>(u, q, ends);
@@ -85,23 +85,23 @@ errors measure(int steps, Place place, const Ends& ends, double a, double b,
     const reference exact(at, path);
     const auto m = s.motion(at, duet::frame::spatial);
     const double sign = dot(exact.value, m.value) < 0 ? -1 : 1;
-    const errors here = {
+    const errors at_parameter = {
         max_abs_difference(exact.value, sign * m.value), (exact.velocity - m.velocity).norm(),
         (exact.acceleration - m.acceleration).norm(),
         max_abs_difference(exact.second, sign * s.derivatives(at)[2]),
         max_abs_difference(exact.second, sign * duet::printed_derivative(s, at).commuting_second)};
     for (std::size_t k = 0; k < worst.size(); ++k) {
-      worst[k] = std::max(worst[k], here[k]);
+      worst[k] = std::max(worst[k], at_parameter[k]);
     }
   }
   return worst;
 }
 
 /// Observed orders from 80 steps to 160.
-template <class Place, class Ends, class Path = passing>
-errors orders(Place place, const Ends& ends, double a, double b, const Path& path = {}) {
-  const errors coarse = measure(80, place, ends, a, b, path);
-  const errors fine = measure(160, place, ends, a, b, path);
+template <class Spacing, class Ends, class Path = passing>
+errors orders(Spacing spacing, const Ends& ends, double a, double b, const Path& path = {}) {
+  const errors coarse = measure(80, spacing, ends, a, b, path);
+  const errors fine = measure(160, spacing, ends, a, b, path);
   errors result;
   for (std::size_t k = 0; k < result.size(); ++k) {
     result[k] = std::log2(coarse[k] / fine[k]);
@@ -117,38 +117,41 @@ duet::clamped<> exact_rates() { return {reference(0).velocity, reference(2).velo
 
 } // namespace
 
-TEST_CASE("exact end rates: value h³, ω h², angular acceleration h") {
-  for (const auto place : {uniform, graded}) {
-    const errors order = orders(place, exact_rates(), 0, 2);
+TEST_CASE("interpolate, cumulative cubic, exact end velocities: errors of value h³, ω h², angular "
+          "acceleration h") {
+  for (const auto spacing : {uniform, graded}) {
+    const errors order = orders(spacing, exact_rates(), 0, 2);
     CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
     CHECK(order[1] == doctest::Approx(2).epsilon(0.1));
     CHECK(order[2] == doctest::Approx(1).epsilon(0.1));
   }
 }
 
-TEST_CASE("exact end accelerations, and not-a-knot ends: the same orders, up to the ends") {
+TEST_CASE("interpolate, cumulative cubic, exact end accelerations and not-a-knot: orders 3, 2, 1 "
+          "up to the ends") {
   const duet::end_acceleration<> exact = {reference(0).acceleration, reference(2).acceleration};
-  for (const auto place : {uniform, graded}) {
+  for (const auto spacing : {uniform, graded}) {
     const auto check = [](const errors& order) {
       CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
       CHECK(order[1] == doctest::Approx(2).epsilon(0.1));
       CHECK(order[2] == doctest::Approx(1).epsilon(0.1));
     };
-    check(orders(place, exact, 0, 2));
-    check(orders(place, duet::not_a_knot{}, 0, 2));
+    check(orders(spacing, exact, 0, 2));
+    check(orders(spacing, duet::not_a_knot{}, 0, 2));
   }
 }
 
-TEST_CASE("periodic ends: the same orders all round") {
-  for (const auto place : {uniform, graded}) {
-    const errors order = orders(place, duet::periodic{}, 0, 2, returning{});
+TEST_CASE("interpolate, cumulative cubic, periodic ends: orders 3, 2, 1 on the entire period") {
+  for (const auto spacing : {uniform, graded}) {
+    const errors order = orders(spacing, duet::periodic{}, 0, 2, returning{});
     CHECK(order[0] == doctest::Approx(3).epsilon(0.1));
     CHECK(order[1] == doctest::Approx(2).epsilon(0.1));
     CHECK(order[2] == doctest::Approx(1).epsilon(0.1));
   }
 }
 
-TEST_CASE("natural ends: as good inside, but the wrong acceleration at the ends") {
+TEST_CASE(
+    "interpolate, cumulative cubic, natural ends: orders 3, 2, 1 inside, 2, 1, 0 at the ends") {
   const errors inside = orders(uniform, duet::natural{}, 0.7, 1.3);
   CHECK(inside[0] == doctest::Approx(3).epsilon(0.1));
   CHECK(inside[1] == doctest::Approx(2).epsilon(0.1));
@@ -162,18 +165,18 @@ TEST_CASE("natural ends: as good inside, but the wrong acceleration at the ends"
   CHECK(measure(160, uniform, duet::natural{}, 0, 2)[2] == doctest::Approx(wrong).epsilon(0.01));
 }
 
-TEST_CASE(
-    "P4: the commuting sum is not the curve's derivative, but can be nearer to the motion's") {
-  // The cumulative cubic's own Q″ is first-order accurate because of commutators of neighbouring
-  // ω_i. Leaving them out, as the print does, leaves their error out too.
-  for (const auto place : {uniform, graded}) {
-    const errors order = orders(place, exact_rates(), 0.7, 1.3);
+TEST_CASE("P4: the commuting sum is second-order accurate inside, the derivative of the curve "
+          "first-order") {
+  // Q″ of the cumulative cubic is first-order accurate because of commutators of neighbouring ω_i.
+  // The printed formula omits them, and their error with them.
+  for (const auto spacing : {uniform, graded}) {
+    const errors order = orders(spacing, exact_rates(), 0.7, 1.3);
     CHECK(order[3] == doctest::Approx(1).epsilon(0.1));
     CHECK(order[4] == doctest::Approx(2).epsilon(0.1));
-    const errors fine = measure(160, place, exact_rates(), 0.7, 1.3);
+    const errors fine = measure(160, spacing, exact_rates(), 0.7, 1.3);
     CHECK(fine[4] < fine[3] / 5);
   }
-  // Where the end knots repeat, that luck is over.
+  // With repeated end knots the order is lost.
   const errors order = orders(uniform, exact_rates(), 0, 2);
   CHECK(order[3] == doctest::Approx(1).epsilon(0.1));
   CHECK(order[4] == doctest::Approx(1).epsilon(0.1));

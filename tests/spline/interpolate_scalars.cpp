@@ -14,7 +14,7 @@ namespace test_spline_interpolate_scalars {
 using duet_test::cast;
 using duet_test::max_abs_difference;
 
-TEST_CASE("interpolation in single and extended precision") {
+TEST_CASE("interpolate: float and long double agree with double to their precision") {
   const auto q = duet_test::random_orientations(10, 0.7);
   std::vector<double> u = {3};
   while (u.size() < q.size()) {

@@ -32,15 +32,15 @@ using cumulative = duet::cumulative_bspline<double>;
 template <int Order>
 using rotation_vector = duet::rotation_vector_spline<double, Order>;
 
-struct rows {
+struct samples {
   std::vector<double> parameters;
   std::vector<duet::quaternion<double>> orientations;
 };
 
 /// A smooth motion that ends where it began, in steps of less than 0.024 rad.
-rows small_steps() {
+samples small_steps() {
   constexpr int count = 400;
-  rows result;
+  samples result;
   for (int i = 0; i <= count; ++i) {
     const double u = 2 * std::numbers::pi * i / count;
     result.parameters.push_back(u);
@@ -50,14 +50,14 @@ rows small_steps() {
   return result;
 }
 
-/// How far Newton's method starts from where it ends, in relation to the largest unknown, and how
-/// many iterations there are between.
-struct way {
-  double length;
+/// Distance of the initial guess of Newton's method from the solution, relative to the largest
+/// unknown, and the number of iterations.
+struct newton_run {
+  double distance;
   int iterations;
 };
 template <class Spline, class Ends>
-way way_of_newton(const rows& data, const Ends& ends) {
+newton_run run_newton(const samples& data, const Ends& ends) {
   const duet::detail::equations_of_t<Spline> f(data.parameters, data.orientations,
                                                duet::curve_ends<double>(ends));
   const duet::detail::spline_newton newton(f);
@@ -70,18 +70,18 @@ way way_of_newton(const rows& data, const Ends& ends) {
   return {difference / size, newton.iterations()};
 }
 
-/// \param most  of the way's length and iterations, with all ends
+/// \param max  bounds on distance and iterations, for all end conditions
 template <class Spline>
-void check_all_ends(const way& most) {
-  const rows data = small_steps();
+void check_all_ends(const newton_run& max) {
+  const samples data = small_steps();
   const auto free = duet::interpolate<Spline>(data.parameters, data.orientations);
   const auto first = free.motion(data.parameters.front(), duet::frame::spatial);
   const auto last = free.motion(data.parameters.back(), duet::frame::spatial);
   const auto check = [&](const char* name, const auto& ends) {
     CAPTURE(name);
-    const way found = way_of_newton<Spline>(data, ends);
-    CHECK(found.length <= most.length);
-    CHECK(found.iterations <= most.iterations);
+    const newton_run result = run_newton<Spline>(data, ends);
+    CHECK(result.distance <= max.distance);
+    CHECK(result.iterations <= max.iterations);
   };
   check("natural", duet::natural{});
   check("clamped", duet::clamped{first.velocity, last.velocity});
@@ -90,15 +90,16 @@ void check_all_ends(const way& most) {
   check("periodic", duet::periodic{});
 }
 
-/// How far solutions for differences of residuals are from the differences of unknowns that they
-/// are for, at and near the curve.
+/// Largest error of the Jacobian, applied to central differences of the residuals, which should
+/// give the unit vectors; at unknowns perturbed by `perturbation` from the solution.
 template <class Spline>
-double error_of_jacobian(const rows& data, const duet::curve_ends<double>& ends, double away) {
+double error_of_jacobian(const samples& data, const duet::curve_ends<double>& ends,
+                         double perturbation) {
   const duet::detail::equations_of_t<Spline> f(data.parameters, data.orientations, ends);
   auto x = duet::detail::spline_newton(f).solution();
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (int k = 0; k < x[i].size(); ++k) {
-      x[i][k] += away * std::sin(3. * k + double(i));
+      x[i][k] += perturbation * std::sin(3. * k + double(i));
     }
   }
   typename duet::detail::equations_of_t<Spline>::matrix jacobian;
@@ -125,10 +126,9 @@ double error_of_jacobian(const rows& data, const duet::curve_ends<double>& ends,
   return worst;
 }
 
-/// \param most  which the differences are off by
 template <class Spline>
-void check_jacobians(double away, double most) {
-  rows data;
+void check_jacobians(double perturbation, double tolerance) {
+  samples data;
   for (int i = 0; i <= 7; ++i) {
     data.parameters.push_back(i + .3 * std::sin(2. * i));
     data.orientations.push_back(
@@ -138,7 +138,7 @@ void check_jacobians(double away, double most) {
   const vector3 v(.3, -.2, .5), w(.1, .4, -.2);
   const auto check = [&](const char* name, const duet::curve_ends<double>& ends) {
     CAPTURE(name);
-    CHECK(error_of_jacobian<Spline>(data, ends, away) < most);
+    CHECK(error_of_jacobian<Spline>(data, ends, perturbation) < tolerance);
   };
   check("natural", duet::natural{});
   check("clamped", duet::clamped{v, w});
@@ -154,25 +154,25 @@ void check_jacobians(double away, double most) {
 
 } // namespace
 
-TEST_CASE("Jacobians against differences") {
-  check_jacobians<cumulative>(0, 1e-8); // elsewhere they only make the same step of Newton's
+TEST_CASE("interpolate: Jacobians of the equations agree with central differences") {
+  check_jacobians<cumulative>(0, 1e-8); // off the solution it is exact only along Newton steps
   check_jacobians<rotation_vector<4>>(.1, 1e-8);
   check_jacobians<rotation_vector<6>>(.1, 1e-4);
 }
 
-TEST_CASE("no step is small where one is not a number") {
+TEST_CASE("relative_step: NaN in any component gives NaN") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(duet::detail::larger_or_nan(1.0, 2.0) == 2);
   CHECK(duet::detail::larger_or_nan(2.0, 1.0) == 2);
   CHECK(std::isnan(duet::detail::larger_or_nan(nan, 1.0)));
   CHECK(std::isnan(duet::detail::larger_or_nan(1.0, nan)));
-  // The rates at three knots, the middle one's not a number.
-  const std::vector<vector3> x(3, vector3(1, 0, 0)), turns(2, vector3(1, 0, 0));
+  // Rates at three knots; that of the middle one is not a number.
+  const std::vector<vector3> x(3, vector3(1, 0, 0)), rotations(2, vector3(1, 0, 0));
   std::vector<vector3> step(3, vector3(.1, 0, 0));
   step[1][0] = nan;
   const std::vector<double> lengths{1, 1};
-  CHECK(std::isnan(duet::detail::relative_step_of_rates<double, 3>(x, step, turns, lengths)));
-  const rows data = small_steps();
+  CHECK(std::isnan(duet::detail::relative_step_of_rates<double, 3>(x, step, rotations, lengths)));
+  const samples data = small_steps();
   const duet::detail::equations_of_t<cumulative> f(
       data.parameters, data.orientations,
       duet::curve_ends<double>(duet::detail::end_condition_kind::natural));
@@ -181,11 +181,13 @@ TEST_CASE("no step is small where one is not a number") {
   CHECK(std::isnan(f.relative_step(f.start(), change)));
 }
 
-TEST_CASE("cumulative cubic: Newton's method starts next to its solution where turns are small") {
+TEST_CASE("interpolate, cumulative cubic: for small rotations the initial guess is within 2e-4 of "
+          "the solution") {
   check_all_ends<cumulative>({2e-4, 2});
 }
 
-TEST_CASE("rotation vectors: Newton's method starts near its solution where turns are small") {
+TEST_CASE("interpolate, rotation vectors: for small rotations Newton's method needs 4 iterations "
+          "or fewer") {
   check_all_ends<rotation_vector<4>>({.02, 3});
   check_all_ends<rotation_vector<6>>({.25, 4}); // third and fourth rates start from zero
 }

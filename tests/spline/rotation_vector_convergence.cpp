@@ -62,12 +62,12 @@ double graded(double u) { return u + 0.25 * (1 - std::cos(std::acos(-1.0) * u)) 
 using errors = std::array<double, 3>;
 
 template <int Order, class Ends>
-errors measure(int steps, double (*place)(double), const Ends& ends, double a = 0, double b = 2) {
+errors measure(int steps, double (*spacing)(double), const Ends& ends, double a = 0, double b = 2) {
   constexpr bool is_periodic = std::is_same_v<Ends, duet::periodic>;
   std::vector<double> u;
   std::vector<quaternion> q;
   for (int i = 0; i <= steps; ++i) {
-    u.push_back(place(2.0 * i / steps));
+    u.push_back(spacing(2.0 * i / steps));
     q.push_back(at<is_periodic>(u.back()).value);
   }
   const auto s = duet::interpolate<spline<Order>>(u, q, ends);
@@ -90,10 +90,10 @@ errors measure(int steps, double (*place)(double), const Ends& ends, double a = 
 
 /// Observed orders from so many steps to twice as many.
 template <int Order, class Ends>
-void check_orders(double (*place)(double), const Ends& ends, int steps, const errors& expected,
+void check_orders(double (*spacing)(double), const Ends& ends, int steps, const errors& expected,
                   double a = 0, double b = 2) {
-  const errors coarse = measure<Order>(steps, place, ends, a, b);
-  const errors fine = measure<Order>(2 * steps, place, ends, a, b);
+  const errors coarse = measure<Order>(steps, spacing, ends, a, b);
+  const errors fine = measure<Order>(2 * steps, spacing, ends, a, b);
   for (std::size_t k = 0; k < expected.size(); ++k) {
     CAPTURE(k);
     CHECK(std::log2(coarse[k] / fine[k]) == doctest::Approx(expected[k]).epsilon(0.08));
@@ -106,20 +106,20 @@ const duet::end_acceleration<> accelerations{at<false>(0).acceleration, at<false
 } // namespace
 
 TEST_CASE("the cubic: value h⁴, ω h³, acceleration h²") {
-  for (const auto place : {uniform, graded}) {
-    check_orders<4>(place, velocities, 80, {4, 3, 2});
-    check_orders<4>(place, accelerations, 80, {4, 3, 2});
-    check_orders<4>(place, duet::not_a_knot{}, 80, {4, 3, 2});
+  for (const auto spacing : {uniform, graded}) {
+    check_orders<4>(spacing, velocities, 80, {4, 3, 2});
+    check_orders<4>(spacing, accelerations, 80, {4, 3, 2});
+    check_orders<4>(spacing, duet::not_a_knot{}, 80, {4, 3, 2});
   }
   check_orders<4>(uniform, duet::periodic{}, 80, {4, 3, 2});
 }
 
 TEST_CASE("the quintic: value h⁶, ω h⁵, acceleration h⁴") {
-  for (const auto place : {uniform, graded}) {
-    check_orders<6>(place, velocities, 40, {6, 5, 4});
-    check_orders<6>(place, accelerations, 40, {6, 5, 4});
-    check_orders<6>(place, duet::fully_clamped{velocities, accelerations}, 40, {6, 5, 4});
-    check_orders<6>(place, duet::not_a_knot{}, 40, {6, 5, 4});
+  for (const auto spacing : {uniform, graded}) {
+    check_orders<6>(spacing, velocities, 40, {6, 5, 4});
+    check_orders<6>(spacing, accelerations, 40, {6, 5, 4});
+    check_orders<6>(spacing, duet::fully_clamped{velocities, accelerations}, 40, {6, 5, 4});
+    check_orders<6>(spacing, duet::not_a_knot{}, 40, {6, 5, 4});
   }
   check_orders<6>(uniform, duet::periodic{}, 40, {6, 5, 4});
 }
