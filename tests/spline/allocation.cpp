@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <vector>
 
-TEST_CASE("evaluation allocates nothing") {
+TEST_CASE("curves: evaluation does not allocate memory") {
   const auto knots = duet_test::knot_vectors(4)[1].knots;
   const duet::cumulative_bspline<double> s(knots,
                                            duet_test::random_orientations(knots.size() - 4, 1));
@@ -54,7 +54,7 @@ TEST_CASE("evaluation allocates nothing") {
   CHECK(during == 0);
   CHECK(sum == sum);
 
-  const std::size_t start = duet_test::allocations; // the counter itself works
+  const std::size_t start = duet_test::allocations; // the counter works
   const std::vector<double> copy = parameters;
   CHECK(duet_test::allocations > start);
   CHECK(copy.size() == parameters.size());

@@ -26,20 +26,21 @@ template <class Spline>
 Spline some_spline() {
   duet_test::random_source random(2);
   std::vector<double> u;
-  std::vector<quaternion<double>> rows;
+  std::vector<quaternion<double>> samples;
   for (int i = 0; i <= 12; ++i) {
     u.push_back(i + 0.3 * std::sin(i));
-    // Steps of up to half a turn: both the series and the closed forms of exp.
-    rows.push_back(from_rotation_vector(vector3<double>(
+    // Steps of up to half a turn use both the series and the closed form of exp.
+    samples.push_back(from_rotation_vector(vector3<double>(
         random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5), random.uniform(-1.5, 1.5))));
   }
-  return interpolate<Spline>(u, rows, natural{});
+  return interpolate<Spline>(u, samples, natural{});
 }
 
 } // namespace
 
-TEST_CASE_TEMPLATE("lanes on different spans, at knots and beyond the ends", Spline,
-                   cumulative_bspline<double>, rotation_vector_spline<double>) {
+TEST_CASE_TEMPLATE("curves of rotations over batches: lanes on different spans, at knots and "
+                   "beyond the ends agree with single parameters",
+                   Spline, cumulative_bspline<double>, rotation_vector_spline<double>) {
   auto s = some_spline<Spline>();
   const std::vector<double> inside{0, 3.3, 3.3, 12 + 0.3 * std::sin(12), 1 + 0.3 * std::sin(1),
                                    7, 5.5};
@@ -53,23 +54,24 @@ TEST_CASE_TEMPLATE("lanes on different spans, at knots and beyond the ends", Spl
 
   const std::vector<double> all{-0.5, 3.3, 13, 0.2};
   CHECK_THROWS_AS(check_lanes<4>(value, limit, all), invalid_input);
-  for (const auto way : {out_of_domain::clamp, out_of_domain::extrapolate}) {
-    s.set_out_of_domain(way);
+  for (const auto behaviour : {out_of_domain::clamp, out_of_domain::extrapolate}) {
+    s.set_out_of_domain(behaviour);
     check_lanes<4>(value, limit, all);
     check_lanes<4>(velocity, limit, all);
   }
 }
 
-TEST_CASE("curves of poses, through rows with rates, and derivatives") {
+TEST_CASE(
+    "curves of poses over batches: values, rates and derivatives agree with single parameters") {
   duet_test::random_source random(6);
   std::vector<double> u;
-  std::vector<dual_quaternion<double>> rows;
+  std::vector<dual_quaternion<double>> samples;
   std::vector<vector6<double>> velocities;
   const auto number = [&] { return random.uniform(-1, 1); };
   for (int i = 0; i <= 8; ++i) {
     u.push_back(i + 0.2 * std::sin(i));
-    const vector3<double> turn(number(), number(), i == 3 ? 0 : number());
-    rows.push_back(pose(from_rotation_vector(turn), vector3<double>(number(), number(), i)));
+    const vector3<double> angles(number(), number(), i == 3 ? 0 : number());
+    samples.push_back(pose(from_rotation_vector(angles), vector3<double>(number(), number(), i)));
     velocities.push_back(vector6<double>::Constant(i == 4 ? 0 : number()));
   }
   const std::vector<double> at{0, 2.3, u[3], 8 + 0.2 * std::sin(8), u[4], 5.5, 1e-9};
@@ -80,8 +82,8 @@ TEST_CASE("curves of poses, through rows with rates, and derivatives") {
                    4 * limit, at);
     check_lanes<4>([&](const auto& x) { return s.derivatives(x); }, 4 * limit, at);
   };
-  check(interpolate<cumulative_bspline<screw_dual<double>>>(u, rows, natural{}));
-  check(hermite_spline(u, rows, velocities, frame::body));
+  check(interpolate<cumulative_bspline<screw_dual<double>>>(u, samples, natural{}));
+  check(hermite_spline(u, samples, velocities, frame::body));
 }
 
 } // namespace test_spline_batch

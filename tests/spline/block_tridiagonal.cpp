@@ -71,19 +71,21 @@ void check(std::size_t n, const corners& at) {
 
 } // namespace
 
-TEST_CASE("cyclic systems, down to two rows, against a dense solution") {
+TEST_CASE("block_tridiagonal: cyclic systems of two and more rows agree with a dense solution") {
   for (const std::size_t n : {2, 3, 4, 5, 20}) {
     check(n, {n - 1, 0});
   }
 }
 
-TEST_CASE("systems with a wider band at their ends, down to three rows, against a dense solution") {
+TEST_CASE("block_tridiagonal: systems of three and more rows with a wider band at the ends agree "
+          "with a dense solution") {
   for (const std::size_t n : {3, 4, 5, 6, 20}) {
     check(n, {2, n - 3});
   }
 }
 
-TEST_CASE("one factorisation serves any scalar above") {
+TEST_CASE(
+    "block_tridiagonal: a factorisation over double solves for right sides over dual numbers") {
   duet_test::random_source random(1);
   const auto rows = random_rows(7, random);
   block_tridiagonal<double> solver;
@@ -109,7 +111,7 @@ TEST_CASE("one factorisation serves any scalar above") {
   }
 }
 
-TEST_CASE("a singular pivot is reported") {
+TEST_CASE("block_tridiagonal: factorise returns false for a singular pivot") {
   duet_test::random_source random(1);
   auto rows = random_rows(4, random);
   rows[0].diagonal.setZero();

@@ -24,7 +24,7 @@ namespace {
 constexpr double knot = 1.2;
 const double just_before = std::nextafter(knot, 0);
 
-/// A curve with the given knot repeated so often, all others simple.
+/// Curve with the knot of the given multiplicity and simple knots otherwise.
 template <int Order>
 cumulative_bspline<double, Order> curve_with(int times) {
   std::vector<double> knots;
@@ -57,7 +57,7 @@ void check_order() {
       if (d <= Order - 1 - times) {
         CHECK(jump < 1e-11);
       } else {
-        CHECK(jump > 1e-3); // were it smoother than that, the test would show nothing
+        CHECK(jump > 1e-3); // the next derivative jumps, so that the test is significant
       }
     }
   }
@@ -65,7 +65,7 @@ void check_order() {
 
 } // namespace
 
-TEST_CASE("P1: the curve is C^{k−2} at simple knots, one order less for every repetition") {
+TEST_CASE("P1: the curve is C^{k−2} at simple knots, with one order less for every repetition") {
   check_order<2>();
   check_order<3>();
   check_order<4>();
@@ -73,7 +73,8 @@ TEST_CASE("P1: the curve is C^{k−2} at simple knots, one order less for every 
   check_order<6>();
 }
 
-TEST_CASE("P3, P4: what the cubic's rates do at a knot") {
+TEST_CASE(
+    "P3, P4: rates of the cubic at a knot are continuous up to the order of its multiplicity") {
   const auto frames = [](auto frame) {
     for (int times = 1; times <= 3; ++times) {
       CAPTURE(times);

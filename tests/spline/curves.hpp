@@ -18,8 +18,8 @@
 #include <vector>
 
 /// \file
-/// Knots, parameters and control quaternions to try splines on, and the definitions P1, P2 written
-/// down once more, independently of the library and over any scalar.
+/// Knots, parameters and control quaternions for tests of splines, and independent implementations
+/// of the definitions P1 and P2 over any scalar.
 
 namespace duet_test {
 
@@ -28,7 +28,8 @@ struct named_knots {
   std::vector<double> knots;
 };
 
-/// Simple, repeated at the ends, repeated inside: every kind of knots that this order allows.
+/// Knot vectors of every kind that this order allows: simple, repeated at the ends, repeated
+/// inside.
 [[nodiscard]] inline std::vector<named_knots> knot_vectors(int order) {
   random_source random(std::uint64_t(order) + 40);
   std::vector<double> uniform, simple, uneven;
@@ -59,7 +60,7 @@ struct named_knots {
   return result;
 }
 
-/// Both ends and some inner points of every span of the domain.
+/// Parameters at both ends and at some inner points of every span of the domain.
 [[nodiscard]] inline std::vector<double> parameters_on(const std::vector<double>& knots, int order,
                                                        int inside = 5) {
   random_source random(7);
@@ -78,17 +79,18 @@ struct named_knots {
   return result;
 }
 
-/// Increasing, neighbours by 0.4 to 1.2 apart.
-[[nodiscard]] inline std::vector<double> uneven_parameters(std::size_t rows) {
-  random_source random(rows + 5);
+/// Increasing parameters with steps of 0.4 to 1.2.
+[[nodiscard]] inline std::vector<double> uneven_parameters(std::size_t count) {
+  random_source random(count + 5);
   std::vector<double> result = {-2};
-  while (result.size() < rows) {
+  while (result.size() < count) {
     result.push_back(result.back() + random.uniform(0.4, 1.2));
   }
   return result;
 }
 
-/// Unit quaternions, each turned from the one before by up to `step` radians about any axis.
+/// Unit quaternions, each rotated relative to the one before by up to `step` radians about a random
+/// axis.
 [[nodiscard]] inline std::vector<duet::quaternion<double>>
 random_orientations(std::size_t count, double step, std::uint64_t seed = 1) {
   random_source random(seed);
@@ -104,7 +106,8 @@ random_orientations(std::size_t count, double step, std::uint64_t seed = 1) {
   return result;
 }
 
-/// Unit quaternions, each turned from the one before by exactly `angle` about any axis.
+/// Unit quaternions, each rotated relative to the one before by exactly `angle` about a random
+/// axis.
 [[nodiscard]] inline std::vector<duet::quaternion<double>>
 rotated_by(double angle, std::size_t count, std::uint64_t seed) {
   random_source random(seed);
@@ -117,8 +120,8 @@ rotated_by(double angle, std::size_t count, std::uint64_t seed) {
   return result;
 }
 
-/// Poses with rotations as `random_orientations`, up to 2 from the origin along each axis; the
-/// last with the other sign, which must not matter.
+/// Poses with rotations as `random_orientations` and coordinates of up to 2. The last one has the
+/// opposite sign, which must have no effect.
 [[nodiscard]] inline std::vector<duet::dual_quaternion<double>> random_poses(std::size_t count,
                                                                              double step) {
   random_source random(count);
@@ -132,7 +135,7 @@ rotated_by(double angle, std::size_t count, std::uint64_t seed) {
   return result;
 }
 
-/// The largest difference of components.
+/// Largest difference of components.
 template <class A, class B>
 [[nodiscard]] double max_abs_difference(const duet::quaternion<A>& p,
                                         const duet::quaternion<B>& q) {
@@ -155,8 +158,8 @@ cast(const std::vector<duet::quaternion<double>>& q) {
   return result;
 }
 
-/// B_i^k(u), P1. Which interval counts follows from `at` alone: that makes B a polynomial, to be
-/// differentiated in u. At the end of the domain it is the last one.
+/// Basis function B_i^k(u), P1. The interval is selected by `at` alone, so that B is a polynomial
+/// in u, which can be differentiated. At the end of the domain the last interval is used.
 template <class R, class S>
 [[nodiscard]] S b_definition(const std::vector<R>& knots, std::size_t i, int k, const S& u,
                              const R& at, const R& end) {
@@ -178,7 +181,7 @@ template <class R, class S>
   return sum;
 }
 
-/// B̃_i(u) = Σ_{j≥i} B_j(u), P2, without a thought for cost.
+/// Cumulative function B̃_i(u) = Σ_{j≥i} B_j(u), P2, by definition.
 template <class R, class S>
 [[nodiscard]] S cumulative_definition(const std::vector<R>& knots, std::size_t i, int order,
                                       const S& u, const R& at) {
@@ -190,7 +193,7 @@ template <class R, class S>
   return sum;
 }
 
-/// q_0 ∏ exp(ω_i B̃_i(u)), P2: the product over all of them, of given ω_i. `at`: as above.
+/// Curve q_0 ∏ exp(ω_i B̃_i(u)), P2: the product over all given ω_i, with `at` as above.
 template <class R, class S>
 [[nodiscard]] duet::quaternion<S>
 product_definition(const std::vector<R>& knots, int order, const duet::quaternion<R>& first,
@@ -204,7 +207,7 @@ product_definition(const std::vector<R>& knots, int order, const duet::quaternio
   return q;
 }
 
-/// ω_i = log(q_{i−1}⁻¹ q_i), P2, of aligned control quaternions.
+/// Increments ω_i = log(q_{i−1}⁻¹ q_i), P2, of aligned control quaternions.
 template <class R>
 [[nodiscard]] std::vector<duet::vector3<R>>
 increments_of(const std::vector<duet::quaternion<R>>& controls) {

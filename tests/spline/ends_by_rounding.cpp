@@ -21,7 +21,7 @@
 #include <type_traits>
 #include <vector>
 
-// Sums of steps end a few ulp beyond the end: there a curve is at its end.
+// Sums of steps may end a few ulp beyond the domain: such parameters count as its end.
 
 namespace test_spline_ends_by_rounding {
 namespace {
@@ -47,15 +47,16 @@ Spline curve_over(double first, double last) {
   }
 }
 
-/// The number k ulp of the larger end outside.
+/// Number that is k ulp beyond an end.
 double beyond(double end, double ulp, int k, bool is_last) {
   return is_last ? end + k * ulp : end - k * ulp;
 }
 
 } // namespace
 
-TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end", Spline,
-                   cumulative, quintic) {
+TEST_CASE_TEMPLATE(
+    "curve: parameters up to 8 ulp of the larger end beyond the domain count as its end", Spline,
+    cumulative, quintic) {
   const std::array<std::array<double, 2>, 6> domains{
       {{0, 4}, {-4, 0}, {-0.3, 0.7}, {1e9, 1e9 + 1}, {-1e-3, 1e-7}, {2, 1e12}}};
   for (const auto& [first, last] : domains) {
@@ -65,12 +66,12 @@ TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end
     for (const bool is_last : {false, true}) {
       const double end = is_last ? last : first;
       const auto at_end = s.motion(end, duet::frame::body);
-      const auto slope = s(duet::dual<double>(end, 1));
+      const auto derivative = s(duet::dual<double>(end, 1));
       for (const int k : {1, 2, 5, 8}) {
         const double u = beyond(end, ulp, k, is_last);
-        for (const auto way :
+        for (const auto behaviour :
              {out_of_domain::error, out_of_domain::clamp, out_of_domain::extrapolate}) {
-          s.set_out_of_domain(way);
+          s.set_out_of_domain(behaviour);
           CHECK(s(u) == s(end));
           duet::span_hint hint{7};
           const auto m = s.motion(u, duet::frame::body, hint);
@@ -78,7 +79,7 @@ TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end
           CHECK(m.velocity == at_end.velocity);
           CHECK(m.jerk == at_end.jerk);
           CHECK(s.derivatives(u)[2] == s.derivatives(end)[2]);
-          CHECK(s(duet::dual<double>(u, 1)) == slope); // one-sided, that of the last piece
+          CHECK(s(duet::dual<double>(u, 1)) == derivative); // one-sided, of the last segment
           duet::batch<double, 4> some(end);
           some.set(2, u);
           CHECK(duet::lane(s(some), 2) == duet::lane(s(duet::batch<double, 4>(end)), 2));
@@ -103,7 +104,8 @@ TEST_CASE_TEMPLATE("up to 8 ulp of the larger end outside, a curve is at its end
   }
 }
 
-TEST_CASE_TEMPLATE("the loops by which time runs", Spline, cumulative, quintic) {
+TEST_CASE_TEMPLATE("curve: usual loops over the domain do not throw because of round-off", Spline,
+                   cumulative, quintic) {
   int beyond_the_end = 0;
   for (const double last : {0.7, 1.1, 4.0, 1e9 / 3, 12.566370614359172}) {
     const auto s = curve_over<Spline>(0, last);
@@ -127,10 +129,11 @@ TEST_CASE_TEMPLATE("the loops by which time runs", Spline, cumulative, quintic) 
       }
     }
   }
-  CHECK(beyond_the_end > 50); // else the loops tell nothing
+  CHECK(beyond_the_end > 50); // otherwise the loops would not test the case
 }
 
-TEST_CASE("a step of 3e-16 beyond the end; float; the printed formulas; rows of a fit") {
+TEST_CASE(
+    "curve, float basis, printed formulas and fit accept parameters beyond the end by round-off") {
   const auto s = curve_over<cumulative>(0, 4);
   CHECK(s(4 * (1 + 3e-16)) == s(4));
   CHECK(duet::printed_derivative(s, 4 * (1 + 3e-16)).commuting_second ==
@@ -145,13 +148,13 @@ TEST_CASE("a step of 3e-16 beyond the end; float; the printed formulas; rows of 
                        duet::invalid_input);
 
   std::vector<double> u;
-  std::vector<duet::quaternion<double>> rows;
+  std::vector<duet::quaternion<double>> samples;
   for (int i = 0; i <= 12; ++i) {
     u.push_back(i / 3.0);
-    rows.push_back(s(u.back()));
+    samples.push_back(s(u.back()));
   }
   u.back() = std::nextafter(4.0, 5.0);
-  const auto fitted = duet::fit<cumulative>(u, rows, s.basis().knots());
+  const auto fitted = duet::fit<cumulative>(u, samples, s.basis().knots());
   CHECK(fitted.rms < 1e-12);
 }
 

@@ -13,8 +13,8 @@
 #include <cstddef>
 #include <vector>
 
-/// Derivatives through the solve against central differences of 50-digit solutions, whose error is
-/// far below double rounding.
+// Derivatives through the solve are compared with central differences of 50-digit solutions, whose
+// error is far below the round-off of doubles.
 
 namespace test_spline_interpolate_derivatives {
 namespace {
@@ -31,10 +31,10 @@ const std::vector<double> between = {0, 0.3, 0.7, 0.9, 1.7, 2.3, 3.1, 3.5};
 
 const std::vector<quaternion<double>> data = [] {
   auto q = duet_test::random_orientations(u.size(), 1.6);
-  q.back() = q.front(); // so that they do for periodic ends too
+  q.back() = q.front(); // as periodic ends require
   return q;
 }();
-/// By how much each row is moved, as half a rotation vector. The first and the last alike.
+/// Direction in which each sample is moved, a half-angle vector, equal for the first and the last.
 const std::vector<vector> directions = [] {
   duet_test::random_source random(9);
   std::vector<vector> result;
@@ -45,7 +45,7 @@ const std::vector<vector> directions = [] {
   return result;
 }();
 
-/// exp(h · direction) q over the scalar of h.
+/// Samples exp(h · direction) q over the scalar of h.
 template <class T>
 std::vector<quaternion<T>> moved(const T& h) {
   std::vector<quaternion<T>> result;
@@ -59,9 +59,9 @@ std::vector<quaternion<T>> moved(const T& h) {
 
 const real_50 step("1e-16");
 
-/// dS/dh at h = 0 by a central difference.
+/// Derivative dS/dh at h = 0 by a central difference.
 template <class Ends>
-std::vector<quaternion<real_50>> slopes(const Ends& ahead, const Ends& behind) {
+std::vector<quaternion<real_50>> differences(const Ends& ahead, const Ends& behind) {
   const std::vector<real_50> knots = duet_test::cast<real_50>(u);
   const auto a = duet::interpolate<curve<real_50>>(knots, moved(step), ahead);
   const auto b = duet::interpolate<curve<real_50>>(knots, moved(real_50(-step)), behind);
@@ -84,13 +84,12 @@ void check(const curve<T>& s, const std::vector<quaternion<real_50>>& expected, 
 
 template <class Ends>
 void check_both(const Ends& ends) {
-  const auto expected = slopes(ends, ends);
-  // As derivatives with respect to the data …
+  const auto expected = differences(ends, ends);
   check(duet::interpolate<curve<dual<double>>>(u, moved(dual<double>::variable(0)), ends), expected,
         [](const auto& x) { return x.epsilon(); });
 }
 
-/// The same motion of the data as the dual part of poses.
+/// Compares with the dual part of poses whose translations move the data in the same directions.
 template <class Ends>
 void check_as_poses(const Ends& ends, const std::vector<quaternion<real_50>>& expected) {
   using number = duet::screw_dual<double>;
@@ -100,24 +99,27 @@ void check_as_poses(const Ends& ends, const std::vector<quaternion<real_50>>& ex
 
 } // namespace
 
-TEST_CASE("derivatives with respect to the data, and dual parts: natural ends") {
+TEST_CASE("interpolate, natural ends: derivatives with respect to the data and dual parts agree "
+          "with 50-digit differences") {
   check_both(duet::natural{});
-  check_as_poses(duet::natural{}, slopes(duet::natural{}, duet::natural{}));
+  check_as_poses(duet::natural{}, differences(duet::natural{}, duet::natural{}));
 }
 
-TEST_CASE("derivatives with respect to the data: not-a-knot and periodic ends") {
+TEST_CASE("interpolate, not-a-knot and periodic ends: derivatives with respect to the data agree "
+          "with 50-digit differences") {
   check_both(duet::not_a_knot{});
   check_both(duet::periodic{});
 }
 
-TEST_CASE("derivatives with respect to end rates; twists at the ends of poses") {
+TEST_CASE("interpolate, clamped ends: derivatives with respect to end rates and twists at the ends "
+          "of poses agree with 50-digit differences") {
   using vector_50 = duet::vector3<real_50>;
   const vector start(0.3, -0.2, 0.5), start_slope(1, 0.4, -0.3), end(-1, 0, 0.4);
   const auto rates = [&](const real_50& h) {
     return duet::clamped{vector_50(start.cast<real_50>() + h * start_slope.cast<real_50>()),
                          vector_50(end.cast<real_50>())};
   };
-  const auto expected = slopes(rates(step), rates(real_50(-step)));
+  const auto expected = differences(rates(step), rates(real_50(-step)));
 
   using D = dual<double>;
   const duet::vector3<D> variable = start.cast<D>() + D::variable(0) * start_slope.cast<D>();

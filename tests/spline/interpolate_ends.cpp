@@ -21,13 +21,13 @@ using vector = duet::vector3<double>;
 using parameters = std::vector<double>;
 using table = std::vector<quaternion>;
 
-table closed_table(std::size_t rows, double step) {
-  table q = duet_test::random_orientations(rows, step, rows);
+table closed_table(std::size_t count, double step) {
+  table q = duet_test::random_orientations(count, step, count);
   q.back() = -q.front();
   return q;
 }
 
-/// The curve, once it is seen to pass through the data and to be C² and no more at every knot.
+/// Curve that is checked to pass through the data, and to be C² but not C³ at every knot.
 template <class Ends>
 spline checked(const parameters& u, const table& q, const Ends& ends) {
   const spline s = duet::interpolate<spline>(u, q, ends);
@@ -51,12 +51,12 @@ constexpr double steps[] = {0.003, 0.5, 1.8};
 
 } // namespace
 
-TEST_CASE("given accelerations at the ends") {
+TEST_CASE("interpolate, cumulative cubic: given end accelerations are met") {
   const vector start(0.3, -0.2, 0.5), end(-1, 0, 0.4);
-  for (const std::size_t rows : {2, 3, 4, 20}) {
+  for (const std::size_t count : {2, 3, 4, 20}) {
     for (const double step : steps) {
-      const parameters u = duet_test::uneven_parameters(rows);
-      const spline s = checked(u, duet_test::random_orientations(rows, step, rows),
+      const parameters u = duet_test::uneven_parameters(count);
+      const spline s = checked(u, duet_test::random_orientations(count, step, count),
                                duet::end_acceleration{start, end});
       CHECK((s.motion(u.front(), duet::frame::spatial).acceleration - start).norm() < 1e-12);
       CHECK((s.motion(u.back(), duet::frame::spatial).acceleration - end).norm() < 1e-12);
@@ -64,7 +64,7 @@ TEST_CASE("given accelerations at the ends") {
   }
 }
 
-TEST_CASE("no accelerations given are natural ends") {
+TEST_CASE("interpolate, cumulative cubic: end accelerations of zero equal natural ends") {
   const parameters u = duet_test::uneven_parameters(9);
   const table q = duet_test::random_orientations(9, 1);
   const spline a = checked(u, q, duet::natural{});
@@ -75,16 +75,17 @@ TEST_CASE("no accelerations given are natural ends") {
   }
 }
 
-TEST_CASE("not-a-knot: the second and last but one rows are passed with a continuous jerk") {
-  for (const std::size_t rows : {4, 5, 6, 7, 20}) {
+TEST_CASE(
+    "interpolate, not-a-knot: the jerk is continuous at the second and the last but one sample") {
+  for (const std::size_t count : {4, 5, 6, 7, 20}) {
     for (const double step : steps) {
-      CAPTURE(rows);
+      CAPTURE(count);
       CAPTURE(step);
-      const parameters u = duet_test::uneven_parameters(rows);
+      const parameters u = duet_test::uneven_parameters(count);
       const spline s =
-          checked(u, duet_test::random_orientations(rows, step, rows), duet::not_a_knot{});
-      CHECK(s.basis().breaks().size() == rows - 2);
-      for (const double at : {u[1], u[rows - 2]}) {
+          checked(u, duet_test::random_orientations(count, step, count), duet::not_a_knot{});
+      CHECK(s.basis().breaks().size() == count - 2);
+      for (const double at : {u[1], u[count - 2]}) {
         const vector left = s.motion(std::nextafter(at, -1e9), duet::frame::body).jerk;
         const vector right = s.motion(at, duet::frame::body).jerk;
         CHECK((left - right).norm() < 1e-11 * (1 + right.norm()));
@@ -93,7 +94,7 @@ TEST_CASE("not-a-knot: the second and last but one rows are passed with a contin
   }
 }
 
-TEST_CASE("not-a-knot about one axis: a cubic is met exactly") {
+TEST_CASE("interpolate, not-a-knot: about one axis cubics are reproduced") {
   const auto angle = [](double u) { return 0.3 + u - 0.8 * u * u + 0.3 * u * u * u; };
   const vector axis(2.0 / 3, -1.0 / 3, 2.0 / 3);
   for (const parameters& u : {parameters{0, 0.5, 1.1, 2}, parameters{0, 0.3, 0.5, 1.1, 1.9, 2}}) {
@@ -108,13 +109,13 @@ TEST_CASE("not-a-knot about one axis: a cubic is met exactly") {
   }
 }
 
-TEST_CASE("periodic: the end goes on as the start, with all rates but the jerk") {
-  for (const std::size_t rows : {3, 4, 5, 6, 20}) {
+TEST_CASE("interpolate, periodic: value, velocity and acceleration are equal at both ends") {
+  for (const std::size_t count : {3, 4, 5, 6, 20}) {
     for (const double step : steps) {
-      CAPTURE(rows);
+      CAPTURE(count);
       CAPTURE(step);
-      const parameters u = duet_test::uneven_parameters(rows);
-      const spline s = checked(u, closed_table(rows, step), duet::periodic{});
+      const parameters u = duet_test::uneven_parameters(count);
+      const spline s = checked(u, closed_table(count, step), duet::periodic{});
       const auto start = s.motion(u.front(), duet::frame::spatial);
       const auto end = s.motion(u.back(), duet::frame::spatial);
       CHECK(std::min(max_abs_difference(start.value, end.value),
@@ -126,17 +127,17 @@ TEST_CASE("periodic: the end goes on as the start, with all rates but the jerk")
   }
 }
 
-TEST_CASE("periodic: it does not matter where the round begins") {
-  const std::size_t rows = 12, shift = 5;
-  const parameters u = duet_test::uneven_parameters(rows);
-  const table q = closed_table(rows, 1.2);
+TEST_CASE("interpolate, periodic: the curve does not depend on the first sample of the period") {
+  const std::size_t count = 12, shift = 5;
+  const parameters u = duet_test::uneven_parameters(count);
+  const table q = closed_table(count, 1.2);
   const double period = u.back() - u.front();
   parameters v;
   table p;
-  for (std::size_t i = 0; i < rows; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::size_t j = i + shift;
-    v.push_back(j < rows - 1 ? u[j] : u[j - (rows - 1)] + period);
-    p.push_back(q[j % (rows - 1)]);
+    v.push_back(j < count - 1 ? u[j] : u[j - (count - 1)] + period);
+    p.push_back(q[j % (count - 1)]);
   }
   const spline s = duet::interpolate<spline>(u, q, duet::periodic{});
   const spline t = duet::interpolate<spline>(v, p, duet::periodic{});
@@ -146,25 +147,25 @@ TEST_CASE("periodic: it does not matter where the round begins") {
   }
 }
 
-TEST_CASE("periodic: turning on and on about one axis at constant rate") {
+TEST_CASE("interpolate, periodic: several full turns about one axis have a constant rate") {
   const vector axis(0.6, 0, 0.8);
-  for (const int turns : {1, 2, 3}) { // an odd number ends in −q
+  for (const int revolutions : {1, 2, 3}) { // an odd number ends in −q
     parameters u;
     table q;
     for (int i = 0; i <= 12; ++i) {
       u.push_back(i);
-      q.push_back(duet::from_axis_angle(axis, std::acos(-1.0) * turns * i / 6));
+      q.push_back(duet::from_axis_angle(axis, std::acos(-1.0) * revolutions * i / 6));
     }
     const spline s = duet::interpolate<spline>(u, q, duet::periodic{});
     for (double x = 0; x <= 12; x += 0.31) {
       const auto m = s.motion(x, duet::frame::body);
-      CHECK((m.velocity - axis * (std::acos(-1.0) * turns / 6)).norm() < 1e-13);
+      CHECK((m.velocity - axis * (std::acos(-1.0) * revolutions / 6)).norm() < 1e-13);
       CHECK(m.acceleration.norm() < 1e-13);
     }
   }
 }
 
-TEST_CASE("the report: iterations, what is left, the largest step") {
+TEST_CASE("interpolation_report: iterations, residual and largest step of a cumulative cubic") {
   duet::interpolation_report report;
   const table q = duet_test::rotated_by(1.25, 30, 3);
   const parameters u = duet_test::uneven_parameters(30);
@@ -182,7 +183,7 @@ TEST_CASE("the report: iterations, what is left, the largest step") {
   CHECK(still.motion(0, duet::frame::body).velocity.norm() < 1e-15);
 }
 
-TEST_CASE("parameters of any unit make the same curve") {
+TEST_CASE("interpolate: the unit of the parameters does not affect the curve") {
   const table q = duet_test::random_orientations(8, 1.3);
   const parameters u = duet_test::uneven_parameters(8);
   const auto check = [&](auto ends, auto scaled_ends, double unit) {

@@ -40,10 +40,10 @@ double max_abs_difference(const pose& a, const pose& b) {
 double size_of(const twist& v) { return 1 + v.norm(); }
 
 const twist start_rate(0.4, 0.1, -1, 0.3, -0.2, 0.5), end_rate(0, 0.3, 0.7, -1, 0, 0.4);
-const vector start_turn(0.3, -0.2, 0.5), end_turn(-1, 0, 0.4);
+const vector start_angular(0.3, -0.2, 0.5), end_angular(-1, 0, 0.4);
 
-/// Interpolates; checks the data, continuity and that the rotations are those of the rotations'
-/// own curve.
+/// Interpolates; checks that the curve passes through the data, that it is C² and that its
+/// rotations are the curve through the rotations.
 template <class Ends, class RotationEnds>
 curve checked(const parameters& u, const std::vector<pose>& poses, const Ends& ends,
               const RotationEnds& rotation_ends) {
@@ -72,13 +72,13 @@ curve checked(const parameters& u, const std::vector<pose>& poses, const Ends& e
 
 } // namespace
 
-TEST_CASE("poses: natural ends, given twists, given accelerations") {
-  for (const std::size_t rows : {2, 3, 9}) {
+TEST_CASE("interpolate, poses: natural ends and given end twists and accelerations are met") {
+  for (const std::size_t count : {2, 3, 9}) {
     for (const double step : {0.003, 0.7, 1.8}) {
-      CAPTURE(rows);
+      CAPTURE(count);
       CAPTURE(step);
-      const parameters u = duet_test::uneven_parameters(rows);
-      const auto poses = duet_test::random_poses(rows, step);
+      const parameters u = duet_test::uneven_parameters(count);
+      const auto poses = duet_test::random_poses(count, step);
       const auto at_ends = [&](const curve& s) {
         return std::array{s.motion(u.front(), duet::frame::spatial),
                           s.motion(u.back(), duet::frame::spatial)};
@@ -87,21 +87,21 @@ TEST_CASE("poses: natural ends, given twists, given accelerations") {
       CHECK(n[0].acceleration.norm() < 1e-11);
       CHECK(n[1].acceleration.norm() < 1e-11);
       const auto c = at_ends(checked(u, poses, duet::clamped{start_rate, end_rate},
-                                     duet::clamped{start_turn, end_turn}));
+                                     duet::clamped{start_angular, end_angular}));
       CHECK((c[0].velocity - start_rate).norm() < 1e-12);
       CHECK((c[1].velocity - end_rate).norm() < 1e-12);
       const auto a = at_ends(checked(u, poses, duet::end_acceleration{start_rate, end_rate},
-                                     duet::end_acceleration{start_turn, end_turn}));
+                                     duet::end_acceleration{start_angular, end_angular}));
       CHECK((a[0].acceleration - start_rate).norm() < 1e-11);
       CHECK((a[1].acceleration - end_rate).norm() < 1e-11);
     }
   }
 }
 
-TEST_CASE("poses: not-a-knot and periodic ends") {
-  for (const std::size_t rows : {4, 5, 9}) {
-    const parameters u = duet_test::uneven_parameters(rows);
-    auto poses = duet_test::random_poses(rows, 1.5);
+TEST_CASE("interpolate, poses: not-a-knot ends have a continuous jerk, periodic ends equal rates") {
+  for (const std::size_t count : {4, 5, 9}) {
+    const parameters u = duet_test::uneven_parameters(count);
+    auto poses = duet_test::random_poses(count, 1.5);
     const curve s = checked(u, poses, duet::not_a_knot{}, duet::not_a_knot{});
     const auto left = s.motion(std::nextafter(u[1], -9), duet::frame::body).jerk;
     CHECK((left - s.motion(u[1], duet::frame::body).jerk).norm() < 1e-10 * size_of(left));
@@ -115,7 +115,7 @@ TEST_CASE("poses: not-a-knot and periodic ends") {
   }
 }
 
-TEST_CASE("poses: pure translations follow the cubic spline of vectors") {
+TEST_CASE("interpolate, poses: pure translations follow the cubic spline of vectors") {
   const auto path = [](double u) { return vector(u * u * u - u, 2 * u * u, 1 - u); };
   const auto slope = [](double u) { return vector(3 * u * u - 1, 4 * u, -1); };
   const parameters u = duet_test::uneven_parameters(8);
@@ -134,7 +134,8 @@ TEST_CASE("poses: pure translations follow the cubic spline of vectors") {
   }
 }
 
-TEST_CASE("poses: moving the data moves the curve, and so does another body frame") {
+TEST_CASE(
+    "interpolate, poses: the curve is invariant to a change of the fixed and of the body frame") {
   const parameters u = duet_test::uneven_parameters(9);
   const auto poses = duet_test::random_poses(9, 1.2);
   const pose left = duet_test::random_poses(3, 2)[1], right = duet_test::random_poses(4, 2)[2];
@@ -153,7 +154,7 @@ TEST_CASE("poses: moving the data moves the curve, and so does another body fram
   check(duet::not_a_knot{});
 }
 
-TEST_CASE("poses far apart: 2.8 rad and 3 units of length a step, on random axes") {
+TEST_CASE("interpolate, poses: steps of 2.8 rad and 3 units of length about random axes converge") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     duet_test::random_source random(seed);
     std::vector<pose> poses;

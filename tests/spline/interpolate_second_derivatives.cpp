@@ -20,7 +20,7 @@ using curve = duet::cumulative_bspline<T>;
 
 const std::vector<double> u = {0, 0.7, 1.1, 2, 2.6, 3.5};
 
-/// exp(h · direction) q over the scalar of h, another direction for each row.
+/// Samples exp(h · direction) q over the scalar of h, with a separate direction for each.
 template <class T>
 std::vector<duet::quaternion<T>> moved(const T& h) {
   duet_test::random_source random(9);
@@ -35,9 +35,10 @@ std::vector<duet::quaternion<T>> moved(const T& h) {
 
 } // namespace
 
-TEST_CASE("second derivatives with respect to the data, and derivatives of poses") {
-  // A pose moved by h: the derivative of its dual part against the difference of two pose curves,
-  // and the second derivative of a rotation against that of two first ones.
+TEST_CASE("interpolate: second derivatives with respect to the data and derivatives of poses agree "
+          "with differences") {
+  // The derivative of the dual part is compared with the difference of two curves of poses, the
+  // second derivative of a rotation with the difference of two first derivatives.
   using D = dual<double>;
   const double h = 1e-6;
   const auto check_second = [&](auto variable, auto at) {
@@ -48,9 +49,9 @@ TEST_CASE("second derivatives with respect to the data, and derivatives of poses
     const auto b = duet::interpolate<curve<S>>(u, moved(at(-h)), duet::natural{});
     for (const double x : {0.0, 0.3, 0.9, 1.7, 2.3, 3.5}) {
       const auto q = s(x);
-      const auto slope = (a(x) - b(x)) / (2 * h);
-      CHECK(std::abs(q.w().epsilon().epsilon() - slope.w().epsilon()) < 1e-8);
-      CHECK(std::abs(q.y().epsilon().epsilon() - slope.y().epsilon()) < 1e-8);
+      const auto difference = (a(x) - b(x)) / (2 * h);
+      CHECK(std::abs(q.w().epsilon().epsilon() - difference.w().epsilon()) < 1e-8);
+      CHECK(std::abs(q.y().epsilon().epsilon() - difference.y().epsilon()) < 1e-8);
     }
   };
   struct second;

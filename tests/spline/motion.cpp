@@ -58,7 +58,7 @@ std::array<vector, 3> rates(const std::array<quaternion, 4>& q, Frame) {
   return {2 * half[0].vec(), 2 * half[1].vec(), 2 * half[2].vec()};
 }
 
-/// Relative to the size, with a floor where a derivative is identically zero.
+/// Relative difference, with a lower bound of the size for derivatives that are identically zero.
 double difference(const vector& a, const vector& b) {
   return (a - b).norm() / std::max(1e-3, a.norm());
 }
@@ -84,7 +84,7 @@ double against_taylor(const Spline& s, const std::vector<double>& parameters, Fr
 
 } // namespace
 
-TEST_CASE("P3, P4: Q′, Q″ and Q‴ against Taylor numbers, the first two against nested ones too") {
+TEST_CASE("P3, P4: Q′, Q″ and Q‴ agree with Taylor numbers, Q′ and Q″ with nested dual numbers") {
   const auto check = [](const auto& s, const std::vector<double>& parameters) {
     double worst = 0;
     for (const double u : parameters) {
@@ -108,14 +108,14 @@ TEST_CASE("P3, P4: Q′, Q″ and Q‴ against Taylor numbers, the first two aga
   for_each_curve<4>(check);
 }
 
-TEST_CASE("P3, P4, N7: angular velocity, acceleration, jerk against Taylor numbers") {
+TEST_CASE("P3, P4, N7: angular velocity, acceleration and jerk agree with Taylor numbers") {
   for_each_curve<4>([](const auto& s, const std::vector<double>& parameters) {
     CHECK(against_taylor(s, parameters, duet::frame::body) < 1e-12);
     CHECK(against_taylor(s, parameters, duet::frame::spatial) < 1e-12);
   });
 }
 
-TEST_CASE("each rate is the derivative of the one before, in its own axes") {
+TEST_CASE("motion: each rate is the derivative of the rate before in the same axes") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, random_orientations(knots.size() - 4, 1));
   const auto check = [&](auto frame) {
@@ -140,7 +140,8 @@ TEST_CASE("each rate is the derivative of the one before, in its own axes") {
   CHECK(hybrid.jerk == spatial.jerk);
 }
 
-TEST_CASE("body and spatial rates are the same vectors in other axes, but for the jerk") {
+TEST_CASE(
+    "motion: body and spatial rates are the same vectors in different axes, except the jerk") {
   const auto knots = knot_vectors(4)[0].knots;
   const cumulative_bspline<double> s(knots, random_orientations(knots.size() - 4, 2));
   for (const double u : parameters_on(knots, 4)) {
@@ -153,7 +154,7 @@ TEST_CASE("body and spatial rates are the same vectors in other axes, but for th
   }
 }
 
-TEST_CASE("a curve of order 2 turns at constant rate") {
+TEST_CASE("cumulative_bspline: a curve of order 2 rotates at a constant rate") {
   const std::vector<double> knots = {0, 0, 2, 3, 3};
   const cumulative_bspline<double, 2> s(knots, random_orientations(3, 1));
   for (const double u : {0.0, 0.3, 1.99}) {

@@ -26,7 +26,7 @@ using quaternion = duet::quaternion<real_100>;
 using vector = std::array<real_100, 3>;
 using derivatives = std::array<quaternion, 4>;
 
-/// Q, Q′, Q″, Q‴ by the definition P2 and central differences.
+/// Derivatives Q, Q′, Q″, Q‴ by the definition P2 and central differences.
 derivatives exact(const std::vector<real_100>& knots, int order, const quaternion& first,
                   const std::vector<duet::vector3<real_100>>& increments, const real_100& u) {
   derivatives result;
@@ -61,8 +61,8 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
   const auto wide_knots = duet_test::cast<real_100>(knots);
   const auto controls = duet_test::cast<real_100>(s.control_points());
   const auto true_increments = duet_test::increments_of(controls);
-  // The rates follow from the ω_i as they are. (Neighbours closer than rounding have ω_i that are
-  // right on the scale of the quaternions, and no better.)
+  // The reference rates follow from the computed ω_i. (For control quaternions that are equal to
+  // round-off, ω_i are accurate relative to the quaternions only.)
   std::vector<duet::vector3<real_100>> increments;
   for (std::size_t i = 0; i < controls.size(); ++i) {
     increments.push_back(s.increments()[i].template cast<real_100>());
@@ -71,7 +71,7 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
   }
   for (const double u : duet_test::parameters_on(knots, Order, 1)) {
     const auto q = exact(wide_knots, Order, controls[0], increments, u);
-    // The sum of absolute terms: what the rates would be if nothing cancelled.
+    // The sums of absolute terms: the sizes of the rates without cancellation.
     std::array<real_100, 4> size = {1, 0, 0, 0};
     const std::size_t span = s.basis().find_span(u);
     const auto weights = s.basis().template weights<3>(span, u);
@@ -120,7 +120,7 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
 
 } // namespace
 
-TEST_CASE("P2, P3, P4: value and rates against 100 digits") {
+TEST_CASE("P2, P3, P4: value and rates are within 16 ulp of 100 digits") {
   worst_errors worst;
   for (const duet_test::named_knots& each : duet_test::knot_vectors(4)) {
     const std::string& name = each.name;

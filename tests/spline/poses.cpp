@@ -34,7 +34,7 @@ double max_abs_difference(const pose& a, const pose& b) {
   return std::max(duet_test::max_abs_difference(real_part(a), real_part(b)),
                   duet_test::max_abs_difference(dual_part(a), dual_part(b)));
 }
-/// From Q and Q′ by N18, over any scalar of the parameter.
+/// Twist from Q and Q′ by N18, over any scalar of the parameter.
 template <class S, class Frame>
 auto twist_of_curve(const S& u, Frame frame) {
   const auto q = duet::derivative([](const auto& x) { return s(x); }, u);
@@ -45,7 +45,8 @@ double difference(const twist& a, const twist& b) { return (a - b).norm() / (1 +
 
 } // namespace
 
-TEST_CASE("the rotation of a pose curve is the curve of the rotations; all are units") {
+TEST_CASE(
+    "cumulative_bspline over poses: its rotation is the curve of the rotations, values are units") {
   std::vector<duet::quaternion<double>> rotations;
   for (const pose& a : s.control_points()) {
     rotations.push_back(rotation(a));
@@ -57,7 +58,7 @@ TEST_CASE("the rotation of a pose curve is the curve of the rotations; all are u
   }
 }
 
-TEST_CASE("P1: of pure translations it is the B-spline of their vectors") {
+TEST_CASE("P1: for pure translations the curve over poses is the B-spline of the vectors") {
   std::vector<pose> shifts;
   std::vector<vector> points;
   duet_test::random_source random(3);
@@ -76,7 +77,7 @@ TEST_CASE("P1: of pure translations it is the B-spline of their vectors") {
   }
 }
 
-TEST_CASE("order 2 is the screw motion between neighbours") {
+TEST_CASE("cumulative_bspline over poses: order 2 gives screw motions between neighbours") {
   const std::vector<double> uneven = {0, 0, 1, 3, 3.5, 3.5};
   const duet::cumulative_bspline<number, 2> t(uneven, duet_test::random_poses(4, 2));
   for (const double x : {0.0, 0.2, 0.7, 0.99}) {
@@ -85,7 +86,8 @@ TEST_CASE("order 2 is the screw motion between neighbours") {
   }
 }
 
-TEST_CASE("moving all control poses moves the curve, and leaves body twists alone") {
+TEST_CASE("cumulative_bspline over poses: moving all control poses moves the curve, body twists "
+          "are unchanged") {
   const pose p = duet_test::random_poses(1, 1).front();
   std::vector<pose> moved = s.control_points();
   for (pose& a : moved) {
@@ -100,7 +102,7 @@ TEST_CASE("moving all control poses moves the curve, and leaves body twists alon
   }
 }
 
-TEST_CASE("P3, P4 over poses: Q′, Q″, Q‴ against Taylor numbers") {
+TEST_CASE("P3, P4 over poses: Q′, Q″ and Q‴ agree with Taylor numbers") {
   for (const double u : parameters) {
     const auto closed = s.derivatives(u);
     const auto taylor = duet::derivatives<3>([](const auto& x) { return s(x); }, u);
@@ -111,7 +113,8 @@ TEST_CASE("P3, P4 over poses: Q′, Q″, Q‴ against Taylor numbers") {
   }
 }
 
-TEST_CASE("N18: twists are those of Q′, and each rate is the derivative of the one before") {
+TEST_CASE(
+    "N18: motion gives the twist of Q and Q′, and each rate is the derivative of the rate before") {
   const auto check = [](auto frame) {
     for (const double u : parameters) {
       const auto m = s.motion(u, frame);
@@ -129,7 +132,7 @@ TEST_CASE("N18: twists are those of Q′, and each rate is the derivative of the
   check(duet::frame::hybrid);
 }
 
-TEST_CASE("hybrid rates are the derivatives of the translation") {
+TEST_CASE("motion over poses: linear hybrid rates are the derivatives of the translation") {
   for (const double u : parameters) {
     const auto m = s.motion(u, duet::frame::hybrid);
     const auto t = duet::derivatives<3>([](const auto& x) { return translation(s(x)); }, u);
@@ -139,8 +142,8 @@ TEST_CASE("hybrid rates are the derivatives of the translation") {
   }
 }
 
-TEST_CASE("far from the origin the body's own motion keeps its digits") {
-  // Turning about itself alone, and moving along its own axes at a rate of 1.
+TEST_CASE("motion over poses: hybrid rates have no cancellation far from the origin") {
+  // The body rotates about its origin only (shift 0), or also moves along its axes at a rate of 1.
   using scalar = duet::screw_dual<double>;
   const double far = 1e8;
   const auto start = duet::pose(duet::from_rotation_vector(duet::vector3<double>(0.3, -0.2, 1.1)),

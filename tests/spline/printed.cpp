@@ -44,7 +44,7 @@ std::vector<quaternion> about_one_axis(std::size_t count) {
   return result;
 }
 
-/// B̃′_i and B̃″_i as P3 and P4 print them; i counts from the curve's first control element.
+/// Derivatives B̃′_i and B̃″_i as printed in P3 and P4; i counts from the first control point.
 std::array<double, 2> as_printed(const std::vector<double>& knots, std::size_t i, int order,
                                  double u) {
   const auto k = std::size_t(order);
@@ -62,7 +62,7 @@ std::array<double, 2> as_printed(const std::vector<double>& knots, std::size_t i
 
 } // namespace
 
-TEST_CASE("P3, P4 as printed: the letter of the formulas") {
+TEST_CASE("P3, P4 as printed: printed_derivative agrees with the literal formulas") {
   const auto check = [](auto order) {
     constexpr int k = order;
     for (const duet_test::named_knots& each : knot_vectors(k)) {
@@ -73,7 +73,7 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
       const std::size_t count = knots.size() - std::size_t(k);
       const cumulative_bspline<double, k> s(knots, duet_test::random_orientations(count, 1));
       for (const double u : parameters_on(knots, k, 2)) {
-        // Sums over vectors and, for i = 0 of the paper, a lone scalar.
+        // The sums contain vectors and, for i = 0 of the paper, a single scalar.
         vector sum = vector::Zero(), sum_of_second = vector::Zero();
         for (std::size_t i = 2; i < count; ++i) {
           const auto b = as_printed(knots, i, k, u);
@@ -90,8 +90,8 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
         CHECK(max_abs_difference(printed.literal_first, q * first) <= 1e-13 * (1 + size(first)));
         CHECK(max_abs_difference(printed.literal_second, literal_second) <=
               1e-13 * (1 + size(first) * size(first_in_p4) + size(second)));
-        // With functions from B_0 the curve's first control is q_0: sums over all that follow, and
-        // B̃′_0 = B̃″_0 = 0 on the domain.
+        // With functions from B_0 the first control point is q_0: the sums are over all control
+        // points after it, and B̃′_0 = B̃″_0 = 0 on the domain.
         const auto zero = as_printed(knots, 0, k, u);
         CHECK(zero[0] == 0);
         CHECK(zero[1] == 0);
@@ -110,7 +110,7 @@ TEST_CASE("P3, P4 as printed: the letter of the formulas") {
   check(std::integral_constant<int, 5>{});
 }
 
-TEST_CASE("where the ω_i are parallel the commuting sums are the derivatives, in every span") {
+TEST_CASE("P3, P4: for parallel ω_i the commuting sums equal the derivatives on every span") {
   for (const duet_test::named_knots& each : knot_vectors(4)) {
     const std::string& name = each.name;
     const std::vector<double>& knots = each.knots;
@@ -129,7 +129,7 @@ TEST_CASE("where the ω_i are parallel the commuting sums are the derivatives, i
   }
 }
 
-TEST_CASE("P3 to the letter is right only where the ω_i are parallel and B̃′_0 = 0") {
+TEST_CASE("P3 as printed is correct only for parallel ω_i and on spans with B̃′_0 = 0") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> parallel(knots, about_one_axis(knots.size() - 4));
   const cumulative_bspline<double> general(knots,
@@ -143,7 +143,7 @@ TEST_CASE("P3 to the letter is right only where the ω_i are parallel and B̃′
     if (parallel.basis().find_span(u) == 0) {
       if (lone < 1e-3) {
         continue;
-      } // its two ends
+      } // B̃′_0 vanishes at the ends of the span
       CHECK(error > 1e-4);
       ++in_first_span;
     } else {
@@ -183,7 +183,7 @@ TEST_CASE("P2 with functions from B_0: q_{-1} cancels") {
   }
 }
 
-TEST_CASE("P4: Q″ = Q (a + w²), and w² = −|w|²") {
+TEST_CASE("P4: Q″ = Q (a + w²) with w² = −|w|²") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, duet_test::random_orientations(knots.size() - 4, 1));
   for (const double u : parameters_on(knots, 4)) {
@@ -196,7 +196,7 @@ TEST_CASE("P4: Q″ = Q (a + w²), and w² = −|w|²") {
   }
 }
 
-TEST_CASE("P4 to the letter is wrong even for parallel ω_i: its B̃″_i is one term short") {
+TEST_CASE("P4 as printed is wrong even for parallel ω_i, because B̃″_i lacks a term") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, about_one_axis(knots.size() - 4));
   int count = 0;
@@ -210,7 +210,7 @@ TEST_CASE("P4 to the letter is wrong even for parallel ω_i: its B̃″_i is one
   CHECK(count > 10);
 }
 
-TEST_CASE("P3, P4: in general the commuting sums are not the derivatives") {
+TEST_CASE("P3, P4: for random ω_i the commuting sums differ from the derivatives") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, duet_test::random_orientations(knots.size() - 4, 1));
   for (const double u : parameters_on(knots, 4)) {
@@ -222,8 +222,9 @@ TEST_CASE("P3, P4: in general the commuting sums are not the derivatives") {
   }
 }
 
-TEST_CASE("P3, P4: the commuting sums err as the steps of the controls shrink, one order apart") {
-  // Of controls `step` apart, Q′ is proportional to step, its error to the commutators, step².
+TEST_CASE("P3, P4: relative errors of the commuting sums are proportional to the step of the "
+          "control points") {
+  // With control points `step` apart, Q′ is proportional to step, its error to step² (commutators).
   const auto knots = knot_vectors(4)[0].knots;
   const double u = 0.6;
   const auto errors = [&](double step) {
@@ -238,7 +239,7 @@ TEST_CASE("P3, P4: the commuting sums err as the steps of the controls shrink, o
   CHECK(coarse[1] / fine[1] == doctest::Approx(2).epsilon(0.05));
 }
 
-TEST_CASE("printed formulas outside the domain") {
+TEST_CASE("printed_derivative: parameters outside the domain throw") {
   const cumulative_bspline<double> s({0, 0, 0, 0, 1, 1, 1, 1},
                                      duet_test::random_orientations(4, 1));
   CHECK_THROWS_AS(static_cast<void>(printed_derivative(s, 1.5)), duet::invalid_input);

@@ -7,11 +7,11 @@
 #include <cmath>
 
 /// \file
-/// A motion to interpolate, over any scalar.
+/// Motion to be interpolated, over any scalar.
 
 namespace duet_test {
 
-/// Smooth, of rotations that do not commute, u in [0, 2].
+/// Smooth motion whose rotations do not commute, u in [0, 2].
 template <class S>
 [[nodiscard]] duet::quaternion<S> smooth_motion(const S& u) {
   using std::cos;

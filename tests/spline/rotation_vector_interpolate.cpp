@@ -31,10 +31,10 @@ using spline = duet::rotation_vector_spline<double, Order>;
 
 namespace {
 
-parameters uneven(std::size_t rows) {
-  duet_test::random_source random(rows);
+parameters uneven(std::size_t count) {
+  duet_test::random_source random(count);
   parameters u = {-0.3};
-  while (u.size() < rows) {
+  while (u.size() < count) {
     u.push_back(u.back() + random.log_uniform(0.2, 0.8));
   }
   return u;
@@ -169,11 +169,12 @@ void check_all_ends(const parameters& u, const table& q) {
 TEST_CASE_TEMPLATE("interpolate, rotation vectors: the curve is C^(k−2), passes through the data "
                    "and meets its end conditions",
                    order, std::integral_constant<int, 4>, std::integral_constant<int, 6>) {
-  for (const std::size_t rows : {2, 3, 4, 6, 13}) {
+  for (const std::size_t count : {2, 3, 4, 6, 13}) {
     for (const double step : {1e-9, 0.003, 0.3, 1.2}) {
-      CAPTURE(rows);
+      CAPTURE(count);
       CAPTURE(step);
-      check_all_ends<order::value>(uneven(rows), duet_test::random_orientations(rows, step, rows));
+      check_all_ends<order::value>(uneven(count),
+                                   duet_test::random_orientations(count, step, count));
     }
   }
 }

@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-// Infinitesimal parts through the solve: poses against 50 digits.
+// Infinitesimal parts through the solve: poses are compared with 50 digits.
 
 namespace test_spline_rotation_vector_poses {
 
@@ -65,7 +65,7 @@ duet::vector6<R> twist(double size) {
   return v;
 }
 
-/// The values of poses at a few parameters, for three ends one after the other.
+/// Poses at six parameters, for three kinds of end conditions one after the other.
 template <class R>
 std::vector<pose_t<R>> curves_through_poses() {
   std::vector<pose_t<R>> result;
@@ -85,7 +85,7 @@ std::vector<pose_t<R>> curves_through_poses() {
 
 } // namespace
 
-TEST_CASE("poses agree with 50 digits") {
+TEST_CASE("interpolate, rotation vectors over poses: values agree with 50 digits") {
   const auto computed = curves_through_poses<double>();
   const auto exact = curves_through_poses<real_50>();
   CHECK(computed.size() == 18);
@@ -95,7 +95,8 @@ TEST_CASE("poses agree with 50 digits") {
   }
 }
 
-TEST_CASE("poses: through the data, twists at the ends, smooth inside") {
+TEST_CASE("interpolate, quintic over poses: passes through the data with the given end twists, "
+          "smooth inside") {
   using spline = duet::rotation_vector_spline<screw<double>, 6>;
   const auto data = poses<double>();
   const duet::clamped velocity{twist<double>(1), twist<double>(-2)};
@@ -122,7 +123,8 @@ TEST_CASE("poses: through the data, twists at the ends, smooth inside") {
   CHECK((end.acceleration - acceleration.end).norm() < 1e-10);
 }
 
-TEST_CASE("velocities given of poses come back, far from the origin too") {
+TEST_CASE(
+    "interpolate, quintic over poses: given end velocities are reproduced far from the origin") {
   duet_test::random_source random(1);
   const duet::vector6<double> none = duet::vector6<double>::Zero();
   double sum = 0;
@@ -130,11 +132,11 @@ TEST_CASE("velocities given of poses come back, far from the origin too") {
   for (int n = 0; n < tables; ++n) {
     const auto about = random.direction<3>();
     const auto along = random.direction<3>();
-    std::vector<pose_t<double>> rows;
+    std::vector<pose_t<double>> samples;
     for (int i = 0; i < 4; ++i) {
       const duet::vector3<double> half(0.003 * i * about[0], 0.003 * i * about[1],
                                        0.001 * i * i * about[2]);
-      rows.push_back(
+      samples.push_back(
           duet::pose(duet::exp(half), duet::vector3<double>(1e4 * along[0] + 30 * i, 1e4 * along[1],
                                                             1e4 * along[2] - 7 * i * i)));
     }
@@ -144,7 +146,7 @@ TEST_CASE("velocities given of poses come back, far from the origin too") {
       velocity[i] = direction[std::size_t(i)] * (i < 3 ? 60 : 0.006);
     }
     const auto s = interpolate<duet::rotation_vector_spline<screw<double>, 6>>(
-        {0, 1, 2, 3}, rows,
+        {0, 1, 2, 3}, samples,
         duet::fully_clamped{duet::clamped{velocity, none}, duet::end_acceleration{none, none}});
     const auto start = s.motion(0.0, duet::frame::spatial);
     const duet::vector6<double> error = start.velocity - velocity;

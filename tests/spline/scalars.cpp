@@ -54,13 +54,13 @@ void check_real(double tolerance) {
 
 } // namespace
 
-TEST_CASE("curves over float, long double and 50 digits") {
+TEST_CASE("cumulative_bspline: float, long double and 50 digits agree with double") {
   check_real<float>(1e-6);
   check_real<long double>(1e-15);
   check_real<duet_test::real_50>(1e-15);
 }
 
-TEST_CASE("the parameter may be any number") {
+TEST_CASE("cumulative_bspline: parameters of any number type give values of the promoted type") {
   static_assert(std::is_same_v<decltype(reference(1.0f)), quaternion<double>>);
   static_assert(std::is_same_v<decltype(reference(dual<double>(1))), quaternion<dual<double>>>);
   static_assert(
@@ -70,12 +70,13 @@ TEST_CASE("the parameter may be any number") {
   CHECK(s(1) == s(1.0));
   CHECK(s(0.5f) == s(0.5));
   CHECK(s.motion(2, duet::frame::body).velocity == s.motion(2.0, duet::frame::body).velocity);
-  // A parameter finer than the curve's own numbers.
+  // The parameter has more digits than the numbers of the curve.
   const duet_test::real_50 fine = s(duet_test::real_50(1.5)).w();
   CHECK(double(fine) == doctest::Approx(s(1.5).w()).epsilon(1e-15));
 }
 
-TEST_CASE("dual and Taylor parameters differentiate, on the branch of the value") {
+TEST_CASE("cumulative_bspline: dual and Taylor parameters give the derivatives on the span of the "
+          "value") {
   for (const double u : parameters) {
     const auto expected = reference.derivatives(u);
     const auto by_dual = reference(dual<double>::variable(u));
@@ -88,7 +89,8 @@ TEST_CASE("dual and Taylor parameters differentiate, on the branch of the value"
   }
 }
 
-TEST_CASE("dual control quaternions: how the curve and its rates depend on one of them") {
+TEST_CASE(
+    "cumulative_bspline: derivatives with respect to a control quaternion agree with differences") {
   using number = dual<double, 3>;
   constexpr std::size_t moved = 4;
   std::vector<quaternion<number>> variable = cast<number>(controls);
@@ -113,8 +115,8 @@ TEST_CASE("dual control quaternions: how the curve and its rates depend on one o
       const double size = 1 + reference.motion(u, duet::frame::body).acceleration.norm();
       CHECK(std::abs(m.value.x().partial(axis) - (a.value.x() - b.value.x()) / (2 * h)) < 1e-8);
       for (int j = 0; j < 3; ++j) {
-        const double slope = (a.acceleration[j] - b.acceleration[j]) / (2 * h);
-        CHECK(std::abs(m.acceleration[j].partial(axis) - slope) < 1e-7 * size);
+        const double difference = (a.acceleration[j] - b.acceleration[j]) / (2 * h);
+        CHECK(std::abs(m.acceleration[j].partial(axis) - difference) < 1e-7 * size);
       }
     }
   }

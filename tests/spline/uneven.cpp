@@ -20,7 +20,7 @@
 #include <type_traits>
 #include <vector>
 
-// Tables whose parameters are as uneven as they come, with rates that are not.
+// Tables with very uneven parameters and motions of uniform rate.
 
 namespace test_spline_uneven {
 namespace {
@@ -42,11 +42,11 @@ vector random_vector(random_source& random, double size) {
 template <class Q>
 struct table {
   std::vector<double> u{0};
-  std::vector<Q> rows{Q(1.0)};
+  std::vector<Q> samples{Q(1.0)};
 };
 
-/// Rows at these intervals that turn, and move, at this rate about random axes. One that closes
-/// goes back the same way.
+/// Samples at these intervals that rotate and move at this rate about and along random axes. If
+/// `closes`, the motion returns through the same samples.
 template <class Q>
 table<Q> random_table(random_source& random, std::vector<double> intervals, double rate,
                       bool closes = false) {
@@ -54,17 +54,17 @@ table<Q> random_table(random_source& random, std::vector<double> intervals, doub
   const std::size_t n = intervals.size();
   for (std::size_t i = 0; i < n; ++i) {
     t.u.push_back(t.u.back() + intervals[i]);
-    const double turn = rate * intervals[i];
-    rotation step = duet::from_rotation_vector(random_vector(random, turn));
+    const double size = rate * intervals[i];
+    rotation step = duet::from_rotation_vector(random_vector(random, size));
     if constexpr (std::is_same_v<Q, rotation>) {
-      t.rows.push_back(t.rows.back() * step);
+      t.samples.push_back(t.samples.back() * step);
     } else {
-      t.rows.push_back(t.rows.back() * duet::pose(step, random_vector(random, turn)));
+      t.samples.push_back(t.samples.back() * duet::pose(step, random_vector(random, size)));
     }
   }
   for (std::size_t i = n; i-- > 0 && closes;) {
     t.u.push_back(t.u.back() + intervals[i]);
-    t.rows.push_back(t.rows[i]);
+    t.samples.push_back(t.samples[i]);
   }
   return t;
 }
@@ -79,13 +79,13 @@ std::vector<double> random_intervals(random_source& random, int count, double de
 
 double largest(const std::vector<double>& x) { return *std::max_element(x.begin(), x.end()); }
 
-/// By how much the curve with these ends misses the rows.
+/// Largest distance of the samples from the curve with these end conditions.
 template <class Spline, class Q, class Ends>
 double miss(const table<Q>& t, const Ends& ends) {
-  const Spline s = duet::interpolate<Spline>(t.u, t.rows, ends);
+  const Spline s = duet::interpolate<Spline>(t.u, t.samples, ends);
   double worst = 0;
   for (std::size_t i = 0; i < t.u.size(); ++i) {
-    const Q error = conj(t.rows[i]) * s(t.u[i]);
+    const Q error = conj(t.samples[i]) * s(t.u[i]);
     if constexpr (std::is_same_v<Q, rotation>) {
       worst = std::max(worst, duet::rotation_vector(error).norm());
     } else {
@@ -114,7 +114,8 @@ using cubic = rotation_vectors<Q, 4>;
 
 } // namespace
 
-TEST_CASE("intervals of 1e-6 between those of 1e3, the same rate everywhere") {
+TEST_CASE(
+    "interpolate: intervals of 1e-6 between intervals of 1e3, with a uniform rate, converge") {
   random_source random(1);
   for (int i = 0; i < 20; ++i) {
     CAPTURE(i);
@@ -126,7 +127,8 @@ TEST_CASE("intervals of 1e-6 between those of 1e3, the same rate everywhere") {
   }
 }
 
-TEST_CASE("intervals over twelve decades, all ends that do not go on with a short piece") {
+TEST_CASE("interpolate: intervals over twelve decades converge with all end conditions except "
+          "not-a-knot") {
   random_source random(2);
   for (int i = 0; i < 6; ++i) {
     CAPTURE(i);
@@ -139,27 +141,27 @@ TEST_CASE("intervals over twelve decades, all ends that do not go on with a shor
 }
 
 TEST_CASE(
-    "where no curve is found the unevenness is told: not-a-knot ends go on with a short piece") {
-  // The first piece is a cubic through three rows next to each other and one far away.
+    "interpolate: if not-a-knot ends fail for uneven parameters, the error gives the unevenness") {
+  // The first segment is a cubic through three adjacent samples and a distant one.
   random_source random(3);
   const auto t = random_table<rotation>(random, {1, 1e-5, 1e-5, 1e-5, 1}, 1);
   const auto message = duet_test::message_of<duet::no_convergence>([&] {
-    static_cast<void>(duet::interpolate<cumulative<rotation>>(t.u, t.rows, duet::not_a_knot{}));
+    static_cast<void>(duet::interpolate<cumulative<rotation>>(t.u, t.samples, duet::not_a_knot{}));
   });
-  CHECK(message.find("for these ends the parameters may be too uneven, the longest interval is "
-                     "100000 times the shortest") != std::string::npos);
+  CHECK(message.find("the parameters may be too uneven for these end conditions, the longest "
+                     "interval is 100000 times the shortest") != std::string::npos);
   CHECK(miss<cumulative<rotation>>(t, duet::natural{}) < 1e-13);
 }
 
 namespace {
 
-/// What the rounding of a derivative at a knot is compared with.
+/// Scale for the round-off of a derivative at a knot.
 enum class measure {
-  derivative, ///< the largest of the same derivative at the ends of the two pieces
-  terms ///< the largest of the terms h^{j−k} Q^(j) of their Taylor series, h a piece's length
+  derivative, ///< largest value of this derivative at the ends of the two adjacent segments
+  terms ///< largest term h^{j−k} Q^(j) of the Taylor series of these segments, h their length
 };
 
-/// The largest jumps of Q, Q′ … at the inner knots, in roundings.
+/// Largest jumps of Q, Q′ … at the inner knots, in units of round-off.
 template <std::size_t Count, class Spline>
 std::array<double, Count> jumps(const Spline& s, const std::vector<double>& u, measure by) {
   const auto at = [&](double x) {
@@ -196,40 +198,41 @@ std::array<double, Count> jumps(const Spline& s, const std::vector<double>& u, m
 
 } // namespace
 
-TEST_CASE("C² to rounding, the rotation vectors at least as the cumulative curve") {
+TEST_CASE("interpolate, cubics at uneven parameters: C² to round-off, rotation vectors relative to "
+          "the derivatives") {
   random_source random(4);
   for (int i = 0; i < 12; ++i) {
     CAPTURE(i);
     const auto intervals = random_intervals(random, 6, i < 6 ? 6 : 9);
     const auto t = random_table<rotation>(random, intervals, 1 / largest(intervals));
-    const auto s = duet::interpolate<cumulative<rotation>>(t.u, t.rows);
+    const auto s = duet::interpolate<cumulative<rotation>>(t.u, t.samples);
     for (const double each : jumps<3>(s, t.u, measure::terms)) {
       CHECK(each < 32);
     }
-    const auto r = duet::interpolate<cubic<rotation>>(t.u, t.rows);
+    const auto r = duet::interpolate<cubic<rotation>>(t.u, t.samples);
     for (const double each : jumps<3>(r, t.u, measure::derivative)) {
       CHECK(each < 32);
     }
   }
 }
 
-TEST_CASE("C⁴ to rounding: the quintic") {
+TEST_CASE("interpolate, quintic at uneven parameters: C⁴ to round-off") {
   random_source random(5);
   for (int i = 0; i < 20; ++i) {
     CAPTURE(i);
-    // Rows of one smooth motion; random ones make a quintic wild.
+    // Samples of a smooth motion, because a quintic through random samples oscillates.
     const auto intervals = random_intervals(random, 8, i < 10 ? 2 : 9);
     table<rotation> t;
     for (const double each : intervals) {
       t.u.push_back(t.u.back() + each);
     }
     const double end = t.u.back();
-    t.rows.clear();
+    t.samples.clear();
     for (const double u : t.u) {
       const vector w(.8 * std::sin(3 * u / end), .5 * std::cos(2 * u / end), u / end);
-      t.rows.push_back(duet::from_rotation_vector(w));
+      t.samples.push_back(duet::from_rotation_vector(w));
     }
-    const auto s = duet::interpolate<rotation_vectors<rotation, 6>>(t.u, t.rows);
+    const auto s = duet::interpolate<rotation_vectors<rotation, 6>>(t.u, t.samples);
     for (const double each : jumps<5>(s, t.u, measure::derivative)) {
       CHECK(each < 32);
     }
