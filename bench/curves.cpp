@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// The other splines beside the cumulative one over rotations (spline.cpp): over poses, of rotation
-/// vectors, and the fitting of 1000 rows 0.003 rad apart.
+/// Splines over poses and of rotation vectors (spline.cpp has the cumulative one over rotations),
+/// and interpolation of 1000 samples with steps of 0.003 rad.
 
 #include "support/contest.hpp"
 
@@ -22,10 +22,10 @@ namespace {
 
 using screw = duet::dual<double, 1, duet::screw_tag>;
 
-constexpr int rows = 1000;
-constexpr double step = 0.01; // of the parameter; the turn is 0.3 of it
+constexpr int samples = 1000;
+constexpr double step = 0.01; // of the parameter; the rotation angle is 0.3 of it
 
-/// Turning by 0.3 rad per unit about an axis that moves.
+/// Rotation by 0.3 rad per unit about a moving axis.
 duet::quaternion<double> orientation(double u) {
   return duet::from_rotation_vector(
       duet::vector3<double>(0.15 * std::sin(u), 0.15 * std::cos(u), 0.26 * u));
@@ -36,7 +36,7 @@ duet::dual_quaternion<double> to_dual_quaternion(double u) {
 
 std::vector<double> parameters() {
   std::vector<double> u;
-  for (int i = 0; i < rows; ++i) {
+  for (int i = 0; i < samples; ++i) {
     u.push_back(i * step);
   }
   return u;
@@ -50,13 +50,13 @@ auto through(const F& f) {
   return result;
 }
 
-/// Places in random order, one after the other.
-class places {
+/// Parameters in random order, one after the other.
+class parameter_sequence {
 public:
-  places() {
+  parameter_sequence() {
     std::mt19937_64 engine(2);
     for (double& u : values_) {
-      u = double(engine() >> 11) * 0x1p-53 * (rows - 1) * step;
+      u = double(engine() >> 11) * 0x1p-53 * (samples - 1) * step;
     }
   }
   double next() { return values_[next_++ % values_.size()]; }
@@ -69,9 +69,10 @@ private:
 template <class Spline>
 void add(std::string_view value, std::string_view motion, std::string_view contender,
          const Spline& s) {
-  comparison_table(value, contender, places(), [=](places& u) { return s(u.next()); });
-  comparison_table(motion, contender, places(),
-                   [=](places& u) { return s.motion(u.next(), duet::frame::body); });
+  comparison_table(value, contender, parameter_sequence(),
+                   [=](parameter_sequence& u) { return s(u.next()); });
+  comparison_table(motion, contender, parameter_sequence(),
+                   [=](parameter_sequence& u) { return s.motion(u.next(), duet::frame::body); });
 }
 
 const bool registered = [] {

@@ -2,8 +2,8 @@
 
 /// \file
 /// A uniform cubic spline of 100 segments at random parameters: value, and value with angular
-/// velocity and acceleration. By hand: one kernel for this one curve, in plain doubles. Beside
-/// them, the same rates by Taylor numbers, and the fitting of 104 orientations.
+/// velocity and acceleration. By hand: one kernel for this one curve, in plain doubles. In
+/// addition, the rates by Taylor numbers and the interpolation of 104 orientations.
 
 #include "spline_workload.hpp"
 #include "support/contest.hpp"
@@ -70,7 +70,7 @@ numbers duet_motion(double u) {
           m.velocity[1], m.velocity[2], m.acceleration[0], m.acceleration[1], m.acceleration[2]};
 }
 
-/// The same from Q, Q′, Q″: ω = 2 Q* Q′, ω′ = vec(2 Q* Q″).
+/// Value and rates from Q, Q′, Q″: ω = 2 Q* Q′, ω′ = vec(2 Q* Q″).
 numbers taylor_motion(double u) {
   const auto q = duet::derivatives<2>([](const auto& x) { return spline(x); }, u);
   const auto w = conj(q[0]) * q[1], a = conj(q[0]) * q[2];
@@ -78,7 +78,7 @@ numbers taylor_motion(double u) {
           2 * w.y(), 2 * w.z(), 2 * a.x(), 2 * a.y(), 2 * a.z()};
 }
 
-/// The same cubic as a formula of one segment.
+/// Spline as a symbolic formula of one segment.
 class formula_spline {
 public:
   explicit formula_spline(const std::vector<duet::quaternion<double>>& controls) {
@@ -125,7 +125,7 @@ private:
   struct node {
     duet::quaternion<double> q;
     duet::vector3<double> axis;
-    double angle; ///< of the whole rotation
+    double angle; ///< full rotation angle
   };
   std::vector<node> nodes_;
 };

@@ -21,10 +21,10 @@ inline constexpr double knot_distance = 0.1;
 
 /// Value, angular velocity and acceleration in body axes.
 using numbers = std::array<double, 10>;
-/// The same, and the angular jerk.
+/// Value, angular velocity, acceleration and jerk in body axes.
 using numbers_with_jerk = std::array<double, 13>;
 
-/// A smooth tumble, up to 0.25 rad a segment.
+/// Smooth tumbling motion with up to 0.25 rad per segment.
 inline duet::quaternion<double> orientation(double t) {
   return duet::from_euler<duet::zyx>(1.9 * std::sin(t), 0.8 * std::sin(1.3 * t + 1),
                                      2 * std::cos(0.7 * t));
@@ -47,8 +47,8 @@ inline duet::cumulative_bspline<double> make_spline() {
   return {knots, controls()};
 }
 
-/// The cubic as one writes it by hand for uniform knots and nothing else: logarithms cached as axis
-/// and half angle, the segment found by one product, polynomials written out.
+/// Hand-written cubic for uniform knots: logarithms are cached as axis and half angle, the segment
+/// is found by one product, polynomials are written out.
 class hand_written_spline {
 public:
   explicit hand_written_spline(const std::vector<duet::quaternion<double>>& controls) {
@@ -125,11 +125,11 @@ private:
         j = d3;
         continue;
       }
-      w = wrap_angle(e, w);
-      a = wrap_angle(e, a);
+      w = rotated_back(e, w);
+      a = rotated_back(e, a);
       const auto wd = cross(w, d);
       if constexpr (has_jerk) {
-        j = wrap_angle(e, j);
+        j = rotated_back(e, j);
         const auto wd2 = cross(w, d2);
         const auto twice = cross({a[0] + wd[0], a[1] + wd[1], a[2] + wd[2]}, d);
         j = {j[0] + d3[0] + 4 * twice[0] + 2 * wd2[0], j[1] + d3[1] + 4 * twice[1] + 2 * wd2[1],
@@ -176,9 +176,9 @@ private:
             p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
             p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
   }
-  /// e* v e
-  static std::array<double, 3> wrap_angle(const std::array<double, 4>& e,
-                                          const std::array<double, 3>& v) {
+  /// Vector e* v e, rotated back by e.
+  static std::array<double, 3> rotated_back(const std::array<double, 4>& e,
+                                            const std::array<double, 3>& v) {
     const double tx = 2 * (e[2] * v[2] - e[3] * v[1]);
     const double ty = 2 * (e[3] * v[0] - e[1] * v[2]);
     const double tz = 2 * (e[1] * v[1] - e[2] * v[0]);
