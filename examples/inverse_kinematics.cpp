@@ -41,15 +41,15 @@ struct goal {
   return {"the goal", arm.pose(theta)};
 }
 
-[[nodiscard]] std::vector<goal> goals_of(const example::command_line& given,
+[[nodiscard]] std::vector<goal> goals_of(const example::command_line& arguments,
                                          const example::arm_chain& arm) {
-  if (given.has("goal") && given.has("goals")) {
+  if (arguments.has("goal") && arguments.has("goals")) {
     throw std::runtime_error("--goal and --goals exclude each other");
   }
-  if (const auto text = given.text("goal")) {
+  if (const auto text = arguments.text("goal")) {
     return {{"--goal", example::parse_pose("--goal", *text)}};
   }
-  const auto path = given.text("goals");
+  const auto path = arguments.text("goals");
   if (!path) {
     return {example_goal(arm)};
   }
@@ -83,18 +83,18 @@ void write_joints(const std::string& path, const std::vector<solution>& found) {
   write_file(path, text);
 }
 
-void solve(const example::command_line& given) {
-  const auto out = given.text("out");
+void solve(const example::command_line& arguments) {
+  const auto out = arguments.text("out");
   if (out) {
     require_writable(*out);
   }
-  const example::arm_chain arm = example::arm_of(given);
-  const Eigen::VectorXd start = example::coordinates(arm, given, "start");
-  const std::vector<goal> goals = goals_of(given, arm);
+  const example::arm_chain arm = example::arm_of(arguments);
+  const Eigen::VectorXd start = example::coordinates(arm, arguments, "start");
+  const std::vector<goal> goals = goals_of(arguments, arm);
   inverse_kinematics_options options;
-  options.tolerance = given.get<double>("tolerance").value_or(options.tolerance.translation);
-  options.max_restarts = given.get<int>("restarts").value_or(options.max_restarts);
-  options.seed = given.get<std::uint64_t>("seed").value_or(options.seed);
+  options.tolerance = arguments.get<double>("tolerance").value_or(options.tolerance.translation);
+  options.max_restarts = arguments.get<int>("max-restarts").value_or(options.max_restarts);
+  options.seed = arguments.get<std::uint64_t>("seed").value_or(options.seed);
 
   std::vector<dual_quaternion<double>> poses;
   for (const goal& g : goals) {
@@ -140,20 +140,22 @@ void solve(const example::command_line& given) {
 int main(int argc, char** argv) {
   return example::run_program("inverse_kinematics", [&] {
     example::option_list description(
-        "Joint coordinates for a pose of a robot arm's tip, within the arm's limits.\nA pose is "
+        "Inverse kinematics of a robot arm within its joint limits.\nA pose is "
         "x,y,z,qw,qx,qy,qz (scalar first), or a matrix [R t; 0 1] row by row, 12 or 16 numbers.\n"
         "Metres and radians. Options");
     example::add_arm_options(description);
     description.value<std::string>(
-        "goal", "POSE", "comma-separated (default: a third of the way along all limits)");
-    description.value<std::string>("goals", "FILE", "poses instead, each on a line of a CSV file");
+        "goal", "POSE",
+        "pose of the tip, comma-separated (default: that at a third of all joint ranges)");
+    description.value<std::string>("goals", "FILE",
+                                   "CSV file with a pose on each line, instead of --goal");
     description.value<std::string>("start", "X,X,...",
-                                   "joints to begin from (default: the middle of the limits)");
-    description.value<double>("tolerance", "X", "how close, in metres and radians (default: 1e-6)");
-    description.value<int>("restarts", "N",
-                           "random joints to begin anew from, at most (default: 100)");
-    description.value<std::uint64_t>("seed", "N", "of those (default: 1)");
-    description.value<std::string>("out", "FILE", "a CSV file for the joints of each goal");
+                                   "initial guess (default: the midpoint of the limits)");
+    description.value<double>("tolerance", "X",
+                              "tolerance of the pose, in metres and radians (default: 1e-6)");
+    description.value<int>("max-restarts", "N", "maximum number of random restarts (default: 100)");
+    description.value<std::uint64_t>("seed", "N", "seed of the random restarts (default: 1)");
+    description.value<std::string>("out", "FILE", "CSV file for the solution of each goal");
     description.flag("help", "print this and stop");
     const auto line = example::command_line::parse(argc, argv, description);
     if (line) {

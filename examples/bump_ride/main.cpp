@@ -13,6 +13,7 @@
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/number_text.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -38,32 +39,34 @@ struct options {
 std::optional<options> parse_options(int argc, char** argv) {
   example::option_list description(
       "A wheel carrier with one degree of freedom runs over a bump: constraints solved in every "
-      "step\nagainst a look-up table of poses (ride.csv, pictures). Options");
+      "step,\ncompared with a lookup table of poses (ride.csv, pictures). Options");
   description.flag("help", "print this and stop")
-      .value<int>("rows", "N", "rows of the table (default: 105)")
-      .value<double>("duration", "S", "of the ride (default: 0.6)")
-      .value<double>("step", "S", "of the integration (default: 0.0002)")
+      .value<int>("rows", "N", "rows of the lookup table (default: 105)")
+      .value<double>("duration", "S", "duration of the ride (default: 0.6)")
+      .value<double>("step", "S", "step of the integration (default: 0.0002)")
       .value<double>("bump", "M", "height of the bump (default: 0.05)")
       .value<std::string>("out", "DIR",
                           "folder for the table and the pictures (default: bump_ride_out)");
-  const auto given = example::command_line::parse(argc, argv, description);
-  if (!given) {
+  const auto arguments = example::command_line::parse(argc, argv, description);
+  if (!arguments) {
     return std::nullopt;
   }
   options result;
-  result.rows = given->get<int>("rows").value_or(result.rows);
-  result.duration = given->get<double>("duration").value_or(result.duration);
-  result.step = given->get<double>("step").value_or(result.step);
-  result.bump = given->get<double>("bump").value_or(result.bump);
-  result.out = given->text("out").value_or(result.out);
+  result.rows = arguments->get<int>("rows").value_or(result.rows);
+  result.duration = arguments->get<double>("duration").value_or(result.duration);
+  result.step = arguments->get<double>("step").value_or(result.step);
+  result.bump = arguments->get<double>("bump").value_or(result.bump);
+  result.out = arguments->text("out").value_or(result.out);
   if (result.rows < 4) {
-    throw std::runtime_error("--rows: 4 or more");
+    throw std::runtime_error("--rows is " + std::to_string(result.rows) + " (expected at least 4)");
   }
   if (!(result.step > 0) || !(result.duration >= result.step) || !std::isfinite(result.duration)) {
-    throw std::runtime_error("--step and --duration: 0 < step <= duration expected");
+    throw std::runtime_error("--step is " + duet::to_text(result.step) + ", --duration is " +
+                             duet::to_text(result.duration) + " (expected 0 < step <= duration)");
   }
   if (!(result.bump >= 0 && result.bump <= 0.1)) {
-    throw std::runtime_error("--bump: from 0 to 0.1 m, or the carrier leaves its range");
+    throw std::runtime_error("--bump is " + duet::to_text(result.bump) +
+                             " (expected 0 to 0.1 m, the range of the carrier)");
   }
   return result;
 }
@@ -134,16 +137,16 @@ std::string picture_script(const std::vector<result>& results) {
          example::plot_command("ride.csv", energies) + "unset multiplot\n";
 }
 
-void run(const options& given) {
-  example::require_folder(given.out);
+void run(const options& settings) {
+  example::require_folder(settings.out);
   const wheel_carrier::carrier mechanism(wheel_carrier::example_hardpoints());
   vehicle v;
-  v.bump_height = given.bump;
-  const pose_table table = make_table(mechanism, given.rows);
-  std::cout << "Table of " << given.rows << " rows; riding\n" << std::flush;
+  v.bump_height = settings.bump;
+  const pose_table table = make_table(mechanism, settings.rows);
+  std::cout << "Table of " << settings.rows << " rows; simulating\n" << std::flush;
   std::vector<result> results;
   const auto ride_with = [&](const char* name, const auto& model) {
-    results.push_back(run_over_bump(name, model, v, given.duration, given.step));
+    results.push_back(run_over_bump(name, model, v, settings.duration, settings.step));
   };
   ride_with("constraints", exact_model(mechanism));
   ride_with("cumulative B-spline", cumulative_model(table));
@@ -155,18 +158,19 @@ void run(const options& given) {
     std::printf("%-24s %14.2f %20.2e %16.2e\n", r.name.c_str(), r.seconds_per_step * 1e6,
                 height_difference(r, results.front()), energy_error(r));
   }
-  std::filesystem::create_directories(given.out);
-  duet::write_file(given.out + "/ride.csv", ride_csv(v, results));
-  const bool drawn = example::draw(given.out, "ride", 520, picture_script(results));
+  std::filesystem::create_directories(settings.out);
+  duet::write_file(settings.out + "/ride.csv", ride_csv(v, results));
+  const bool drawn = example::draw(settings.out, "ride", 520, picture_script(results));
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
-            << duet::printable(given.out) << "\n";
+            << duet::printable(settings.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
   std::printf("bump ride: rows=%d steps=%zu height_difference=%.3g energy_error=%.3g "
               "speed_up=%.3g\n",
-              given.rows, results[0].samples.size() - 1, height_difference(results[2], results[0]),
-              energy_error(results[2]), results[0].seconds_per_step / results[2].seconds_per_step);
+              settings.rows, results[0].samples.size() - 1,
+              height_difference(results[2], results[0]), energy_error(results[2]),
+              results[0].seconds_per_step / results[2].seconds_per_step);
 }
 
 } // namespace
@@ -174,8 +178,8 @@ void run(const options& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("bump_ride", [&] {
-    if (const auto given = bump_ride::parse_options(argc, argv)) {
-      bump_ride::run(*given);
+    if (const auto settings = bump_ride::parse_options(argc, argv)) {
+      bump_ride::run(*settings);
     }
     return 0;
   });

@@ -40,34 +40,37 @@ struct options {
 };
 
 std::optional<options> parse_options(int argc, char** argv) {
-  example::option_list description(
-      "Mechanisms with loops out of files: how they close and move. Metres and radians. Options");
+  example::option_list description("Closed-chain mechanisms from files: assembly configurations, "
+                                   "mobility and motion. Metres and "
+                                   "radians. Options");
   description.flag("help", "print this and stop");
   description.value<std::string>(
       "mechanism", "NAME",
       "four_bar, five_bar, delta, stewart or wheel_carrier (default: four_bar)");
-  description.value<std::string>("files", "DIR",
-                                 "folder of NAME.urdf and NAME.loops (default: of this example)");
-  description.value<int>("starts", "N",
-                         "guesses from which positions are looked for (default: 100)");
-  description.value<int>("samples", "N", "positions along the way (default: 101)");
+  description.value<std::string>(
+      "files", "DIR", "folder of NAME.urdf and NAME.loops (default: files of this example)");
+  description.value<int>("random-starts", "N",
+                         "random initial guesses of assembly configurations (default: 100)");
+  description.value<int>("samples", "N", "positions along the motion (default: 101)");
   description.value<std::string>(
       "out", "DIR", "folder for the table and the picture (default: closed_mechanisms_out)");
-  const auto given = example::command_line::parse(argc, argv, description, "mechanism");
-  if (!given) {
+  const auto arguments = example::command_line::parse(argc, argv, description, "mechanism");
+  if (!arguments) {
     return std::nullopt;
   }
   options result;
-  result.mechanism = given->text("mechanism").value_or(result.mechanism);
-  result.files = given->text("files").value_or(result.files);
-  result.out = given->text("out").value_or(result.out);
-  result.starts = given->get<int>("starts").value_or(result.starts);
-  result.samples = given->get<int>("samples").value_or(result.samples);
+  result.mechanism = arguments->text("mechanism").value_or(result.mechanism);
+  result.files = arguments->text("files").value_or(result.files);
+  result.out = arguments->text("out").value_or(result.out);
+  result.starts = arguments->get<int>("random-starts").value_or(result.starts);
+  result.samples = arguments->get<int>("samples").value_or(result.samples);
   if (result.starts < 1) {
-    throw std::runtime_error("--starts: 1 or more");
+    throw std::runtime_error("--random-starts is " + std::to_string(result.starts) +
+                             " (expected at least 1)");
   }
   if (result.samples < 2) {
-    throw std::runtime_error("--samples: 2 or more");
+    throw std::runtime_error("--samples is " + std::to_string(result.samples) +
+                             " (expected at least 2)");
   }
   return result;
 }
@@ -96,7 +99,7 @@ void print(const duet::assembly_search_result& found) {
 }
 
 /// Along the way of the drives, beside what is known by hand.
-void follow(const options& given, const mechanism& known, duet::driven_motion motion,
+void follow(const options& settings, const mechanism& known, duet::driven_motion motion,
             example::drawing& picture) {
   const duet::closed_chain_mechanism mechanism = motion.mechanism();
   const auto at = mechanism.tree().link(known.link).at_point(known.point);
@@ -104,8 +107,8 @@ void follow(const options& given, const mechanism& known, duet::driven_motion mo
   std::string table = "part,x,y,z,dx,dy,dz,ddx,ddy,ddz\n";
   std::array<double, 3> apart{};
   std::vector<example::point> curve;
-  for (int i = 0; i < given.samples; ++i) {
-    const double part = double(i) / (given.samples - 1);
+  for (int i = 0; i < settings.samples; ++i) {
+    const double part = double(i) / (settings.samples - 1);
     motion = motion.warm_started_at(known.from + part * way);
     const path x =
         along_way([&](const auto& u) { return translation(mechanism.tree().pose(motion(u), at)); },
@@ -119,13 +122,13 @@ void follow(const options& given, const mechanism& known, duet::driven_motion mo
     table += duet::csv_line(row);
     curve.push_back(x[0]);
     const int drawn = way.size() == 1 ? 4 : 2;
-    if (i % ((given.samples + drawn - 1) / drawn) == 0) {
+    if (i % ((settings.samples + drawn - 1) / drawn) == 0) {
       add(picture, mechanism, motion.start(),
           example::mixed(colours[0], "#ffffff", .7 * (1 - part)));
     }
   }
   picture.line(curve, colours[1], "lw 3", 10 * mechanism.length());
-  duet::write_file(given.out + "/" + known.name + "_way.csv", table);
+  duet::write_file(settings.out + "/" + known.name + "_way.csv", table);
   std::printf("by hand: position_difference=%.2g first_derivative_difference=%.2g "
               "second_derivative_difference=%.2g\n",
               apart[0], apart[1], apart[2]);
@@ -155,16 +158,17 @@ void print(const duet::closed_chain_mechanism& mechanism, const duet::motion_tra
   }
 }
 
-void run(const options& given) {
+void run(const options& settings) {
   const auto all = known_mechanisms();
-  const auto known = std::find_if(
-      all.begin(), all.end(), [&](const mechanism& each) { return each.name == given.mechanism; });
+  const auto known = std::find_if(all.begin(), all.end(), [&](const mechanism& each) {
+    return each.name == settings.mechanism;
+  });
   if (known == all.end()) {
-    throw std::runtime_error("--mechanism: '" + given.mechanism +
-                             "': four_bar, five_bar, delta, stewart or wheel_carrier");
+    throw std::runtime_error("--mechanism is '" + settings.mechanism +
+                             "' (expected four_bar, five_bar, delta, stewart or wheel_carrier)");
   }
-  example::require_folder(given.out);
-  const std::string file = given.files + "/" + known->name;
+  example::require_folder(settings.out);
+  const std::string file = settings.files + "/" + known->name;
   const duet::closed_chain_mechanism mechanism(duet::read_urdf_tree(file + ".urdf"),
                                                duet::read_loops(file + ".loops"));
   std::vector<int> drives;
@@ -174,9 +178,9 @@ void run(const options& given) {
   std::printf("%s: %d coordinates, %d equations\n", known->name.c_str(), mechanism.size(),
               mechanism.equation_count());
   const auto found = duet::find_assembly_configurations(mechanism, drives, known->from,
-                                                        {.random_starts = given.starts});
+                                                        {.random_starts = settings.starts});
   if (found.positions.empty()) {
-    throw std::runtime_error("no position found: more --starts");
+    throw std::runtime_error("no assembly configuration found (increase --random-starts)");
   }
   const VectorXd q =
       drives.empty() ? found.positions[0].coordinates : mechanism.assemble(known->guess, drives);
@@ -185,7 +189,7 @@ void run(const options& given) {
   std::printf("drives:%s; by condition:%s\n", names(mechanism, drives).c_str(),
               names(mechanism, independent).c_str());
   print(found);
-  std::filesystem::create_directories(given.out);
+  std::filesystem::create_directories(settings.out);
   example::drawing picture(known->view);
   if (drives.empty()) {
     add(picture, mechanism, q, colours[0]);
@@ -194,12 +198,12 @@ void run(const options& given) {
     }
   } else {
     const duet::driven_motion motion(mechanism, q, drives);
-    follow(given, *known, motion, picture);
+    follow(settings, *known, motion, picture);
     if (drives.size() == 1) {
       print(mechanism, duet::trace(motion));
     }
   }
-  if (!draw(given.out, known->name, picture)) {
+  if (!draw(settings.out, known->name, picture)) {
     std::printf("No picture: gnuplot is not installed\n");
   }
 }
@@ -209,8 +213,8 @@ void run(const options& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("closed_mechanisms", [&] {
-    if (const auto given = closed_mechanisms::parse_options(argc, argv)) {
-      closed_mechanisms::run(*given);
+    if (const auto settings = closed_mechanisms::parse_options(argc, argv)) {
+      closed_mechanisms::run(*settings);
     }
     return 0;
   });

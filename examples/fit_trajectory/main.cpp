@@ -29,45 +29,46 @@ void print_faults(const recording& r, const std::string& path) {
   if (!r.remark.empty()) {
     std::cerr << duet::printable(path) << ": " << r.remark << "\n";
   }
-  constexpr std::size_t most = 20;
-  for (std::size_t i = 0; i < r.faults.size() && i < most; ++i) {
+  constexpr std::size_t max_printed = 20;
+  for (std::size_t i = 0; i < r.faults.size() && i < max_printed; ++i) {
     const duet::recording_issue& each = r.faults[i];
     std::cerr << duet::printable(path + ":" + std::to_string(each.line) + ": " + each.reason)
               << "\n";
   }
-  if (r.faults.size() > most) {
-    std::cerr << duet::printable(path) << ": and " << r.faults.size() - most << " more\n";
+  if (r.faults.size() > max_printed) {
+    std::cerr << duet::printable(path) << ": and " << r.faults.size() - max_printed << " more\n";
   }
 }
 
-void run(const options& given) {
-  example::require_folder(given.out);
-  const recording r = given.file
-                          ? duet::load_recording<duet::screw_dual<double>>(*given.file, given.times)
-                          : made_up_recording();
-  if (given.file) {
-    print_faults(r, *given.file);
+void run(const options& settings) {
+  example::require_folder(settings.out);
+  const recording r =
+      settings.file ? duet::load_recording<duet::screw_dual<double>>(*settings.file, settings.times)
+                    : made_up_recording();
+  if (settings.file) {
+    print_faults(r, *settings.file);
   }
-  const auto rows_per_knot = std::size_t(given.rows_per_knot);
+  const auto samples_per_knot = std::size_t(settings.samples_per_knot);
   const std::size_t rows = r.lines.size();
-  if (rows < rows_per_knot + 4) {
-    throw std::runtime_error(given.file.value_or("the made-up recording") + ": " +
+  if (rows < samples_per_knot + 4) {
+    throw std::runtime_error(settings.file.value_or("the made-up recording") + ": " +
                              std::to_string(rows) + " usable rows are too few for one knot in " +
-                             std::to_string(rows_per_knot));
+                             std::to_string(samples_per_knot));
   }
   const double duration = r.table.parameters.back();
-  const double rate = rate_for(duration, given.rate);
+  const double rate = rate_for(duration, settings.rate);
   std::cout << rows << " rows over " << duration << " s: fitting\n" << std::flush;
-  const smoothed s = smooth(r, rows_per_knot, given.length, given.outlier);
+  const smoothed s =
+      smooth(r, samples_per_knot, settings.characteristic_length, settings.outlier_threshold);
 
-  std::filesystem::create_directories(given.out);
-  duet::write_file(given.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, rate));
-  duet::write_file(given.out + "/rows.csv", rows_csv(r, s));
+  std::filesystem::create_directories(settings.out);
+  duet::write_file(settings.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, rate));
+  duet::write_file(settings.out + "/rows.csv", rows_csv(r, s));
   const bool drawn =
-      example::draw(given.out, "fit", 520,
+      example::draw(settings.out, "fit", 520,
                     picture_script(r.start, duration, s, rows, std::size_t(duration * rate)));
   std::cout << "Tables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
-            << duet::printable(given.out) << "\n";
+            << duet::printable(settings.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
@@ -82,8 +83,8 @@ void run(const options& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("fit_trajectory", [&] {
-    if (const auto given = fit_trajectory::parse_options(argc, argv)) {
-      fit_trajectory::run(*given);
+    if (const auto settings = fit_trajectory::parse_options(argc, argv)) {
+      fit_trajectory::run(*settings);
     }
     return 0;
   });

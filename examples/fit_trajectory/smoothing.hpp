@@ -46,12 +46,13 @@ struct smoothed {
 
 /// A robust fit, with three times the median of the residuals as the limit of outliers unless one
 /// is given.
-inline smoothed smooth(const recording& r, std::size_t rows_per_knot, double length,
-                       double outlier) {
-  const duet::fit_options options{.characteristic_length = length,
+inline smoothed smooth(const recording& r, std::size_t samples_per_knot,
+                       double characteristic_length, double outlier) {
+  const duet::fit_options options{.characteristic_length = characteristic_length,
                                   .outlier_threshold = std::max(outlier, 0.0)};
-  fitted result = duet::fit<curve>(r.table.parameters, r.table.elements,
-                                   duet::knots_every(r.table.parameters, rows_per_knot), options);
+  fitted result =
+      duet::fit<curve>(r.table.parameters, r.table.elements,
+                       duet::knots_every(r.table.parameters, samples_per_knot), options);
   const double limit = result.outlier_threshold;
   return {std::move(result), limit};
 }
@@ -63,16 +64,16 @@ inline std::size_t outliers(const smoothed& s) {
 
 /// Poses per second of the table: those asked for, else 100 or as many as make a million.
 /// \throws std::runtime_error where those asked for would be too many
-inline double rate_for(double duration, const std::optional<double>& asked) {
+inline double rate_for(double duration, const std::optional<double>& requested) {
   constexpr double usual = 100, usual_poses = 1e6, most_poses = 1e7;
-  if (!asked) {
+  if (!requested) {
     return std::min(usual, usual_poses / duration);
   }
-  if (!(duration * *asked <= most_poses)) {
-    throw std::runtime_error("--rate: " + duet::to_text(*asked) + " Hz over " +
+  if (!(duration * *requested <= most_poses)) {
+    throw std::runtime_error("--rate: " + duet::to_text(*requested) + " Hz over " +
                              duet::to_text(duration) + " s would make more than 10000000 poses");
   }
-  return *asked;
+  return *requested;
 }
 
 /// Poses and their rates at even times, in fixed axes: velocity and acceleration of the origin,

@@ -63,13 +63,13 @@ std::optional<options> parse_options(int argc, char** argv) {
       .value<int>("samples", "N", "positions (default: 361)")
       .value<std::string>("out", "DIR",
                           "folder for the table and the picture (default: four_bar_out)");
-  const auto given = example::command_line::parse(argc, argv, description);
-  if (!given) {
+  const auto arguments = example::command_line::parse(argc, argv, description);
+  if (!arguments) {
     return std::nullopt;
   }
   options result;
   const auto read = [&](const char* name, double& x, bool is_length) {
-    x = given->get<double>(name).value_or(x);
+    x = arguments->get<double>(name).value_or(x);
     if (!std::isfinite(x) || (is_length && x <= 0)) {
       throw std::runtime_error(std::string("--") + name + ": " + duet::to_text(x) +
                                (is_length ? " is no length" : " is not finite"));
@@ -84,9 +84,9 @@ std::optional<options> parse_options(int argc, char** argv) {
   read("from", result.from, false);
   read("to", result.to, false);
   read("speed", result.speed, false);
-  result.side = given->has("crossed") ? 1 : -1;
-  result.samples = given->get<int>("samples").value_or(result.samples);
-  result.out = given->text("out").value_or(result.out);
+  result.side = arguments->has("crossed") ? 1 : -1;
+  result.samples = arguments->get<int>("samples").value_or(result.samples);
+  result.out = arguments->text("out").value_or(result.out);
   if (result.samples < 2) {
     throw std::runtime_error("--samples: 2 or more");
   }
@@ -102,17 +102,18 @@ struct sample {
 };
 
 /// From angle to angle, so that every loop starts where the one before ended.
-std::vector<sample> run_through(const options& given) {
-  const double first = given.from * degree;
-  const angles start = closed_form(given.links, first, given.side);
+std::vector<sample> run_through(const options& settings) {
+  const double first = settings.from * degree;
+  const angles start = closed_form(settings.links, first, settings.side);
   if (!start.allFinite()) {
     throw std::runtime_error("the links cannot close at a crank angle of " +
-                             duet::to_text(given.from) + " degrees");
+                             duet::to_text(settings.from) + " degrees");
   }
-  duet::constrained_mechanism loop(given.links, start, first);
+  duet::constrained_mechanism loop(settings.links, start, first);
   std::vector<sample> samples;
-  for (int i = 0; i < given.samples; ++i) {
-    const double theta = (given.from + (given.to - given.from) * i / (given.samples - 1)) * degree;
+  for (int i = 0; i < settings.samples; ++i) {
+    const double theta =
+        (settings.from + (settings.to - settings.from) * i / (settings.samples - 1)) * degree;
     try {
       loop = loop.warm_started_at(theta);
     } catch (const duet::loop_closure_failure& error) {
@@ -123,10 +124,11 @@ std::vector<sample> run_through(const options& given) {
       throw std::runtime_error(text);
     }
     const auto x = duet::derivatives<2>(loop, theta);
-    const rocker_rates rates(given.links, theta, x[0]);
-    const double w = given.speed;
+    const rocker_rates rates(settings.links, theta, x[0]);
+    const double w = settings.speed;
     samples.push_back({theta, x[0], x[1][1] * w, rates.first * w, x[2][1] * w * w,
-                       rates.second * w * w, coupler_point(given.links, given.point, x[0], theta)});
+                       rates.second * w * w,
+                       coupler_point(settings.links, settings.point, x[0], theta)});
   }
   return samples;
 }
@@ -143,10 +145,10 @@ double difference(const std::vector<sample>& samples, Automatic automatic, ByHan
 }
 
 /// The same for ψ itself, in radians.
-double angle_difference(const std::vector<sample>& samples, const options& given) {
+double angle_difference(const std::vector<sample>& samples, const options& settings) {
   double worst = 0;
   for (const sample& s : samples) {
-    const double psi = closed_form(given.links, s.crank, given.side)[1];
+    const double psi = closed_form(settings.links, s.crank, settings.side)[1];
     worst = std::max(worst, std::abs(std::remainder(s.x[1] - psi, 2 * std::numbers::pi)));
   }
   return worst;
@@ -164,13 +166,13 @@ std::string motion_csv(const std::vector<sample>& samples) {
 }
 
 /// The linkage at one of the positions, as a line: crank, coupler with its point, rocker.
-std::string links_csv(const options& given, const std::vector<sample>& samples) {
+std::string links_csv(const options& settings, const std::vector<sample>& samples) {
   const sample& s = samples[samples.size() / 6];
-  const Eigen::Vector2d start(0, 0), foot(given.links.ground, 0);
+  const Eigen::Vector2d start(0, 0), foot(settings.links.ground, 0);
   const Eigen::Vector2d a =
-      given.links.crank * Eigen::Vector2d(std::cos(s.crank), std::sin(s.crank));
+      settings.links.crank * Eigen::Vector2d(std::cos(s.crank), std::sin(s.crank));
   const Eigen::Vector2d b =
-      foot + given.links.rocker * Eigen::Vector2d(std::cos(s.x[1]), std::sin(s.x[1]));
+      foot + settings.links.rocker * Eigen::Vector2d(std::cos(s.x[1]), std::sin(s.x[1]));
   std::string text = "x,y\n";
   for (const Eigen::Vector2d& p : {start, a, s.point, b, a, b, foot}) {
     text += duet::csv_line({p[0], p[1]});
@@ -208,11 +210,11 @@ std::string picture_script(const std::vector<sample>& samples) {
          "unset multiplot\n";
 }
 
-void run(const options& given) {
-  example::require_folder(given.out);
-  const std::vector<sample> samples = run_through(given);
-  const auto [a, b, c, d] = given.links;
-  std::printf("Links %g, %g, %g, ground %g m: %s\n\n", a, b, c, d, given.links.kind().c_str());
+void run(const options& settings) {
+  example::require_folder(settings.out);
+  const std::vector<sample> samples = run_through(settings);
+  const auto [a, b, c, d] = settings.links;
+  std::printf("Links %g, %g, %g, ground %g m: %s\n\n", a, b, c, d, settings.links.kind().c_str());
   std::printf("%8s %10s %10s %14s %14s %16s %16s\n", "crank", "coupler", "rocker", "velocity",
               "closed form", "acceleration", "closed form");
   for (std::size_t k = 0; k <= 6; ++k) {
@@ -221,18 +223,18 @@ void run(const options& given) {
                 s.x[0] / degree, s.x[1] / degree, s.velocity, s.velocity_by_hand, s.acceleration,
                 s.acceleration_by_hand);
   }
-  std::filesystem::create_directories(given.out);
-  duet::write_file(given.out + "/motion.csv", motion_csv(samples));
-  duet::write_file(given.out + "/links.csv", links_csv(given, samples));
-  const bool drawn = example::draw(given.out, "four_bar", 400, picture_script(samples));
+  std::filesystem::create_directories(settings.out);
+  duet::write_file(settings.out + "/motion.csv", motion_csv(samples));
+  duet::write_file(settings.out + "/links.csv", links_csv(settings, samples));
+  const bool drawn = example::draw(settings.out, "four_bar", 400, picture_script(samples));
   std::cout << "\nTables" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
-            << duet::printable(given.out) << "\n";
+            << duet::printable(settings.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
   std::printf("four bar: samples=%zu angle_difference=%.2g velocity_difference=%.2g "
               "acceleration_difference=%.2g\n",
-              samples.size(), angle_difference(samples, given),
+              samples.size(), angle_difference(samples, settings),
               difference(samples, &sample::velocity, &sample::velocity_by_hand),
               difference(samples, &sample::acceleration, &sample::acceleration_by_hand));
 }
@@ -242,8 +244,8 @@ void run(const options& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("four_bar", [&] {
-    if (const auto given = four_bar::parse_options(argc, argv)) {
-      four_bar::run(*given);
+    if (const auto settings = four_bar::parse_options(argc, argv)) {
+      four_bar::run(*settings);
     }
     return 0;
   });

@@ -31,7 +31,7 @@ namespace {
 /// Says that it is still at work, where that takes long.
 plan_type plan(const problem& p) {
   auto result = std::async(std::launch::async, [&] {
-    return duet::plan_screw_motion(p.arm, p.start, p.goal, {}, {}, p.around);
+    return duet::plan_screw_motion(p.arm, p.start, p.goal, {}, {}, p.scene);
   });
   duet::progress_line line("");
   constexpr std::chrono::milliseconds tick(100);
@@ -137,7 +137,7 @@ bool run(const problem& p) {
 
 int main(int argc, char** argv) {
   return example::run_program("motion_plan", [&] {
-    const auto given = motion_plan_example::parse(argc, argv);
-    return !given || motion_plan_example::run(*given) ? 0 : 1;
+    const auto input = motion_plan_example::parse(argc, argv);
+    return !input || motion_plan_example::run(*input) ? 0 : 1;
   });
 }

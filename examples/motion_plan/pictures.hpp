@@ -29,7 +29,7 @@ inline std::string millimetres(double length) {
 
 /// One or the other word, for what the arm keeps its margin from.
 inline const char* obstacles_of(const problem& p, const char* obstacles, const char* links) {
-  return p.around.obstacles.empty() ? links : obstacles;
+  return p.scene.obstacles.empty() ? links : obstacles;
 }
 
 /// Above and in the middle the joints that move most in colours, the others grey; below how much of
@@ -113,7 +113,7 @@ inline std::string deviation_script(const problem& p, std::size_t rows) {
                         {{"1:(1000*$4)", "blue",
                           obstacles_of(p, "from the nearest obstacle", "from link to link"),
                           rows / 6, above_right},
-                         {"1:(" + duet::to_text(1000 * p.around.margin) + ")", "ink", "margin",
+                         {"1:(" + duet::to_text(1000 * p.scene.margin) + ")", "ink", "margin",
                           rows - 1, right, "lines lw 2 dt 2"}}) +
                     "unset multiplot\n"
               : way + both);
@@ -139,7 +139,7 @@ inline std::string arm_script(const example::drawing& d, const problem& p, const
          example::title(obstacles_of(p, "The arm keeps ", "Links keep ") +
                         millimetres(plan.smallest_clearance) + " or more from " +
                         obstacles_of(p, "obstacles", "each other") + "; the margin is " +
-                        millimetres(p.around.margin)) +
+                        millimetres(p.scene.margin)) +
          "\nset lmargin at screen .62\nset rmargin at screen .96\nset tmargin at screen .8\n"
          "set bmargin at screen .2\nset xrange [0:1]\nset yrange [0:*]\n"
          "set xlabel 'share of the way'\nset ylabel 'distance " +
@@ -147,7 +147,7 @@ inline std::string arm_script(const example::drawing& d, const problem& p, const
          example::plot_command("deviations.csv",
                                {{"1:(1000*$4)", "blue", obstacles_of(p, "arm", "links"), rows / 5,
                                  above_right, "lines lw 3"},
-                                {"1:(" + duet::to_text(1000 * p.around.margin) + ")", "ink",
+                                {"1:(" + duet::to_text(1000 * p.scene.margin) + ")", "ink",
                                  "margin", rows / 20, above_right, "lines lw 2 dt 2"}}) +
          "unset xlabel\nunset ylabel\nset lmargin at screen .02\nset rmargin at screen .5\n"
          "set tmargin at screen .9\nset bmargin at screen .03\n" +

@@ -33,7 +33,7 @@ struct closest_approach {
 inline std::optional<closest_approach> closest(const problem& p, const plan_type& plan) {
   std::optional<closest_approach> result;
   for (std::size_t k = 0; k < plan.joints.size() && p.has_margins(); ++k) {
-    const auto here = duet::clearance(p.arm, plan.joints[k], p.around);
+    const auto here = duet::clearance(p.arm, plan.joints[k], p.scene);
     const double before = result ? result->clearance.distance : 0;
     if (!result || here.distance < before - .01 * std::abs(before)) {
       result = {k, here};
@@ -46,7 +46,7 @@ inline std::optional<closest_approach> closest(const problem& p, const plan_type
 inline void add_arm(example::drawing& d, const problem& p, const Eigen::VectorXd& theta,
                     const std::string& colour, double shift = 0) {
   d.capsule(point::Zero(), duet::translation(p.arm.pose(theta, 1)), .03, "#9aa5b1", shift);
-  for (const duet::collision_body& each : p.around.bodies) {
+  for (const duet::collision_body& each : p.scene.bodies) {
     const auto body = duet::transformed(p.arm.pose(theta, each.link), each.shape);
     d.capsule(body.from, body.to, body.radius, colour, shift);
   }
@@ -112,8 +112,8 @@ inline example::drawing drawing_of(const problem& p, const plan_type& plan,
                                    const std::optional<closest_approach>& nearest) {
   example::drawing d(viewpoint(p, plan, nearest));
   constexpr double behind = -10;
-  for (const duet::obstacle& each : p.around.obstacles) {
-    add_obstacle(d, each, p.around.margin);
+  for (const duet::obstacle& each : p.scene.obstacles) {
+    add_obstacle(d, each, p.scene.margin);
   }
   add_arm(d, p, plan.joints.front(), "#dfe5ea", behind);
   add_arm(d, p, plan.joints.back(), "#b4c3d0", behind);

@@ -38,7 +38,7 @@ inline worst_case deviations_csv(const problem& p, const plan_type& plan, std::s
       const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
       const auto d = duet::pose_error_between(p.arm.pose(theta),
                                               duet::sclerp(plan.poses.front(), p.goal, tau));
-      const double apart = duet::clearance(p.arm, theta, p.around).distance;
+      const double apart = duet::clearance(p.arm, theta, p.scene).distance;
       worst.deviation.translation = std::max(worst.deviation.translation, d.translation);
       worst.deviation.rotation = std::max(worst.deviation.rotation, d.rotation);
       worst.clearance = std::min(worst.clearance, apart);

@@ -20,24 +20,24 @@
 namespace path_following {
 namespace {
 
-void run(const options& given) {
-  example::require_folder(given.out);
-  const auto first = given.arm.pose(given.start);
+void run(const options& settings) {
+  example::require_folder(settings.out);
+  const auto first = settings.arm.pose(settings.start);
   const auto helix = [&](double u) {
     const double angle = 2 * duet::constant::pi<double>() * u;
-    const Eigen::Vector3d shift(given.radius * (std::cos(angle) - 1),
-                                given.radius * std::sin(angle), given.pitch * u);
+    const Eigen::Vector3d shift(settings.radius * (std::cos(angle) - 1),
+                                settings.radius * std::sin(angle), settings.pitch * u);
     return duet::pose(duet::quaternion<double>(1), shift) * first;
   };
-  const auto plan = duet::follow_path(given.arm, given.start, helix, 0, given.turns);
+  const auto plan = duet::follow_path(settings.arm, settings.start, helix, 0, settings.turns);
 
-  std::filesystem::create_directories(given.out);
-  duet::write_file(given.out + "/path.csv", path_csv(plan));
-  const example::drawing drawing = drawing_of(given.arm, plan, helix, given.turns);
-  duet::write_file(given.out + "/path_shapes.csv", drawing.csv());
-  const bool drawn = example::draw(given.out, "path", 480, picture_script(drawing, plan));
+  std::filesystem::create_directories(settings.out);
+  duet::write_file(settings.out + "/path.csv", path_csv(plan));
+  const example::drawing drawing = drawing_of(settings.arm, plan, helix, settings.turns);
+  duet::write_file(settings.out + "/path_shapes.csv", drawing.csv());
+  const bool drawn = example::draw(settings.out, "path", 480, picture_script(drawing, plan));
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
-            << duet::printable(given.out) << "\n";
+            << duet::printable(settings.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
@@ -52,7 +52,7 @@ void run(const options& given) {
               largest.rotation, plan.smallest_limit_margin, plan.smallest_singular_value);
   if (plan.reason != duet::stop_reason::reached) {
     std::cout << "The arm cannot draw all of it: it stops after " << plan.tau.back() << " of "
-              << given.turns << " turns\n";
+              << settings.turns << " turns\n";
   }
 }
 
@@ -61,8 +61,8 @@ void run(const options& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("path_following", [&] {
-    if (const auto given = path_following::parse_options(argc, argv)) {
-      path_following::run(*given);
+    if (const auto settings = path_following::parse_options(argc, argv)) {
+      path_following::run(*settings);
     }
     return 0;
   });

@@ -33,9 +33,9 @@ using namespace duet;
 
 /// What is given, or the middle of the limits, and 0 where there are none.
 [[nodiscard]] Eigen::VectorXd coordinates(const kinematic_tree& robot,
-                                          const example::command_line& given) {
+                                          const example::command_line& arguments) {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(robot.size());
-  const auto text = given.text("joints");
+  const auto text = arguments.text("joints");
   if (text) {
     const std::vector<double> numbers = example::parse_numbers("--joints", *text);
     if (numbers.size() != std::size_t(robot.size())) {
@@ -43,7 +43,7 @@ using namespace duet;
                                " numbers expected, got " + std::to_string(numbers.size()));
     }
     q = Eigen::Map<const Eigen::VectorXd>(numbers.data(), robot.size());
-  } else if (!given.has("urdf")) { // a posture for the picture
+  } else if (!arguments.has("urdf")) { // a posture for the picture
     for (const auto& [name, x] : robot_tree_example::posture) {
       q[robot.coordinate(name)] = x;
     }
@@ -89,12 +89,12 @@ using namespace duet;
   return text;
 }
 
-void run(const example::command_line& given) {
-  const std::string folder = given.text("out").value_or("robot_tree_out");
+void run(const example::command_line& arguments) {
+  const std::string folder = arguments.text("out").value_or("robot_tree_out");
   example::require_folder(folder);
   const kinematic_tree robot =
-      read_urdf_tree(given.text("urdf").value_or(DUET_EXAMPLE_FOLDER "/porter.urdf"));
-  const Eigen::VectorXd q = coordinates(robot, given);
+      read_urdf_tree(arguments.text("urdf").value_or(DUET_EXAMPLE_FOLDER "/porter.urdf"));
+  const Eigen::VectorXd q = coordinates(robot, arguments);
   bool has_mass = false;
   for (const tree_link& link : robot.links()) {
     has_mass = has_mass || (link.inertia && link.inertia->mass > 0);

@@ -19,25 +19,25 @@
 namespace screw_motion {
 namespace {
 
-void run(const options& given) {
-  example::require_folder(given.out);
-  const auto [from, to] = poses(given);
+void run(const options& settings) {
+  example::require_folder(settings.out);
+  const auto [from, to] = poses(settings);
   const duet::slerp_arc round =
-      given.is_long_way ? duet::slerp_arc::longest : duet::slerp_arc::shortest;
-  const screw between = screw_between(from, to, given.is_long_way);
+      settings.is_longer_arc ? duet::slerp_arc::longest : duet::slerp_arc::shortest;
+  const screw between = screw_between(from, to, settings.is_longer_arc);
   std::cout << in_words(between);
   if (differs_by_half_turn(from, to)) {
     std::cout << "The poses are half a turn apart: the other way round is as short.\n";
   }
-  const std::vector<sample> path = samples(from, to, round, given.steps);
+  const std::vector<sample> path = samples(from, to, round, settings.steps);
   const double difference = largest_difference(path, between);
 
-  std::filesystem::create_directories(given.out);
-  duet::write_file(given.out + "/path.csv", path_csv(path));
-  duet::write_file(given.out + "/frames.csv", frames_csv(path, between));
-  const bool drawn = example::draw(given.out, "path", 520, path_script(between, path));
+  std::filesystem::create_directories(settings.out);
+  duet::write_file(settings.out + "/path.csv", path_csv(path));
+  duet::write_file(settings.out + "/frames.csv", frames_csv(path, between));
+  const bool drawn = example::draw(settings.out, "path", 520, path_script(between, path));
   std::cout << "Table" << (drawn ? " and picture (SVG, PNG)" : "") << " are in "
-            << duet::printable(given.out) << "\n";
+            << duet::printable(settings.out) << "\n";
   if (!drawn) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
@@ -50,8 +50,8 @@ void run(const options& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("screw_motion", [&] {
-    if (const auto given = screw_motion::parse_options(argc, argv)) {
-      screw_motion::run(*given);
+    if (const auto settings = screw_motion::parse_options(argc, argv)) {
+      screw_motion::run(*settings);
     }
     return 0;
   });

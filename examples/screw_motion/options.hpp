@@ -25,65 +25,69 @@ using pose_type = duet::dual_quaternion<double>;
 struct options {
   std::optional<std::string> from, to, file;
   int steps = 60;
-  bool is_long_way = false;
+  bool is_longer_arc = false;
   std::string out = "screw_motion_out";
 };
 
 /// The two poses of the command line, of the file, or of an example.
-inline std::pair<pose_type, pose_type> poses(const options& given) {
-  if (given.file) {
-    const auto rows = example::read_poses(*given.file);
+inline std::pair<pose_type, pose_type> poses(const options& settings) {
+  if (settings.file) {
+    const auto rows = example::read_poses(*settings.file);
     if (rows.size() != 2) {
-      throw duet::file_error(*given.file,
+      throw duet::file_error(*settings.file,
                              "two poses are needed, not " + std::to_string(rows.size()));
     }
     return {rows[0].pose, rows[1].pose};
   }
-  if (given.from && given.to) {
-    return {example::parse_pose("--from", *given.from), example::parse_pose("--to", *given.to)};
+  if (settings.from && settings.to) {
+    return {example::parse_pose("--from", *settings.from),
+            example::parse_pose("--to", *settings.to)};
   }
-  const auto turned = [](double x, double y, double z, double angle) {
+  const auto rotation = [](double x, double y, double z, double angle) {
     return duet::from_axis_angle(duet::vector3<double>(x, y, z), angle);
   };
-  return {duet::pose(turned(1, 0, 0, 0.3), duet::vector3<double>(0.6, 0, 0)),
-          duet::pose(turned(0.2, -0.1, 1, 2.6), duet::vector3<double>(-0.5, 0.3, 0.9))};
+  return {duet::pose(rotation(1, 0, 0, 0.3), duet::vector3<double>(0.6, 0, 0)),
+          duet::pose(rotation(0.2, -0.1, 1, 2.6), duet::vector3<double>(-0.5, 0.3, 0.9))};
 }
 
-/// Nothing where only help was asked for.
+/// Returns nothing if only help was requested.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
   example::option_list description(
       "The screw motion from one pose to another, with its axis, angle and pitch in words, poses "
-      "and\nvelocities along it (path.csv) and a picture of frames on the way.\n"
+      "and\nvelocities along it (path.csv) and a picture of frames along it.\n"
       "A pose is x,y,z,qw,qx,qy,qz (scalar first), or a matrix [R t; 0 1] row by row, 12 or 16 "
       "numbers.\nAngles in radians, axes fixed. Options");
   description.flag("help", "print this and stop")
-      .value<std::string>("from", "POSE", "the first pose, comma-separated")
-      .value<std::string>("to", "POSE", "the second one")
-      .value<std::string>("file", "FILE", "both poses instead, each on a line of a CSV file")
-      .value<int>("steps", "N", "rows of the table less one (default: 60)")
-      .flag("long-way", "turn the long way round")
+      .value<std::string>("from", "POSE", "first pose, comma-separated")
+      .value<std::string>("to", "POSE", "second pose")
+      .value<std::string>("file", "FILE",
+                          "CSV file with both poses, a line each, instead of --from and --to")
+      .value<int>("steps", "N", "intervals of the table, which has N + 1 rows (default: 60)")
+      .flag("longer-arc", "rotate along the longer arc")
       .value<std::string>("out", "DIR",
                           "folder for the table and the picture (default: screw_motion_out)");
-  const auto given = example::command_line::parse(argc, argv, description);
-  if (!given) {
+  const auto arguments = example::command_line::parse(argc, argv, description);
+  if (!arguments) {
     return std::nullopt;
   }
   options result;
-  result.from = given->text("from");
-  result.to = given->text("to");
-  result.file = given->text("file");
-  result.out = given->text("out").value_or(result.out);
-  result.is_long_way = given->has("long-way");
-  result.steps = given->get<int>("steps").value_or(result.steps);
+  result.from = arguments->text("from");
+  result.to = arguments->text("to");
+  result.file = arguments->text("file");
+  result.out = arguments->text("out").value_or(result.out);
+  result.is_longer_arc = arguments->has("longer-arc");
+  result.steps = arguments->get<int>("steps").value_or(result.steps);
   if (result.from.has_value() != result.to.has_value()) {
-    throw std::runtime_error("--from and --to belong together");
+    throw std::runtime_error(
+        std::string(result.from ? "--from requires --to" : "--to requires --from"));
   }
   if (result.file && result.from) {
     throw std::runtime_error("--file and --from exclude each other");
   }
   if (result.steps < 1) {
-    throw std::runtime_error("--steps: 1 or more");
+    throw std::runtime_error("--steps is " + std::to_string(result.steps) +
+                             " (expected at least 1)");
   }
   return result;
 }

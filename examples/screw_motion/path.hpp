@@ -29,9 +29,9 @@ using duet::vector6;
 using screw = duet::screw_motion<double>;
 
 /// B A*, the displacement that takes A to B in fixed axes.
-inline screw screw_between(const pose_type& from, const pose_type& to, bool is_long_way) {
+inline screw screw_between(const pose_type& from, const pose_type& to, bool is_longer_arc) {
   screw s = duet::screw_parameters(to * conj(from));
-  if (is_long_way && s.angle > 0) {
+  if (is_longer_arc && s.angle > 0) {
     s.angle -= 2 * duet::constant::pi<double>();
   }
   return s;

@@ -34,7 +34,7 @@ inline void add_arm_options(example::option_list& description) {
 }
 
 /// The arm that these options name.
-[[nodiscard]] inline arm_chain arm_of(const command_line& given) {
+[[nodiscard]] inline arm_chain arm_of(const command_line& arguments) {
   namespace robots = duet::robots;
   const auto joints_of = [](const arm_chain& arm) {
     if (arm.size() == 0) {
@@ -42,11 +42,11 @@ inline void add_arm_options(example::option_list& description) {
     }
     return arm;
   };
-  if (const auto file = given.text("urdf")) {
-    return joints_of(
-        duet::read_urdf(*file, given.text("base").value_or(""), given.text("tip").value_or("")));
+  if (const auto file = arguments.text("urdf")) {
+    return joints_of(duet::read_urdf(*file, arguments.text("base").value_or(""),
+                                     arguments.text("tip").value_or("")));
   }
-  const std::string name = given.text("robot").value_or("panda");
+  const std::string name = arguments.text("robot").value_or("panda");
   if (name == "panda") {
     return robots::panda().table();
   }
@@ -65,10 +65,10 @@ inline void add_arm_options(example::option_list& description) {
 
 /// The coordinates that an option of this name gives, else the middle of the limits, or 0 where
 /// there are none.
-[[nodiscard]] inline Eigen::VectorXd coordinates(const arm_chain& arm, const command_line& given,
-                                                 const std::string& name) {
+[[nodiscard]] inline Eigen::VectorXd
+coordinates(const arm_chain& arm, const command_line& arguments, const std::string& name) {
   Eigen::VectorXd theta(arm.size());
-  const auto text = given.text(name);
+  const auto text = arguments.text(name);
   if (!text) {
     for (int i = 0; i < arm.size(); ++i) {
       const double middle = (arm.limits(i).lower + arm.limits(i).upper) / 2;

@@ -26,7 +26,7 @@ void require_no_placeholders(int argc, char** argv) {
     for (std::size_t at = 0; (at = text.find('%', at)) != std::string::npos;) {
       const std::size_t end = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz_", at + 1);
       if (end != std::string::npos && end > at + 1 && text[end] == '%') {
-        throw std::runtime_error("'" + text + "': no argument may hold " +
+        throw std::runtime_error("'" + text + "': an argument must not contain " +
                                  text.substr(at, end + 1 - at));
       }
       ++at;
@@ -55,7 +55,7 @@ option_list& option_list::flag(const char* name, const char* help) {
 }
 
 struct command_line::data {
-  po::variables_map given;
+  po::variables_map values;
 };
 
 std::optional<command_line> command_line::parse(int argc, char** argv, const option_list& known,
@@ -66,16 +66,16 @@ std::optional<command_line> command_line::parse(int argc, char** argv, const opt
   if (!positional.empty()) {
     bare.add(positional.c_str(), 1);
   }
-  const auto given = std::make_shared<data>();
+  const auto parsed = std::make_shared<data>();
   po::store(
       po::command_line_parser(argc, argv)
           .options(description)
           .style(po::command_line_style::default_style & ~po::command_line_style::allow_guessing)
           .positional(bare)
           .run(),
-      given->given);
+      parsed->values);
   command_line result;
-  result.data_ = given;
+  result.data_ = parsed;
   if (result.has("help")) {
     std::cout << description;
     return std::nullopt;
@@ -83,11 +83,11 @@ std::optional<command_line> command_line::parse(int argc, char** argv, const opt
   return result;
 }
 
-bool command_line::has(const std::string& name) const { return data_->given.count(name) != 0; }
+bool command_line::has(const std::string& name) const { return data_->values.count(name) != 0; }
 
 template <class T>
 std::optional<T> command_line::get(const std::string& name) const {
-  return has(name) ? std::optional<T>(data_->given[name].as<T>()) : std::nullopt;
+  return has(name) ? std::optional<T>(data_->values[name].as<T>()) : std::nullopt;
 }
 
 std::optional<std::string> command_line::text(const std::string& name) const {

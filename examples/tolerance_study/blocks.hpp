@@ -29,9 +29,10 @@ inline constexpr double degrees = 180 / std::numbers::pi;
 /// Blocks do not depend on who computes them, so the study does not either.
 class block_store {
 public:
-  block_store(const options& given, const hardpoints& points)
-      : folder_(given.out + "/samples"), samples_(std::size_t(given.samples)), seed_(given.seed),
-        tolerance_(given.tolerance), settings_(settings_of(given, points)) {}
+  block_store(const options& settings, const hardpoints& points)
+      : folder_(settings.out + "/samples"), samples_(std::size_t(settings.samples)),
+        seed_(settings.seed), tolerance_(settings.deviation),
+        settings_(settings_of(settings, points)) {}
 
   [[nodiscard]] std::size_t count() const { return (samples_ + size - 1) / size; }
   [[nodiscard]] const std::string& folder() const { return folder_; }
@@ -115,21 +116,21 @@ private:
     } catch (const duet::loop_closure_failure&) {
       throw std::runtime_error("the rods of sample " + std::to_string(sample) +
                                " cannot close at u = " + duet::to_text(mechanism.height(row)) +
-                               " m: the tolerance is too large");
+                               " m: the standard deviation is too large");
     }
   }
 
-  [[nodiscard]] static std::vector<std::string> settings_of(const options& given,
+  [[nodiscard]] static std::vector<std::string> settings_of(const options& settings,
                                                             const hardpoints& points) {
     const auto vector = [](const vector3& x) {
       return " " + duet::to_text(x[0]) + " " + duet::to_text(x[1]) + " " + duet::to_text(x[2]);
     };
-    std::vector<std::string> result{std::to_string(given.samples) + " samples",
-                                    "tolerance " + duet::to_text(given.tolerance),
-                                    "seed " + std::to_string(given.seed),
-                                    "travel " + duet::to_text(given.lowest) + " to " +
-                                        duet::to_text(given.highest),
-                                    std::to_string(given.rows) + " rows",
+    std::vector<std::string> result{std::to_string(settings.samples) + " samples",
+                                    "standard deviation " + duet::to_text(settings.deviation),
+                                    "seed " + std::to_string(settings.seed),
+                                    "travel " + duet::to_text(settings.lowest) + " to " +
+                                        duet::to_text(settings.highest),
+                                    std::to_string(settings.heights) + " heights",
                                     "wheel centre" + vector(points.wheel_centre)};
     for (const rod& r : points.rods) {
       result.push_back("rod" + vector(r.chassis) + vector(r.carrier));
@@ -145,13 +146,13 @@ private:
     for (const std::string& setting : settings_) {
       const std::size_t end = line.find("; ", at);
       if (end == std::string::npos) {
-        throw duet::file_error(file, 1, "does not say how it was made");
+        throw duet::file_error(file, 1, "has no first line with the settings of the study");
       }
       const std::string found = line.substr(at, end - at);
       if (found != setting) {
         throw duet::file_error(file, 1,
                                "made with " + found + ", not " + setting +
-                                   "; remove it or choose another folder");
+                                   " (remove the file or choose another folder)");
       }
       at = end + 2;
     }

@@ -33,10 +33,11 @@
 namespace tolerance_study {
 namespace {
 
-std::vector<double> heights(const options& given) {
+std::vector<double> heights(const options& settings) {
   std::vector<double> result;
-  for (int i = 0; i < given.rows; ++i) {
-    result.push_back(std::lerp(given.lowest, given.highest, double(i) / (given.rows - 1)));
+  for (int i = 0; i < settings.heights; ++i) {
+    result.push_back(
+        std::lerp(settings.lowest, settings.highest, double(i) / (settings.heights - 1)));
   }
   return result;
 }
@@ -59,43 +60,44 @@ void compute_share(const block_store& blocks, const toleranced_carrier& mechanis
       1);
 }
 
-void summarise(const options& given, const hardpoints& points, const toleranced_carrier& mechanism,
-               const block_store& blocks) {
+void summarise(const options& settings, const hardpoints& points,
+               const toleranced_carrier& mechanism, const block_store& blocks) {
   const auto missing = blocks.missing();
   if (!missing.empty()) {
     throw std::runtime_error("of blocks 0-" + std::to_string(blocks.count() - 1) + " in " +
-                             blocks.folder() + " are missing: " + runs(missing) +
-                             "; run again, without --summary, to complete them");
+                             blocks.folder() + ", these are missing: " + runs(missing) +
+                             " (run again without --summary to compute them)");
   }
-  const results r = results_of(mechanism, given.tolerance, blocks.columns(mechanism.rows()));
+  const results r = results_of(mechanism, settings.deviation, blocks.columns(mechanism.rows()));
   std::printf("%d samples, every coordinate of the hardpoints off by %g mm (standard deviation), "
               "rods as designed\n\n",
-              given.samples, given.tolerance * 1000);
+              settings.samples, settings.deviation * 1000);
   print(r, points);
-  duet::write_file(given.out + "/summary.csv", summary_csv(r));
-  duet::write_file(given.out + "/sensitivities.csv", sensitivities_csv(r, points));
-  const bool drawn = example::draw(given.out, "tolerance_study", 600, picture_script(r, points));
+  duet::write_file(settings.out + "/summary.csv", summary_csv(r));
+  duet::write_file(settings.out + "/sensitivities.csv", sensitivities_csv(r, points));
+  const bool drawn = example::draw(settings.out, "tolerance_study", 600, picture_script(r, points));
   std::printf("Tables%s are in %s\n", drawn ? " and a picture (SVG, PNG)" : "",
-              duet::printable(given.out).c_str());
+              duet::printable(settings.out).c_str());
   if (!drawn) {
     std::printf("No picture: gnuplot is not installed\n");
   }
   // A standard deviation of N normal samples is itself uncertain by 1/sqrt(2 N).
   std::printf("tolerance study: samples=%d blocks=%zu sampled_against_linear=%.2g "
               "standard_error=%.2g\n",
-              given.samples, blocks.count(), largest_difference(r),
-              1 / std::sqrt(2.0 * given.samples));
+              settings.samples, blocks.count(), largest_difference(r),
+              1 / std::sqrt(2.0 * settings.samples));
 }
 
-int run(const options& given, const processes& all) {
-  const hardpoints points = given.hardpoints ? wheel_carrier::read_hardpoints(*given.hardpoints)
-                                             : wheel_carrier::example_hardpoints();
-  const toleranced_carrier mechanism(points, heights(given));
-  const block_store blocks(given, points);
+int run(const options& settings, const processes& all) {
+  const hardpoints points = settings.hardpoints
+                                ? wheel_carrier::read_hardpoints(*settings.hardpoints)
+                                : wheel_carrier::example_hardpoints();
+  const toleranced_carrier mechanism(points, heights(settings));
+  const block_store blocks(settings, points);
   const auto missing = all.from_first([&] {
-    example::require_folder(given.out);
+    example::require_folder(settings.out);
     const auto result = blocks.missing();
-    if (!given.summary_only) {
+    if (!settings.summary_only) {
       std::filesystem::create_directories(blocks.folder());
       std::cout << result.size() << " of " << blocks.count() << " blocks to compute\n"
                 << std::flush;
@@ -106,9 +108,9 @@ int run(const options& given, const processes& all) {
     return 0; // the first process says why, and fails
   }
   std::exception_ptr error;
-  if (!given.summary_only) {
+  if (!settings.summary_only) {
     try {
-      const unsigned threads = given.threads.value_or(all.size() > 1 ? 1 : 0);
+      const unsigned threads = settings.threads.value_or(all.size() > 1 ? 1 : 0);
       compute_share(blocks, mechanism, *missing, all, threads);
     } catch (...) {
       error = std::current_exception();
@@ -119,7 +121,7 @@ int run(const options& given, const processes& all) {
     std::rethrow_exception(error);
   }
   if (all.rank() == 0) {
-    summarise(given, points, mechanism, blocks);
+    summarise(settings, points, mechanism, blocks);
   }
   return 0;
 }
@@ -131,16 +133,16 @@ int main(int argc, char** argv) {
   const auto guarded = [](const auto& body) {
     return example::run_program("tolerance_study", body);
   };
-  std::optional<tolerance_study::options> given;
+  std::optional<tolerance_study::options> settings;
   const int status = guarded([&] {
-    given = tolerance_study::parse_options(argc, argv);
+    settings = tolerance_study::parse_options(argc, argv);
     return 0;
   });
-  if (!given) {
+  if (!settings) {
     return status;
   }
   const tolerance_study::processes all(argc, argv);
-  const int result = guarded([&] { return tolerance_study::run(*given, all); });
+  const int result = guarded([&] { return tolerance_study::run(*settings, all); });
   all.wait(); // mpirun ends all once one has failed, also those that have not yet said why
   return result;
 }

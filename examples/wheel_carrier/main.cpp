@@ -204,19 +204,19 @@ std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
   return csv;
 }
 
-void run(const options& given) {
-  example::require_folder(given.out);
-  const bool has_reference = !given.table || given.hardpoints;
-  const carrier mechanism(given.hardpoints ? read_hardpoints(*given.hardpoints)
-                                           : example_hardpoints());
+void run(const options& settings) {
+  example::require_folder(settings.out);
+  const bool has_reference = !settings.table || settings.hardpoints;
+  const carrier mechanism(settings.hardpoints ? read_hardpoints(*settings.hardpoints)
+                                              : example_hardpoints());
   std::optional<arc_length> arcs;
   table t;
-  if (given.table) {
-    t = read_table(*given.table);
+  if (settings.table) {
+    t = read_table(*settings.table);
   } else {
     solve(mechanism, {lowest, 0, highest}); // says where the rods cannot close
     arcs.emplace(mechanism);
-    const int rows = given.rows.value_or(int(std::lround(arcs->total() / paper_angle)) + 1);
+    const int rows = settings.rows.value_or(int(std::lround(arcs->total() / paper_angle)) + 1);
     t = equal_arc_table(mechanism, *arcs, rows);
   }
   const auto samples = uniform_samples(t.u.front(), t.u.back());
@@ -225,7 +225,7 @@ void run(const options& given) {
     states = solve(mechanism, samples);
   }
 
-  std::optional<end_rates> rates = given.rates;
+  std::optional<end_rates> rates = settings.rates;
   if (!rates && has_reference) {
     rates = rates_at(states.front(), states.back());
   }
@@ -234,8 +234,8 @@ void run(const options& given) {
     known = ends_of(states.front(), states.back());
   }
   known.velocity = rates;
-  const std::string ends = given.ends.value_or(rates ? "clamped" : "natural");
-  const curve chosen = make_curve(given.spline, t, ends, known);
+  const std::string ends = settings.ends.value_or(rates ? "clamped" : "natural");
+  const curve chosen = make_curve(settings.spline, t, ends, known);
   // The formulas of the paper are those of the cumulative spline.
   const std::string paper_ends = ends == "both" ? "clamped" : ends;
   const spline paper = cumulative_curve(t, paper_ends, known);
@@ -266,20 +266,20 @@ void run(const options& given) {
     files.emplace_back("spline_convergence.csv", spline_convergence(mechanism, *arcs, states));
   }
 
-  std::filesystem::create_directories(given.out);
+  std::filesystem::create_directories(settings.out);
   for (const auto& [name, content] : files) {
-    duet::write_file(given.out + "/" + name, content);
+    duet::write_file(settings.out + "/" + name, content);
   }
   bool drawn = true;
   if (has_reference) {
-    drawn =
-        example::draw(given.out, "errors", 620, errors_script(curves, heights, largest, others)) &&
-        example::draw(given.out, "path", 380, path_script(states)) &&
-        (!arcs || splines.size() <= std::size(all_curves) ||
-         example::draw(given.out, "splines", 700, splines_script(splines, heights.size())));
+    drawn = example::draw(settings.out, "errors", 620,
+                          errors_script(curves, heights, largest, others)) &&
+            example::draw(settings.out, "path", 380, path_script(states)) &&
+            (!arcs || splines.size() <= std::size(all_curves) ||
+             example::draw(settings.out, "splines", 700, splines_script(splines, heights.size())));
   }
   std::printf("\nTables%s are in %s\n", has_reference && drawn ? " and pictures (SVG, PNG)" : "",
-              duet::printable(given.out).c_str());
+              duet::printable(settings.out).c_str());
   if (!drawn) {
     std::printf("No pictures: gnuplot is not installed\n");
   }
@@ -300,8 +300,8 @@ void run(const options& given) {
 
 int main(int argc, char** argv) {
   return example::run_program("wheel_carrier", [&] {
-    if (const auto given = wheel_carrier::parse_options(argc, argv)) {
-      wheel_carrier::run(*given);
+    if (const auto settings = wheel_carrier::parse_options(argc, argv)) {
+      wheel_carrier::run(*settings);
     }
     return 0;
   });

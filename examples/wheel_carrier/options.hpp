@@ -42,19 +42,20 @@ inline end_rates parse_end_rates(const std::string& text) {
   for (; std::getline(cells, cell, ','); ++count) {
     const auto number = duet::parse_number(cell);
     if (!number || !std::isfinite(*number)) {
-      throw std::runtime_error("--end-rates: '" + cell + "' is not a finite number");
+      throw std::runtime_error("--end-velocities: '" + cell + "' is not a finite number");
     }
     if (count < 6) {
       x[count] = *number;
     }
   }
   if (count != 6) {
-    throw std::runtime_error("--end-rates: six numbers expected, got " + std::to_string(count));
+    throw std::runtime_error("--end-velocities: six numbers expected, got " +
+                             std::to_string(count));
   }
   return {{x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
 }
 
-/// Nothing where only help was asked for.
+/// Returns nothing if only help was requested.
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
   example::option_list description(
@@ -71,60 +72,61 @@ inline std::optional<options> parse_options(int argc, char** argv) {
       .value<std::string>("table", "FILE",
                           "a look-up table of your own: a CSV file under the header "
                           "`u,qw,qx,qy,qz`, u increasing. Compared with the "
-                          "carrier only where --hardpoints is given too")
+                          "carrier only where --hardpoints is given, too")
       .value<int>(
           "rows", "N",
-          "rows of the table made from the carrier, at equal arcs (default: 0.003 rad apart)")
+          "rows of the table computed from the carrier, at equal arcs (default: 0.003 rad apart)")
       .value<std::string>(
           "spline", "cumulative|rotation-vector|quintic",
-          "the curve: the paper's, or one of piecewise polynomial rotation vectors (default: "
+          "the curve: that of the paper, or piecewise polynomial rotation vectors (default: "
           "cumulative)")
-      .value<std::string>("ends", "natural|clamped|acceleration|not-a-knot|both",
-                          "end conditions (default: clamped where end rates are known, else "
-                          "natural); both velocity "
-                          "and acceleration are for the quintic")
+      .value<std::string>("end-conditions", "natural|clamped|acceleration|not-a-knot|both",
+                          "end conditions (default: clamped if end velocities are known, else "
+                          "natural); `both`, velocity and acceleration, requires the quintic")
       .value<std::string>(
-          "end-rates", "X,Y,Z,X,Y,Z",
+          "end-velocities", "X,Y,Z,X,Y,Z",
           "angular velocity per unit of u at the first and the last row (default: the carrier's)")
       .value<std::string>("out", "DIR",
                           "folder for tables and pictures (default: wheel_carrier_out)");
-  const auto given = example::command_line::parse(argc, argv, description);
-  if (!given) {
+  const auto arguments = example::command_line::parse(argc, argv, description);
+  if (!arguments) {
     return std::nullopt;
   }
   options result;
-  result.table = given->text("table");
-  result.hardpoints = given->text("hardpoints");
-  result.ends = given->text("ends");
-  result.out = given->text("out").value_or(result.out);
-  result.rows = given->get<int>("rows");
-  if (const auto rates = given->text("end-rates")) {
+  result.table = arguments->text("table");
+  result.hardpoints = arguments->text("hardpoints");
+  result.ends = arguments->text("end-conditions");
+  result.out = arguments->text("out").value_or(result.out);
+  result.rows = arguments->get<int>("rows");
+  if (const auto rates = arguments->text("end-velocities")) {
     result.rates = parse_end_rates(*rates);
   }
-  result.spline = given->text("spline").value_or(result.spline);
+  result.spline = arguments->text("spline").value_or(result.spline);
   const auto is_one_of = [](const std::string& name, std::initializer_list<const char*> names) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
   if (result.ends &&
       !is_one_of(*result.ends, {"natural", "clamped", "acceleration", "not-a-knot", "both"})) {
-    throw std::runtime_error("--ends: '" + *result.ends +
-                             "' is neither natural nor clamped, acceleration, not-a-knot, both");
+    throw std::runtime_error("--end-conditions: '" + *result.ends +
+                             "' (expected natural, clamped, acceleration, not-a-knot or both)");
   }
   if (!is_one_of(result.spline, {"cumulative", "rotation-vector", "quintic"})) {
     throw std::runtime_error("--spline: '" + result.spline +
-                             "' is neither cumulative nor rotation-vector, quintic");
+                             "' (expected cumulative, rotation-vector or quintic)");
   }
   if (result.ends == "both" && result.spline != "quintic") {
-    throw std::runtime_error("--ends both is for --spline quintic");
+    throw std::runtime_error("--end-conditions both requires --spline quintic");
   }
   if (result.rows && *result.rows < 3) {
-    throw std::runtime_error("--rows: 3 or more");
+    throw std::runtime_error("--rows is " + std::to_string(*result.rows) +
+                             " (expected at least 3)");
   }
   if (result.rows && result.table) {
     throw std::runtime_error("--rows and --table exclude each other");
   }
   if (result.rates && result.ends && *result.ends != "clamped" && *result.ends != "both") {
-    throw std::runtime_error("--end-rates and --ends " + *result.ends + " exclude each other");
+    throw std::runtime_error("--end-velocities and --end-conditions " + *result.ends +
+                             " exclude each other");
   }
   return result;
 }

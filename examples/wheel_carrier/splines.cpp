@@ -22,9 +22,9 @@ template <class Spline>
 Spline interpolated(const table& t, const std::string& ends, const known_ends& known) {
   const auto need = [&](const std::optional<end_rates>& rates) {
     if (!rates) {
-      throw std::runtime_error("--ends " + ends +
-                               ": a bare table has no end rates; give --end-rates (velocities) or "
-                               "--hardpoints");
+      throw std::runtime_error("--end-conditions " + ends +
+                               ": a table alone has no rates at its ends (add --end-velocities or "
+                               "--hardpoints)");
     }
     return *rates;
   };
@@ -48,7 +48,7 @@ Spline interpolated(const table& t, const std::string& ends, const known_ends& k
         t.u, t.q,
         duet::fully_clamped{duet::clamped{v.start, v.end}, duet::end_acceleration{a.start, a.end}});
   } else {
-    throw std::runtime_error("--ends both is for --spline quintic");
+    throw std::runtime_error("--end-conditions both requires --spline quintic");
   }
 }
 

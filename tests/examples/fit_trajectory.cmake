@@ -23,7 +23,7 @@ foreach(i RANGE 39)
 endforeach()
 
 run(0 "rows=1201 left_out=0 controls=123 outliers=13 median_residual=0.0033")
-run(0 "rows-per-knot" --help)
+run(0 "samples-per-knot" --help)
 run_rows(0 "rows=40 left_out=0 controls=6 outliers=0" "${rows}")
 foreach(file IN ITEMS trajectory rows)
   if(NOT EXISTS ${folder}/out/${file}.csv)
@@ -102,8 +102,8 @@ endforeach()
 file(WRITE ${folder}/times.txt "${times}")
 run_rows(0 "40 rows over 3.9 s.* rows=40 left_out=0" "${matrices}" --times times.txt)
 expect_rotation("${matrices}" "rows.txt: 12 columns: read as in KITTI files, the matrix .R t. row by row")
-run_rows(1 "rows.txt:1: the rows have times, and so does times.txt" "0 1 2 3 0 0 0 1\n" --times times.txt)
-run(1 "--times: a FILE with the poses expected" --times times.txt)
+run_rows(1 "rows.txt:1: has times of its own besides those of times.txt" "0 1 2 3 0 0 0 1\n" --times times.txt)
+run(1 "--times requires FILE" --times times.txt)
 # Its own output is as good as any.
 run_rows(0 "" "${rows}")
 file(COPY_FILE ${folder}/out/trajectory.csv ${folder}/again.csv)
@@ -121,13 +121,13 @@ run_rows(1 "rows.txt: holds no usable rows" "# nothing\n")
 run_rows(1 "rows.txt: 14 usable rows are too few for one knot in 20" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1
 2 1 2 3 0 0 0 1\n3 1 2 3 0 0 0 1\n4 1 2 3 0 0 0 1\n5 1 2 3 0 0 0 1\n6 1 2 3 0 0 0 1\n7 1 2 3 0 0 0 1
 8 1 2 3 0 0 0 1\n9 1 2 3 0 0 0 1\n10 1 2 3 0 0 0 1\n11 1 2 3 0 0 0 1\n12 1 2 3 0 0 0 1
-13 1 2 3 0 0 0 1\n" --rows-per-knot 20)
+13 1 2 3 0 0 0 1\n" --samples-per-knot 20)
 run_rows(1 "rows.txt:2: 8 columns expected, got 7" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0\n")
 run_rows(1 "rows.txt:1: 7 columns without a header before the first row .expected a header such as `u,x,y,z,qw,qx,qy,qz`" "1 1 2 3 0 0 0\n")
 run_rows(1 "rows.txt:1: tx is not a number: 'one'" "0 one 2 3 0 0 0 1\n")
-run(1 "--rate: a positive number expected" --rate 0)
-run(1 "--rows-per-knot: 1 or more" --rows-per-knot 0)
-run(1 "'%value%': no argument may hold %value%" --rate %value%) # once went on for ever
+run(1 "--rate is 0 .expected a positive number." --rate 0)
+run(1 "--samples-per-knot is 0 .expected at least 1." --samples-per-knot 0)
+run(1 "'%value%': an argument must not contain %value%" --rate %value%) # once went on for ever
 run(1 "unrecognised option '--bogus'" --bogus)
 
 if(data)

@@ -125,7 +125,7 @@ shell(screw_motion/screw_motion 0 "" "
   test $ended = 143
   test -z \"$(find killed -name '.duet-*' -o -name '*.svg')\"")
 shell(tolerance_study/tolerance_study 0 "" "
-  \"$tool\" --samples 1000000 --rows 2 --out blocks 2>/dev/null &
+  \"$tool\" --samples 1000000 --heights 2 --out blocks 2>/dev/null &
   until ls blocks/samples 2>/dev/null | grep -q csv$; do sleep 0.1; kill -0 $!; done
   kill -TERM $!
   ended=0

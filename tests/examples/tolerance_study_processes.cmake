@@ -19,7 +19,7 @@ set(ENV{OMPI_MCA_rmaps_base_oversubscribe} 1)
 
 file(REMOVE_RECURSE ${folder})
 file(MAKE_DIRECTORY ${folder})
-set(options --samples 1000 --rows 3)
+set(options --samples 1000 --heights 3)
 
 function(require_equal first second)
   file(READ ${folder}/${first} a)
@@ -87,7 +87,7 @@ if(EXISTS ${folder}/killed/summary.csv)
 endif()
 execute_process(COMMAND ${program} ${options} --out killed --summary WORKING_DIRECTORY ${folder}
   RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
-if(NOT result EQUAL 1 OR NOT error MATCHES "(^|\n)tolerance_study: of blocks 0-3 in killed/samples are missing: 1; run again")
+if(NOT result EQUAL 1 OR NOT error MATCHES "(^|\n)tolerance_study: of blocks 0-3 in killed/samples, these are missing: 1 .run again")
   message(FATAL_ERROR "status ${result}\n${output}${error}")
 endif()
 execute_process(COMMAND ${mpirun} -n 2 ${program} ${options} --out killed WORKING_DIRECTORY ${folder}

@@ -25,8 +25,8 @@ using duet_fuzz::require;
 
 void try_fit_trajectory(int argc, char** argv) {
   if (const auto options = fit_trajectory::parse_options(argc, argv)) {
-    require(options->rows_per_knot >= 1, "a row for each knot");
-    for (const double x : {options->length, options->outlier}) {
+    require(options->samples_per_knot >= 1, "a sample for each knot");
+    for (const double x : {options->characteristic_length, options->outlier_threshold}) {
       require(x >= 0 && std::isfinite(x), "positive numbers");
     }
   }
@@ -44,9 +44,9 @@ void try_screw_motion(int argc, char** argv) {
 void try_tolerance_study(int argc, char** argv) {
   if (const auto options = tolerance_study::parse_options(argc, argv)) {
     require(options->samples >= 2 && options->samples <= 10'000'000, "samples");
-    require(options->tolerance > 0 && options->tolerance <= .05, "tolerance");
+    require(options->deviation > 0 && options->deviation <= .05, "standard deviation");
     require(options->lowest < options->highest, "travel");
-    require(options->rows >= 2 && options->rows <= 1000, "rows");
+    require(options->heights >= 2 && options->heights <= 1000, "heights");
     require(options->threads.value_or(0) <= 1024, "threads");
   }
 }
@@ -69,20 +69,21 @@ void try_wheel_carrier(int argc, char** argv) {
 
 /// The first character is the program, each line an argument.
 std::vector<std::string> seeds() {
-  return {"f\nrows.txt\n--rows-per-knot\n5\n--rate\n200\n--outlier=0.1\n--out\nx",
-          "f\n--length\n1e3\n--help",
-          "s\n--from\n0,0,0,1,0,0,0\n--to=1,2,3,0.6,0,0,0.8\n--steps\n9\n--long-way",
+  return {"f\nrows.txt\n--samples-per-knot\n5\n--rate\n200\n--outlier-threshold=0.1\n--out\nx",
+          "f\n--characteristic-length\n1e3\n--help",
+          "s\n--from\n0,0,0,1,0,0,0\n--to=1,2,3,0.6,0,0,0.8\n--steps\n9\n--longer-arc",
           "s\n--from\n1,0,0,0,0,1,0,0,0,0,1,0\n--to\n0,-1,0,3,1,0,0,2,0,0,1,1,0,0,0,1",
           "s\n--file\nposes.csv",
-          "t\n--samples\n500\n--tolerance\n1e-3\n--travel=-0.1,0.05\n--rows\n4\n--seed\n7\n--"
+          "t\n--samples\n500\n--std-dev\n1e-3\n--travel=-0.1,0.05\n--heights\n4\n--seed\n7\n--"
           "threads\n2",
           "t\n--summary\n--hardpoints\nx.csv",
           "p\n--robot\nur5e\n--radius\n.1\n--pitch\n-.02\n--turns\n3",
           "p\n--joints\n0,-0.8,0,-2.4,0,1.6,0.8",
           "p\n--urdf\nnone.urdf\n--base\na\n--tip\nb\n--joints\n0",
-          "w\n--rows\n30\n--spline\nquintic\n--ends\nboth\n--end-rates\n0,0.1,0,1e-3,0,-0.2",
+          "w\n--rows\n30\n--spline\nquintic\n--end-conditions\nboth\n--end-velocities\n0,0.1,0,1e-"
+          "3,0,-0.2",
           "f\n--rate\n%value%", // once went on for ever
-          "w\n--table\nt.csv\n--ends=not-a-knot"};
+          "w\n--table\nt.csv\n--end-conditions=not-a-knot"};
 }
 
 void target(const std::string& input) {
