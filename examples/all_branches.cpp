@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// All ways in which a robot arm of six joints reaches a pose, as a table and drawn over each other:
-// of a UR5e, and of the arm with which Manseur and Doty showed that there can be sixteen.
+// All inverse kinematics solutions of a six-joint arm for a pose, as a table and drawn over each
+// other: of a UR5e, and of the arm with which Manseur and Doty showed that there can be sixteen.
 
 #include "support/command_line.hpp"
 #include "support/drawing.hpp"
@@ -41,12 +41,12 @@ using branches = all_inverse_kinematics_result<6>;
   return from_dh(rows);
 }
 
-void print(const std::string& name, const branches& found) {
-  std::printf("%s: %zu ways, %d complex solutions (%s%s)\n", name.c_str(), found.solutions.size(),
-              found.complex_solutions, to_text(found.method),
-              found.is_complete ? "" : ", not certain");
+void print(const std::string& name, const branches& result) {
+  std::printf("%s: %zu real solutions, %d complex solutions (%s%s)\n", name.c_str(),
+              result.solutions.size(), result.complex_solutions, to_text(result.method),
+              result.is_complete ? "" : ", not certified complete");
   std::printf("  joints, degrees                                        smallest singular value\n");
-  for (const auto& s : found.solutions) {
+  for (const auto& s : result.solutions) {
     for (const double x : s.joints) {
       std::printf(" %8.2f", 180 / std::numbers::pi * x);
     }
@@ -55,7 +55,7 @@ void print(const std::string& name, const branches& found) {
   }
 }
 
-/// The origins of the links, along the joints' axes to where the next link leaves.
+/// Origins of the link frames, from the base to the tip.
 [[nodiscard]] std::vector<example::point> bones(const arm_chain& arm,
                                                 const Eigen::Matrix<double, 6, 1>& theta) {
   std::vector<example::point> result{example::point::Zero()};
@@ -67,13 +67,13 @@ void print(const std::string& name, const branches& found) {
 }
 
 void draw(const std::string& folder, const std::string& name, const arm_chain& arm,
-          const dual_quaternion<double>& goal, const branches& found) {
+          const dual_quaternion<double>& goal, const branches& result) {
   constexpr std::array colours{"#0072b2", "#d55e00", "#00805d", "#a8497c",
                                "#b37700", "#6e7781", "#56b4e9", "#24292f"};
   example::drawing picture({3, -4, 2});
   double size = 0;
-  for (std::size_t k = 0; k < found.solutions.size(); ++k) {
-    const auto points = bones(arm, found.solutions[k].joints);
+  for (std::size_t k = 0; k < result.solutions.size(); ++k) {
+    const auto points = bones(arm, result.solutions[k].joints);
     for (const auto& p : points) {
       size = std::max(size, p.norm());
     }
@@ -82,9 +82,9 @@ void draw(const std::string& folder, const std::string& name, const arm_chain& a
     }
   }
   const Eigen::Matrix3d axes = rotation_matrix(rotation(goal));
-  const example::point at = translation(goal);
+  const example::point origin = translation(goal);
   for (int i = 0; i < 3; ++i) {
-    picture.arrow(at, at + .2 * size * axes.col(i), "#24292f", "lw 1.5");
+    picture.arrow(origin, origin + .2 * size * axes.col(i), "#24292f", "lw 1.5");
   }
   write_file(folder + "/" + name + ".csv", picture.csv());
   if (!example::draw(folder, name, 640, picture.script(name + ".csv"))) {
@@ -94,9 +94,9 @@ void draw(const std::string& folder, const std::string& name, const arm_chain& a
 
 void show(const std::string& folder, const std::string& file, const std::string& name,
           const arm_chain& arm, const dual_quaternion<double>& goal) {
-  const branches found = all_inverse_kinematics(arm, goal);
-  print(name, found);
-  draw(folder, file, arm, goal, found);
+  const branches result = all_inverse_kinematics(arm, goal);
+  print(name, result);
+  draw(folder, file, arm, goal, result);
 }
 
 } // namespace
@@ -104,9 +104,9 @@ void show(const std::string& folder, const std::string& file, const std::string&
 int main(int argc, char** argv) {
   return example::run_program("all_branches", [&] {
     example::option_list description(
-        "All ways in which two robot arms of six joints reach a pose. Options");
-    description.value<std::string>("out", "FOLDER",
-                                   "for tables and pictures (default: all_branches_out)");
+        "All inverse kinematics solutions of two six-joint arms for a pose. Options");
+    description.value<std::string>(
+        "out", "FOLDER", "output folder for tables and pictures (default: all_branches_out)");
     description.flag("help", "print this and stop");
     if (const auto line = example::command_line::parse(argc, argv, description)) {
       const std::string folder = line->text("out").value_or("all_branches_out");
@@ -116,10 +116,10 @@ int main(int argc, char** argv) {
       Eigen::Matrix<double, 6, 1> theta;
       theta << .3, -1.1, 1.4, -.5, .9, .2;
       show(folder, "ur5e", "UR5e", ur5e, ur5e.pose(theta));
-      Eigen::Matrix3d turn;
-      turn << -.760117, -.641689, .102262, .133333, 0, .991071, -.635959, .766965, .085558;
+      Eigen::Matrix3d axes_of_goal;
+      axes_of_goal << -.760117, -.641689, .102262, .133333, 0, .991071, -.635959, .766965, .085558;
       show(folder, "sixteen", "Manseur and Doty", manseur_doty(),
-           normalized(pose(from_rotation_matrix(turn), Eigen::Vector3d(-1.140175, 0, 0))));
+           normalized(pose(from_rotation_matrix(axes_of_goal), Eigen::Vector3d(-1.140175, 0, 0))));
     }
     return 0;
   });

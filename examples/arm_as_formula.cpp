@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 // A seven-joint arm, Franka Emika's Panda, written as the product of its joints: its formula, its
-// pose, and its spatial Jacobian, which the compiler derives, beside that of the chain from its
-// table.
+// pose, and its spatial Jacobian, which the compiler derives and which is compared with that of the
+// chain in a table.
 
 #include "support/program.hpp"
 
@@ -59,7 +59,7 @@ int run() {
   const double of_jacobian =
       (duet::jacobian(chain, theta, duet::frame::spatial) - J).cwiseAbs().maxCoeff();
   const double of_tip = (duet::translation(chain.pose(theta)) - t).norm();
-  std::printf("from the chain's by less than 1e-14: %s\n",
+  std::printf("difference from the chain below 1e-14: %s\n",
               std::max(of_jacobian, of_tip) < 1e-14 ? "yes" : "no");
   return 0;
 }

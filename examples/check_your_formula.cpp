@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Is my formula right? The body angular velocity of the rotation exp(φ), as derived on paper:
+/// Checks a formula derived on paper: the body angular velocity of the rotation exp(φ),
 ///   ω = φ̇ − (1 − cos θ)/θ² φ × φ̇ + (θ − sin θ)/θ³ φ × (φ × φ̇),  θ = |φ|.
 
 #include "support/program.hpp"
@@ -16,13 +16,13 @@ namespace {
 int run() {
   using namespace duet;
 
-  // What it is: the rotation as a function of time, differentiated.
+  // The definition: the rotation as a function of time, differentiated.
   const auto automatic = [](const auto& phi, const auto& rate) {
     const auto moving = [&](auto t) { return from_rotation_vector((phi + t * rate).eval()); };
     const auto [q, q_dot] = derivative(moving, 0);
     return angular_velocity(q, q_dot, frame::body);
   };
-  // What I have on paper, with the sign of the second term as I remember it.
+  // The formula on paper, with either sign of the second term.
   const auto on_paper = [](int sign) {
     return [sign](const auto& phi, const auto& rate) {
       using std::cos, std::sin;

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// From a formula in the code to the formula in the paper: its derivatives as text and as LaTeX, and
-// the numbers that both stand for.
+// A formula written in C++ and its derivatives, printed as text and as LaTeX and evaluated.
 
 #include "support/program.hpp"
 
@@ -34,11 +33,11 @@ int run() {
   constexpr quaternion_symbol<"q"> q;
   constexpr vector_symbol<"n"> n;
   constexpr vector_symbol<"p"> p;
-  const auto turning = q * rotation_about(n, u * u);
-  std::cout << "a turn about n, after q\n";
-  print("Q", turning);
-  print("Q'", derivative(turning, u));
-  print("(QpQ*)'", derivative(rotate(turning, p), u));
+  const auto rotating = q * rotation_about(n, u * u);
+  std::cout << "a rotation about n, after q\n";
+  print("Q", rotating);
+  print("Q'", derivative(rotating, u));
+  print("(QpQ*)'", derivative(rotate(rotating, p), u));
 
   const auto at = [&](const auto& f) { return f(t = 1.5, omega = 2, delta = 0.1); };
   const double by_duals =

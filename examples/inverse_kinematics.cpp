@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Joint coordinates that take the tip of a robot arm to a pose, or to each pose of a file, within
-// the arm's limits; or what is in the way. The arm is one of duet's or read from a URDF file.
+// Inverse kinematics: joint coordinates within the limits for a pose of the tip of an arm, or for
+// each pose of a file; otherwise the reason why there are none. The arm is built in or read from a
+// URDF file.
 
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
@@ -27,11 +28,11 @@ using namespace duet;
 using solution = inverse_kinematics_result<example::arm_chain::joints>;
 
 struct goal {
-  std::string name; ///< where it was given
+  std::string name; ///< option, or file and line
   dual_quaternion<double> pose;
 };
 
-/// Where the arm is a third of the way along its limits.
+/// The pose of the tip at a third of each joint range.
 [[nodiscard]] goal example_goal(const example::arm_chain& arm) {
   Eigen::VectorXd theta(arm.size());
   for (int i = 0; i < arm.size(); ++i) {
@@ -60,21 +61,21 @@ struct goal {
   return result;
 }
 
-[[nodiscard]] std::string why_not(const goal& wanted, const solution& found) {
+[[nodiscard]] std::string failure_message(const goal& target, const solution& results) {
   std::ostringstream text;
-  text << wanted.name << ": not reached (" << to_text(found.reason) << "), "
-       << found.deviation.translation << " m and " << found.deviation.rotation
-       << " rad from it with the nearest joints found";
+  text << target.name << ": not reached (" << to_text(results.reason) << "), "
+       << results.deviation.translation << " m and " << results.deviation.rotation
+       << " rad from it in the closest configuration";
   return text.str();
 }
 
-void write_joints(const std::string& path, const std::vector<solution>& found) {
+void write_joints(const std::string& path, const std::vector<solution>& results) {
   std::string text;
-  for (Eigen::Index i = 0; i < found.front().joints.size(); ++i) {
+  for (Eigen::Index i = 0; i < results.front().joints.size(); ++i) {
     text += "q" + std::to_string(i) + ",";
   }
   text += "is_reached,length,angle\n";
-  for (const solution& s : found) {
+  for (const solution& s : results) {
     std::vector<double> row(s.joints.begin(), s.joints.end());
     row.insert(row.end(), {s.reason == stop_reason::reached ? 1.0 : 0.0, s.deviation.translation,
                            s.deviation.rotation});
@@ -100,22 +101,22 @@ void solve(const example::command_line& arguments) {
   for (const goal& g : goals) {
     poses.push_back(g.pose);
   }
-  std::vector<solution> found(goals.size());
+  std::vector<solution> results(goals.size());
   {
     progress_line line("goals");
-    inverse_kinematics(arm, poses, start, found, options, {.threads = 0, .report = line});
+    inverse_kinematics(arm, poses, start, results, options, {.threads = 0, .report = line});
   }
-  if (goals.size() == 1 && found[0].reason != stop_reason::reached) {
-    throw std::runtime_error(why_not(goals[0], found[0]));
+  if (goals.size() == 1 && results[0].reason != stop_reason::reached) {
+    throw std::runtime_error(failure_message(goals[0], results[0]));
   }
   int reached = 0, iterations = 0, restarts = 0;
   double deviation = 0;
   for (std::size_t k = 0; k < goals.size(); ++k) {
-    const solution& s = found[k];
+    const solution& s = results[k];
     iterations += s.iterations;
     restarts += s.restarts;
     if (s.reason != stop_reason::reached) {
-      std::printf("%s\n", printable(why_not(goals[k], s)).c_str());
+      std::printf("%s\n", printable(failure_message(goals[k], s)).c_str());
       continue;
     }
     ++reached;
@@ -129,7 +130,7 @@ void solve(const example::command_line& arguments) {
     }
   }
   if (out) {
-    write_joints(*out, found);
+    write_joints(*out, results);
   }
   std::printf("inverse kinematics: reached=%d of=%zu iterations=%d restarts=%d deviation=%.2g\n",
               reached, goals.size(), iterations, restarts, deviation);

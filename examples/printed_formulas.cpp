@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// What the paper prints, and what is true: the formulas of the copy at hand that are, as
-/// they stand, not true, judged against automatic differentiation beside the true ones, and where a
-/// verdict may depend on how the basis functions are numbered, under both readings. Prints the
-/// table of docs/printed_formulas.md; ends with 1 where a verdict is not the expected one.
+/// Checks the formulas that are incorrect in the copy of the paper at hand, and their corrected
+/// forms, against automatic differentiation; if the verdict may depend on the numbering of the
+/// basis functions, under both readings. Prints the table of docs/printed_formulas.md; exits with 1
+/// if a verdict is not the expected one.
 
 #include "support/program.hpp"
 
@@ -25,7 +25,7 @@ std::vector<comparison> table;
 bool as_expected = true;
 
 template <class F, class G, class Inputs>
-void judge(const std::string& label, verdict expected, const F& automatic, const G& closed_form,
+void check(const std::string& label, verdict expected, const F& automatic, const G& closed_form,
            const Inputs& inputs) {
   table.push_back(compare<double, real_50>(label, automatic, closed_form, inputs, {.samples = 60}));
   as_expected = as_expected && table.back().outcome == expected;
@@ -56,8 +56,8 @@ template <class T>
   return {std::vector<T>(knots.begin(), knots.end()), q, increments_of_all};
 }
 
-/// B_i^k by de Boor and Cox's recurrence (P1); `closed` takes the print at its word, that spans
-/// hold both their ends.
+/// B_i^k by the recurrence of de Boor and Cox (P1). With `closed`, spans contain both of their
+/// ends, as printed.
 template <class T>
 [[nodiscard]] T basis_function(std::size_t i, std::size_t k, const T& u, bool closed) {
   if (k == 1) {
@@ -78,13 +78,13 @@ template <class T>
   return sum;
 }
 
-/// P3's derivative of it, as printed.
+/// Derivative of the cumulative basis function by P3, as printed.
 template <class T>
 [[nodiscard]] T first_derivative(std::size_t i, const T& u) {
   return 3 / (knots[i + 3] - knots[i]) * basis_function(i, 3, u, false);
 }
 
-/// P4's second one: as printed, or with the term of B_{i+1}^{k-2}.
+/// Second derivative by P4: as printed, or with the term of B_{i+1}^{k-2}.
 template <class T>
 [[nodiscard]] T second_derivative(std::size_t i, const T& u, bool as_printed) {
   const T next =
@@ -96,7 +96,7 @@ template <class T>
 const auto parameter = real_numbers{0, 1.999};
 
 void basis() {
-  // The curve's own weights: B_i is the difference of neighbours in the cumulative basis.
+  // The weights of the curve: B_i is the difference of neighbours in the cumulative basis.
   const auto automatic = [](const auto& u) {
     using T = std::decay_t<decltype(u)>;
     const bspline_basis<int(order), T> functions(std::vector<T>(knots.begin(), knots.end()));
@@ -119,9 +119,9 @@ void basis() {
     };
   };
   const auto inputs = sampler(parameter).named("u");
-  judge("P1 as printed: spans closed at both ends", verdict::disagrees, automatic,
+  check("P1 as printed: spans closed at both ends", verdict::disagrees, automatic,
         by_recurrence(true), inputs);
-  judge("P1: half-open spans", verdict::agrees, automatic, by_recurrence(false), inputs);
+  check("P1: half-open spans", verdict::agrees, automatic, by_recurrence(false), inputs);
 }
 
 const auto curve_inputs =
@@ -149,14 +149,14 @@ void curve() {
     const auto omega_0 = log(conj(before) * first_control<T>()).vec();
     return others(pow(before, exponent) * exp((omega_0 * exponent).eval()), u, omega);
   };
-  judge("P2 as printed, functions from B_-1", verdict::disagrees, automatic, from_minus_one(1),
+  check("P2 as printed, functions from B_-1", verdict::disagrees, automatic, from_minus_one(1),
         curve_inputs);
-  judge("P2 as printed, functions from B_0", verdict::agrees, automatic, from_zero, curve_inputs);
-  judge("P2 from B_-1, the first exponent B~_-1", verdict::agrees, automatic, from_minus_one(0),
+  check("P2 as printed, functions from B_0", verdict::agrees, automatic, from_zero, curve_inputs);
+  check("P2 from B_-1, the first exponent B~_-1", verdict::agrees, automatic, from_minus_one(0),
         curve_inputs);
 }
 
-// Of the cumulative functions that vary.
+// Derivatives of the cumulative functions that vary.
 void basis_rates() {
   const auto inputs = sampler(parameter).named("u");
   const auto each = [](const auto& f, const auto& u) {
@@ -168,14 +168,14 @@ void basis_rates() {
   };
   const auto first = [&](const auto& u) { return derivative(all, u).derivative; };
   const auto second = [&](const auto& u) { return derivatives<2>(all, u)[2]; };
-  judge(
+  check(
       "P3: B~'_i as printed", verdict::agrees, first,
       [&](const auto& u) {
         return each([](std::size_t i, const auto& t) { return first_derivative(i, t); }, u);
       },
       inputs);
   for (const bool as_printed : {true, false}) {
-    judge(
+    check(
         as_printed ? "P4: B~''_i as printed, one term" : "P4: B~''_i, both terms",
         as_printed ? verdict::disagrees : verdict::agrees, second,
         [&](const auto& u) {
@@ -212,32 +212,32 @@ void curve_rates() {
     const auto s = make_curve(omega);
     return derivatives<2>([&](const auto& t) { return s(t); }, u)[2];
   };
-  const auto judge_printed = [&](const std::string& label, const auto& automatic, auto select) {
-    judge(
+  const auto check_printed = [&](const std::string& label, const auto& automatic, auto select) {
+    check(
         label, verdict::disagrees, automatic,
         [select](const auto& u, const auto& omega) {
           return select(printed_derivative(make_curve(omega), u));
         },
         curve_inputs);
   };
-  const auto judge_true = [&](const std::string& label, const auto& automatic, std::size_t k) {
-    judge(
+  const auto check_corrected = [&](const std::string& label, const auto& automatic, std::size_t k) {
+    check(
         label, verdict::agrees, automatic,
         [k](const auto& u, const auto& omega) { return true_derivatives(u, omega)[k]; },
         curve_inputs);
   };
-  judge_printed("P3 as printed, functions from B_-1", first,
+  check_printed("P3 as printed, functions from B_-1", first,
                 [](const auto& p) { return p.literal_first; });
-  judge_printed("P3 as printed, functions from B_0", first,
+  check_printed("P3 as printed, functions from B_0", first,
                 [](const auto& p) { return p.from_zero_first; });
-  judge_true("P3: Q' = Q w", first, 0);
-  judge_printed("P4 as printed, functions from B_-1", second,
+  check_corrected("P3: Q' = Q w", first, 0);
+  check_printed("P4 as printed, functions from B_-1", second,
                 [](const auto& p) { return p.literal_second; });
-  judge_printed("P4 as printed, functions from B_0", second,
+  check_printed("P4 as printed, functions from B_0", second,
                 [](const auto& p) { return p.from_zero_second; });
-  judge_printed("P4 with the basis corrected, commuting", second,
+  check_printed("P4 with the basis corrected, commuting", second,
                 [](const auto& p) { return p.commuting_second; });
-  judge_true("P4: Q'' = Q (a + w^2)", second, 1);
+  check_corrected("P4: Q'' = Q (a + w^2)", second, 1);
 }
 
 // P5: angular velocity from the rates of the Euler angles.
@@ -259,8 +259,8 @@ void euler_angles() {
     return (euler_rate_matrix<zyx>(angles[0], angles[1]) * rates).eval();
   };
   const auto inputs = sampler(vectors<3>{3}, vectors<3>{1}).named("psi theta phi", "rates");
-  judge("P5 as in the copy: -sin psi", verdict::disagrees, automatic, printed, inputs);
-  judge("P5: -sin theta", verdict::agrees, automatic, closed_form, inputs);
+  check("P5 as in the copy: -sin psi", verdict::disagrees, automatic, printed, inputs);
+  check("P5: -sin theta", verdict::agrees, automatic, closed_form, inputs);
 }
 
 int run() {

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// The notes' motion planning as they have it (N22–N25), on a Panda: the least rates of the joints,
-/// a step, plans towards a goal, inverse kinematics, a path of poses, and what the step size beta
-/// does. Prints what docs/printed_plan.md holds.
+/// Motion planning exactly as in the notes (N22–N25), for a Panda: minimum-norm joint rates, a
+/// single step, plans towards a goal, inverse kinematics, a path of poses, and the effect of the
+/// step size beta. Prints the tables of docs/printed_plan.md.
 
 #include <duet/core/random_source.hpp>
 #include <duet/mechanism/robots.hpp>
@@ -27,10 +27,10 @@ vector gripper_down() {
   return vector(0, -quarter, 0, -3 * quarter, 0, 2 * quarter, quarter);
 }
 
-/// N22 and N23 once.
+/// One step by N22 and N23.
 void single_step() {
   const vector theta = gripper_down();
-  const auto here = arm.pose(theta);
+  const auto current = arm.pose(theta);
   const auto B = resolved_rate_matrix(arm, theta);
   vector7<double> rate = vector7<double>::Zero();
   rate[2] = 1; // of gamma = [t; alpha]: the tip rises at 1 m/s
@@ -41,9 +41,9 @@ void single_step() {
   }
   std::printf(" rad/s\n\n| N23: a step of | leaves |\n|---|---|\n");
   for (const double h : {.1, .01, .001}) {
-    const auto next = pose(quaternion<double>(1), Eigen::Vector3d(0, 0, h)) * here;
-    const auto left = pose_error_between(arm.pose(resolved_step(arm, theta, next, 1)), next);
-    std::printf("| %g m | %.3g m |\n", h, left.translation);
+    const auto next = pose(quaternion<double>(1), Eigen::Vector3d(0, 0, h)) * current;
+    const auto residual = pose_error_between(arm.pose(resolved_step(arm, theta, next, 1)), next);
+    std::printf("| %g m | %.3g m |\n", h, residual.translation);
   }
 }
 
@@ -68,7 +68,7 @@ std::vector<problem> problems(bool is_near) {
   return result;
 }
 
-/// N24, which is inverse kinematics too (note 2 of N25).
+/// Plans by N24, which also solve inverse kinematics (note 2 of N25).
 void plans() {
   std::printf(
       "\n| N24 | tau | beta | reached, of 50 | iterations, median |\n|---|---|---|---|---|\n");
@@ -96,16 +96,16 @@ void plans() {
   }
 }
 
-/// Note 1 of N25: a circle of 10 cm, in poses.
+/// A circle of 10 cm as a sequence of poses (note 1 of N25).
 void paths() {
   const auto first = arm.pose(gripper_down());
   std::printf("\n| N25, note 1: poses | beta | stopped | largest deviation | in steps |\n"
               "|---|---|---|---|---|\n");
   for (const int n : {50, 100, 200}) {
-    const double turn = 6.283185307179586;
+    const double full_turn = 6.283185307179586;
     std::vector<dual_quaternion<double>> path;
     for (int i = 1; i <= n; ++i) {
-      const double u = turn * i / n;
+      const double u = full_turn * i / n;
       const Eigen::Vector3d moved(.1 * std::cos(u) - .1, .1 * std::sin(u), 0);
       path.push_back(pose(quaternion<double>(1), moved) * first);
     }
@@ -117,7 +117,7 @@ void paths() {
       }
       if (plan.reason == stop_reason::reached) {
         std::printf("| %d | %g | %s | %.3g mm | %.2g |\n", n, beta, to_text(plan.reason),
-                    1000 * largest, largest / (turn * .1 / n));
+                    1000 * largest, largest / (full_turn * .1 / n));
       } else {
         std::printf("| %d | %g | %s after %d | | |\n", n, beta, to_text(plan.reason),
                     plan.iterations);

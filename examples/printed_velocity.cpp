@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A point of a turning body draws a curve on the sphere. Its velocity must touch that curve: by the
-// true derivative of the quaternion B-spline (P3) it does, by the formula as printed, which sums
-// rotations as if they commuted, it does not. Writes printed_velocity.csv, moving_point.svg, which
-// moves, and, with gnuplot, a picture.
+// A point of a rotating body moves along a curve on the sphere, and its velocity is tangent to that
+// curve. The velocity from the true derivative of the quaternion B-spline (P3) is; the one from the
+// formula as printed, which adds rotations as if they commuted, is not. Writes
+// printed_velocity.csv, the animation moving_point.svg and, with gnuplot, a picture.
 
 #include "support/curves.hpp"
 #include "support/drawing.hpp"
@@ -38,7 +38,7 @@ using duet::vector3;
 
 const vector3<double> mark(1, 0, 0); // the point, on the body
 
-/// Through six orientations about one radian apart.
+/// A spline through six orientations, each about one radian from the next.
 spline motion() {
   const std::vector<double> u{0, 1, 2, 3, 4, 5};
   const std::vector<rotation> rows{duet::from_euler<duet::zyx>(-1.15, 0.35, 0.0),
@@ -52,8 +52,8 @@ spline motion() {
 
 struct sample {
   double u;
-  vector3<double> place, velocity, printed;
-  /// Between both velocities, degrees.
+  vector3<double> position, velocity, printed;
+  /// Angle between both velocities, degrees.
   [[nodiscard]] double angle() const {
     return std::atan2(velocity.cross(printed).norm(), velocity.dot(printed)) * 180 /
            std::numbers::pi;
@@ -93,7 +93,7 @@ std::vector<std::vector<vector3<double>>> circles() {
   return result;
 }
 
-/// The circles, where they are on the near side.
+/// The parts of the circles that are on the visible side.
 void add_grid(example::drawing& d) {
   for (const auto& circle : circles()) {
     std::vector<vector3<double>> part;
@@ -116,7 +116,7 @@ std::string moving_picture(const std::vector<sample>& samples) {
   std::vector<example::moving_point> instants;
   for (std::size_t i = 0; i < samples.size(); i += 3) {
     const sample& each = samples[i];
-    instants.push_back({each.place, each.velocity, each.printed, each.angle()});
+    instants.push_back({each.position, each.velocity, each.printed, each.angle()});
   }
   return example::moving_picture(example::drawing(view), instants).svg(circles());
 }
@@ -128,7 +128,7 @@ example::drawing drawing_of(const spline& s, const std::vector<sample>& samples)
   add_grid(d);
   std::vector<vector3<double>> curve;
   for (const sample& each : samples) {
-    curve.push_back(each.place);
+    curve.push_back(each.position);
   }
   d.line(curve, "#24292f", "lw 4");
   for (const double u : {0., 1., 2., 3., 4., 5.}) {
@@ -136,9 +136,9 @@ example::drawing drawing_of(const spline& s, const std::vector<sample>& samples)
   }
   constexpr double length = .5;
   for (std::size_t i = 38; i < samples.size(); i += 38) {
-    const auto& [u, place, velocity, printed] = samples[i];
-    d.arrow(place, place + length * printed, "#d55e00", "lw 3");
-    d.arrow(place, place + length * velocity, "#0072b2", "lw 3");
+    const auto& [u, position, velocity, printed] = samples[i];
+    d.arrow(position, position + length * printed, "#d55e00", "lw 3");
+    d.arrow(position, position + length * velocity, "#0072b2", "lw 3");
   }
   return d;
 }

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A robot arm at given joint coordinates: where its tip is, how it moves with each joint, how far
-// it is from a singularity, and whether the closed form of its Jacobian agrees with automatic
-// differentiation. The arm is one of duet's or read from a URDF file.
+// A robot arm in a given configuration: forward kinematics, Jacobian, manipulability, and the
+// difference between the closed form of the Jacobian and automatic differentiation. The arm is
+// built in or read from a URDF file.
 
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
@@ -26,9 +26,9 @@ void report(const example::arm_chain& arm, const Eigen::VectorXd& theta) {
     const bool is_inside = arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
     std::printf(" %9.5f%s", theta[i], is_inside ? "" : " (outside its limits)");
   }
-  std::printf("\ntip at   %9.5f %9.5f %9.5f  turned by (%.5f, %.5f, %.5f, %.5f)\n", t[0], t[1],
-              t[2], q.w(), q.x(), q.y(), q.z());
-  std::printf("velocities with each joint, v of the tip and omega, in the base's axes:\n");
+  std::printf("\ntip at   %9.5f %9.5f %9.5f  rotation (%.5f, %.5f, %.5f, %.5f)\n", t[0], t[1], t[2],
+              q.w(), q.x(), q.y(), q.z());
+  std::printf("Jacobian, hybrid frame: v of the tip and omega in the axes of the base:\n");
   for (Eigen::Index i = 0; i < 6; ++i) {
     std::printf("  %c_%c    ", i < 3 ? 'v' : 'w', "xyz"[i % 3]);
     for (Eigen::Index k = 0; k < J.cols(); ++k) {
@@ -49,11 +49,12 @@ void report(const example::arm_chain& arm, const Eigen::VectorXd& theta) {
 
 int main(int argc, char** argv) {
   return example::run_program("robot_arm", [&] {
-    example::option_list description("A robot arm at given joint coordinates. Options");
+    example::option_list description(
+        "Forward kinematics and Jacobian of a robot arm in a configuration. Options");
     example::add_arm_options(description);
     description.value<std::string>(
         "joints", "X,X,...",
-        "coordinates, as 0,0.5,-1: radians or metres (default: the middle of the limits)");
+        "coordinates, as 0,0.5,-1: radians or metres (default: the midpoint of the limits)");
     description.flag("help", "print this and stop");
     const auto line = example::command_line::parse(argc, argv, description);
     if (!line) {

@@ -1,8 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A UR5e's tip along screws that lead through a singularity of the wrist, close by one, from one
-// and from a stretched elbow: what joint 4 has to do for it, and where waypoints with the tip in
-// place are.
+// Screw motions of a UR5e through a wrist singularity, from one and from a stretched elbow: the
+// range of joint 4, and whether the plan begins with a self-motion.
 
 #include <duet/mechanism/robots.hpp>
 #include <duet/planning/plan_screw_motion.hpp>
@@ -18,15 +17,16 @@ using joints = Eigen::Matrix<double, 6, 1>;
 
 void show(const char* name, const joints& start, const duet::dual_quaternion<double>& goal) {
   const auto plan = duet::plan_screw_motion(arm, start, goal);
-  double least = start[3], most = start[3];
-  std::size_t in_place = 0;
+  double lowest = start[3], highest = start[3];
+  std::size_t self_motion_steps = 0;
   for (std::size_t k = 1; k < plan.joints.size(); ++k) {
-    least = std::min(least, plan.joints[k][3]);
-    most = std::max(most, plan.joints[k][3]);
-    in_place += plan.tau[k] == plan.tau[k - 1];
+    lowest = std::min(lowest, plan.joints[k][3]);
+    highest = std::max(highest, plan.joints[k][3]);
+    self_motion_steps += plan.tau[k] == plan.tau[k - 1];
   }
   std::printf("%-24s %-12s tau %.3f, joint 4 within %.2f rad, %s\n", name, to_text(plan.reason),
-              plan.tau.back(), most - least, in_place > 0 ? "moves in place first" : "never stops");
+              plan.tau.back(), highest - lowest,
+              self_motion_steps > 0 ? "self-motion first" : "no self-motion");
 }
 
 } // namespace
@@ -45,10 +45,10 @@ int main() {
 
   joints stretched = start;
   stretched[2] = 0;
-  const auto moved = [&](double way) {
-    const Eigen::Vector3d arm_way =
+  const auto moved = [&](double fraction) {
+    const Eigen::Vector3d upper_arm =
         translation(arm.pose(stretched, 2)) - translation(arm.pose(stretched, 1));
-    return duet::pose(duet::quaternion<double>(1), Eigen::Vector3d(way * arm_way)) *
+    return duet::pose(duet::quaternion<double>(1), Eigen::Vector3d(fraction * upper_arm)) *
            arm.pose(stretched);
   };
   show("from a stretched elbow", stretched, moved(-.3));

@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Every curve of duet through the same rows of a smooth motion: errors of orientation and angular
-// velocity against the number of rows. Writes spline_comparison.csv and, with gnuplot, a picture.
+// Every curve of duet through the same samples of a smooth motion: errors of orientation and
+// angular velocity over the number of samples. Writes spline_comparison.csv and, with gnuplot, a
+// picture.
 
 #include "support/curves.hpp"
 #include "support/folder.hpp"
@@ -37,7 +38,7 @@ using duet::vector3;
 
 constexpr double end = 4;
 
-const auto turning = [](const auto& u) {
+const auto rotating = [](const auto& u) {
   using std::cos;
   using std::sin;
   using S = std::decay_t<decltype(u)>;
@@ -69,15 +70,15 @@ struct rows {
   explicit rows(int count) {
     for (int i = 0; i < count; ++i) {
       u.push_back(end * i / (count - 1));
-      const sample s = sample_of(turning, u.back());
+      const sample s = sample_of(rotating, u.back());
       q.push_back(s.q);
       omega.push_back(s.omega);
     }
     q = duet::align_quaternion_signs(q);
   }
 
-  /// The interval of u, and where in it, from 0 to 1.
-  [[nodiscard]] std::pair<std::size_t, double> place(double at) const {
+  /// Index of the interval that contains u, and the local parameter in [0, 1].
+  [[nodiscard]] std::pair<std::size_t, double> locate(double at) const {
     const double step = end / double(u.size() - 1);
     const std::size_t i = std::min(std::size_t(at / step), u.size() - 2);
     return {i, (at - u[i]) / step};
@@ -85,7 +86,7 @@ struct rows {
   /// A rotation and its angular velocity of f(τ) on that interval.
   template <class F>
   [[nodiscard]] sample local(double at, const F& f) const {
-    const auto [i, tau] = place(at);
+    const auto [i, tau] = locate(at);
     sample s = sample_of([&, i = i](const auto& t) { return f(i, t); }, tau);
     s.omega *= double(u.size() - 1) / end;
     return s;
@@ -156,16 +157,17 @@ std::array<double, 2> largest_errors(const curve& c, int count) {
   for (int i = 0; i <= 3001; ++i) {
     const double u = end * i / 3001;
     const sample s = at(u);
-    const sample truth = sample_of(turning, u);
-    largest[0] = std::max(largest[0], duet::rotation_vector(rotation(conj(s.q) * truth.q)).norm());
-    largest[1] = std::max(largest[1], (s.omega - truth.omega).norm());
+    const sample reference = sample_of(rotating, u);
+    largest[0] =
+        std::max(largest[0], duet::rotation_vector(rotation(conj(s.q) * reference.q)).norm());
+    largest[1] = std::max(largest[1], (s.omega - reference.omega).norm());
   }
   return largest;
 }
 
 /// Five of the curves: SLERP and natural ends are near squad.
 std::string picture_script(const std::vector<std::vector<std::array<double, 2>>>& errors) {
-  using enum example::beside;
+  using enum example::label_position;
   const auto gain = [&](std::size_t curve) {
     const auto& e = errors[curve];
     return example::two_digits(e[e.size() - 2][0] / e.back()[0]);

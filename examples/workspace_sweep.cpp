@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Where a robot arm moves well: manipulability in many random configurations within its limits, as
-// a histogram and over the distance from the vertical axis and the height of the tip. Samples are
-// computed several at a time on all cores; the same ones whatever the machine. Ctrl-C ends the
-// sweep: the figures are then of the configurations up to there.
+// Manipulability of a robot arm in many random configurations within its limits, as a histogram and
+// over the distance of the tip from the vertical axis and its height. Samples are computed in SIMD
+// batches on all cores and do not depend on the machine. Ctrl-C ends the sweep; the results are
+// then those of the configurations computed so far.
 
 #include "support/arms.hpp"
 #include "support/command_line.hpp"
@@ -48,8 +48,8 @@ struct sample {
   double manipulability;
 };
 
-/// The n-th number of a sequence in [0, 1) that is as good as random (splitmix64): each sample
-/// finds its own, whichever core it is on.
+/// The n-th number of a pseudo-random sequence in [0, 1) (splitmix64). It depends on n alone, so
+/// that samples do not depend on the core that computes them.
 double uniform(std::uint64_t n) {
   std::uint64_t x = (n + 1) * 0x9e3779b97f4a7c15U;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -75,7 +75,7 @@ double manipulability_of(const matrix& m) {
 
 volatile std::sig_atomic_t is_interrupted = 0;
 
-/// As many samples as asked for, or until Ctrl-C as there are by then.
+/// The requested number of samples, or fewer if Ctrl-C interrupts the sweep.
 std::vector<sample> sweep(const chain& arm, std::size_t count) {
   std::vector<sample> samples(count);
   const auto sweep_block = [&](std::size_t first, std::size_t last) {
@@ -96,8 +96,8 @@ std::vector<sample> sweep(const chain& arm, std::size_t count) {
     line(p);
     return is_interrupted == 0;
   };
-  const auto otherwise = std::signal(SIGINT, [](int) { is_interrupted = 1; });
-  if (otherwise == SIG_IGN) { // in the background: stays so
+  const auto previous_handler = std::signal(SIGINT, [](int) { is_interrupted = 1; });
+  if (previous_handler == SIG_IGN) { // in the background: stays so
     std::signal(SIGINT, SIG_IGN);
   }
   try {
@@ -105,11 +105,11 @@ std::vector<sample> sweep(const chain& arm, std::size_t count) {
   } catch (const cancelled& early) {
     samples.resize(early.completed());
   }
-  std::signal(SIGINT, otherwise);
+  std::signal(SIGINT, previous_handler);
   return samples;
 }
 
-/// Shares of the samples in bins of equal width from 0 to the largest manipulability.
+/// Fractions of the samples in bins of equal width from 0 to the largest manipulability.
 std::string histogram(const std::vector<sample>& samples, double largest) {
   constexpr std::size_t bins = 40;
   std::vector<std::size_t> counts(bins);
@@ -124,7 +124,7 @@ std::string histogram(const std::vector<sample>& samples, double largest) {
   return csv;
 }
 
-/// Cells that the tip was in, with the largest manipulability that it had there.
+/// Cells that the tip reached, with the largest manipulability in each.
 std::string map(const std::vector<sample>& samples) {
   constexpr double cell = 0.02;
   double reach = 0;
@@ -162,9 +162,9 @@ std::string picture_script() {
          "unset multiplot\n";
 }
 
-void run(const chain& arm, std::size_t wanted, const std::string& folder) {
+void run(const chain& arm, std::size_t requested, const std::string& folder) {
   example::require_folder(folder);
-  const std::vector<sample> samples = sweep(arm, wanted);
+  const std::vector<sample> samples = sweep(arm, requested);
   const std::size_t count = samples.size();
   double sum = 0, largest = 0;
   std::size_t best = 0;
@@ -194,10 +194,11 @@ void run(const chain& arm, std::size_t wanted, const std::string& folder) {
 
 int main(int argc, char** argv) {
   return example::run_program("workspace_sweep", [&] {
-    example::option_list description("Where a robot arm moves well. Options");
+    example::option_list description("Manipulability of a robot arm over its workspace. Options");
     description.flag("help", "print this and stop");
     description.value<int>("samples", "N", "random configurations, 1 to 10000000 (default: 20000)");
-    description.value<std::string>("out", "FOLDER", "folder for tables and picture (default: .)");
+    description.value<std::string>("out", "FOLDER",
+                                   "output folder for tables and the picture (default: .)");
     example::add_arm_options(description);
     const auto line = example::command_line::parse(argc, argv, description);
     if (!line) {
@@ -205,7 +206,8 @@ int main(int argc, char** argv) {
     }
     const int samples = line->get<int>("samples").value_or(20000);
     if (samples < 1 || samples > 10000000) {
-      throw std::runtime_error("--samples: 1 to 10000000, not " + std::to_string(samples));
+      throw std::runtime_error("--samples is " + std::to_string(samples) +
+                               " (expected 1 to 10000000)");
     }
     run(example::arm_of(*line), std::size_t(samples), line->text("out").value_or("."));
     return 0;

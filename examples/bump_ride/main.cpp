@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A wheel carrier runs over a bump, four times: with the constraints of its five rods solved in
-// every step, and from a look-up table of poses, by two splines and by screw motions from row to
-// row.
+// A wheel carrier runs over a bump, simulated four times: with the constraints of its five rods
+// solved in every step, and with a lookup table of poses interpolated by two splines and by screw
+// motions from row to row.
 
 #include "models.hpp"
 #include "ride.hpp"
@@ -91,10 +91,11 @@ std::string ride_csv(const vehicle& v, const std::vector<result>& results) {
   return text;
 }
 
-/// Above the ride; below how far the tables are from the mechanism, and energy from what it was.
+/// Top: the ride. Bottom: differences between tables and mechanism, and of the energy from its
+/// start.
 std::string picture_script(const std::vector<result>& results) {
   const char* const colours[] = {"ink", "vermillion", "blue", "purple"};
-  using enum example::beside;
+  using enum example::label_position;
   const std::size_t rows = results.front().samples.size();
   const auto column = [](std::size_t result, std::size_t of_result) {
     return "$" + std::to_string(3 + 3 * result + of_result);
@@ -102,18 +103,18 @@ std::string picture_script(const std::vector<result>& results) {
   std::string names;
   std::vector<example::named_line> differences, energies;
   for (std::size_t k = 0; k < results.size(); ++k) {
-    const auto place = k == 2 || k == 0 ? below : above;
+    const auto position = k == 2 || k == 0 ? below : above;
     if (k > 0) {
       differences.push_back(
           {"1:(1000*abs(" + column(k, 0) + "-$3))", colours[k], "", 0, right, "lines lw 1.5"});
-      const char* const places[] = {"", ".02,.06 left", ".98,.13 right", ".98,.94 right"};
-      names += "set label " + example::in_quotes(results[k].name) + " at graph " + places[k] +
+      const char* const positions[] = {"", ".02,.06 left", ".98,.13 right", ".98,.94 right"};
+      names += "set label " + example::in_quotes(results[k].name) + " at graph " + positions[k] +
                " front tc rgb " + colours[k] + "\n";
     }
     // The ride without a table is as good as by the rotation-vector spline.
     energies.push_back({"1:(abs(" + column(k, 2) + "))", colours[k],
                         k == 0 ? "" : results[k].name + (k == 2 ? ", constraints" : ""),
-                        3 * rows / 5, place});
+                        3 * rows / 5, position});
   }
   return "set multiplot layout 2,2 title " +
          example::title("Splines of a table ride within " +

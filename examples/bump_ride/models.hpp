@@ -19,7 +19,7 @@
 #include <vector>
 
 /// \file
-/// Where the carrier is at a wheel height u, and how it moves with u: by solving the constraints,
+/// Pose of the carrier at a wheel height u and its twist per unit of u, by solving the constraints
 /// or from a table.
 
 namespace bump_ride {
@@ -29,23 +29,24 @@ using pose_type = duet::dual_quaternion<double>;
 using duet::vector3;
 using duet::vector6;
 
-/// Per unit of u, in body axes: the twist [v; ω] of the wheel centre's frame and its derivative.
-struct place {
+/// Pose of the wheel centre frame, its twist [v; ω] per unit of u in body axes, and the derivative
+/// of the twist.
+struct motion_state {
   pose_type pose;
   vector6<double> twist, twist_first;
 };
 
-/// Newton's method on the five rods, every time.
+/// Solves the constraints of the five rods by Newton's method in every call.
 class exact_model {
 public:
   explicit exact_model(const wheel_carrier::carrier& mechanism) : mechanism_(mechanism) {}
 
-  [[nodiscard]] place at(double u) const {
+  [[nodiscard]] motion_state at(double u) const {
     const wheel_carrier::state s = mechanism_.at(u);
     const auto back = conj(s.q);
     const vector3<double> omega = rotate(back, s.omega());
     const vector3<double> v = rotate(back, s.centre_first);
-    place p{duet::pose(s.q, s.centre), {}, {}};
+    motion_state p{duet::pose(s.q, s.centre), {}, {}};
     p.twist << v, omega;
     p.twist_first << rotate(back, s.centre_second) - omega.cross(v), rotate(back, s.omega_first());
     return p;
@@ -55,13 +56,13 @@ private:
   const wheel_carrier::carrier& mechanism_;
 };
 
-/// The look-up table: poses at heights u.
+/// The lookup table: poses at heights u.
 struct pose_table {
   std::vector<double> u;
   std::vector<pose_type> poses;
 };
 
-/// The rows of the paper's table of rotations, with the wheel centre beside them.
+/// The rows of the paper's table of rotations, each with the wheel centre.
 inline pose_table make_table(const wheel_carrier::carrier& mechanism, int rows) {
   const wheel_carrier::arc_length arcs(mechanism);
   pose_table result;
@@ -73,14 +74,14 @@ inline pose_table make_table(const wheel_carrier::carrier& mechanism, int rows) 
   return result;
 }
 
-/// A spline through the rows.
+/// A spline through the rows of the table.
 template <class Spline>
 class spline_model {
 public:
   explicit spline_model(const pose_table& table)
       : spline_(duet::interpolate<Spline>(table.u, table.poses, duet::not_a_knot{})) {}
 
-  [[nodiscard]] place at(double u) const {
+  [[nodiscard]] motion_state at(double u) const {
     const auto m = spline_.motion(u, duet::frame::body);
     return {m.value, m.velocity, m.acceleration};
   }
@@ -96,7 +97,7 @@ class screw_model {
 public:
   explicit screw_model(pose_table table) : table_(std::move(table)) {}
 
-  [[nodiscard]] place at(double u) const {
+  [[nodiscard]] motion_state at(double u) const {
     const auto above = std::upper_bound(table_.u.begin() + 1, table_.u.end() - 1, u);
     const auto i = std::size_t(above - table_.u.begin()) - 1;
     const double step = table_.u[i + 1] - table_.u[i];

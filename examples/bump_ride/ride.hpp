@@ -17,11 +17,11 @@
 #include <vector>
 
 /// \file
-/// The wheel runs over a bump: one degree of freedom, u, by Lagrange's equation.
+/// A wheel that runs over a bump: Lagrange's equation with the single degree of freedom u.
 
 namespace bump_ride {
 
-/// SI units. The chassis stands still; the road comes.
+/// Data of the vehicle in SI units. The chassis is fixed; the road moves.
 struct vehicle {
   double mass = 38;                             ///< carrier and wheel
   vector3<double> inertia{0.7, 1.1, 0.7};       ///< about the wheel centre, in the carrier's axes
@@ -43,7 +43,7 @@ using state = std::array<double, 3>;
 
 struct sample {
   double t, u, height, toe_in; ///< s, m, m, degrees
-  double energy;               ///< that should not change: kinetic + potential − work
+  double energy;               ///< kinetic + potential − work, a constant of the motion
   double kinetic;
 };
 
@@ -60,21 +60,21 @@ public:
   /// Lagrange's equation M ü + ½ M′ u̇² = F z′.
   void operator()(const state& x, state& rate, double t) const {
     const auto [u, u_dot, work] = x;
-    const place p = model_.at(u);
+    const motion_state p = model_.at(u);
     const vector6<double> momentum = inertia_.cwiseProduct(p.twist);
     const double mass = momentum.dot(p.twist);
     const double mass_first = 2 * momentum.dot(p.twist_first);
     const double height = duet::translation(p.pose)[2];
     const double height_first = rotate(duet::rotation(p.pose), linear(p))[2];
-    const double outside = tyre_and_damper(t, height, height_first * u_dot);
-    const double force = outside - vehicle_.load - vehicle_.spring * height;
+    const double external_force = tyre_and_damper(t, height, height_first * u_dot);
+    const double force = external_force - vehicle_.load - vehicle_.spring * height;
     rate = {u_dot, (force * height_first - mass_first * u_dot * u_dot / 2) / mass,
-            outside * height_first * u_dot};
+            external_force * height_first * u_dot};
   }
 
-  [[nodiscard]] sample look(const state& x, double t) const {
+  [[nodiscard]] sample sample_at(const state& x, double t) const {
     const auto [u, u_dot, work] = x;
-    const place p = model_.at(u);
+    const motion_state p = model_.at(u);
     const double kinetic = inertia_.cwiseProduct(p.twist).dot(p.twist) * u_dot * u_dot / 2;
     const double height = duet::translation(p.pose)[2];
     return {t,
@@ -86,7 +86,7 @@ public:
   }
 
 private:
-  static vector3<double> linear(const place& p) { return p.twist.head<3>(); }
+  static vector3<double> linear(const motion_state& p) { return p.twist.head<3>(); }
 
   /// The tyre pushes, and cannot pull.
   [[nodiscard]] double tyre_and_damper(double t, double height, double height_rate) const {
@@ -105,27 +105,27 @@ struct result {
   double seconds_per_step;
 };
 
-/// From rest, by the classical Runge–Kutta method.
+/// Simulates the ride from rest by the classical Runge–Kutta method.
 template <class Model>
 [[nodiscard]] result run_over_bump(std::string name, const Model& model, const vehicle& v,
                                    double duration, double step) {
   const ride<Model> system(model, v);
   boost::numeric::odeint::runge_kutta4<state> stepper;
   state x{};
-  result r{std::move(name), {system.look(x, 0)}, 0};
+  result r{std::move(name), {system.sample_at(x, 0)}, 0};
   const auto steps = std::size_t(std::lround(duration / step));
   std::chrono::duration<double> time{};
   for (std::size_t i = 0; i < steps; ++i) {
     const auto start = std::chrono::steady_clock::now();
     stepper.do_step(system, x, double(i) * step, step);
     time += std::chrono::steady_clock::now() - start;
-    r.samples.push_back(system.look(x, double(i + 1) * step));
+    r.samples.push_back(system.sample_at(x, double(i + 1) * step));
   }
   r.seconds_per_step = time.count() / double(steps);
   return r;
 }
 
-/// The largest change of what should not change, over the largest kinetic energy.
+/// The largest change of the conserved energy, relative to the largest kinetic energy.
 inline double energy_error(const result& r) {
   double largest = 0;
   double kinetic = 0;

@@ -18,50 +18,50 @@
 #include <vector>
 
 /// \file
-/// The mechanisms of the folder `files`, and what is known of them by hand.
+/// The mechanisms of the folder `files` and their closed forms.
 
 namespace closed_mechanisms {
 
 using Eigen::VectorXd;
 
-/// A point, and its first and second derivative along the way of the drives.
+/// A point, and its first and second derivative along the line of the driven coordinates.
 using path = std::array<Eigen::Vector3d, 3>;
 
-/// Of f(u) along u = from + part · way.
+/// Value and derivatives of f(u) along u = from + part · direction.
 template <class F>
-path along_way(const F& f, const VectorXd& from, const VectorXd& way, double part) {
+path along_line(const F& f, const VectorXd& from, const VectorXd& direction, double part) {
   return path(duet::derivatives<2>(
       [&](const auto& s) {
         using S = std::decay_t<decltype(s)>;
         Eigen::Matrix<S, Eigen::Dynamic, 1> u(from.size());
         for (Eigen::Index i = 0; i < u.size(); ++i) {
-          u[i] = from[i] + s * way[i];
+          u[i] = from[i] + s * direction[i];
         }
         return f(u);
       },
       part));
 }
 
-/// A mechanism, and how it is moved.
+/// A mechanism and its motion.
 struct mechanism {
   std::string name;
   std::vector<std::string> drives;
-  VectorXd guess;    ///< of all coordinates
-  VectorXd from, to; ///< of the drives
-  std::string link;  ///< of the point that is watched
+  VectorXd guess;    ///< initial guess of all coordinates
+  VectorXd from, to; ///< start and end of the driven coordinates
+  std::string link;  ///< link of the observed point
   std::array<double, 3> point;
-  Eigen::Vector3d view; ///< from where it is drawn
-  /// The point at a part of the way of the drives, and its derivatives by that part.
-  std::function<path(const VectorXd& from, const VectorXd& way, double part)> by_hand;
+  Eigen::Vector3d view; ///< direction from which it is drawn
+  /// The point at a part of the motion, and its derivatives with respect to that part.
+  std::function<path(const VectorXd& from, const VectorXd& direction, double part)> by_hand;
 };
 
 namespace detail {
 
-/// Of a formula.
+/// Turns a formula of the driven coordinates into a function of `by_hand`.
 template <class F>
 auto along(const F& f) {
-  return [f](const VectorXd& from, const VectorXd& way, double part) {
-    return along_way(f, from, way, part);
+  return [f](const VectorXd& from, const VectorXd& direction, double part) {
+    return along_line(f, from, direction, part);
   };
 }
 
@@ -77,7 +77,7 @@ inline constexpr auto four_bar = [](const auto& u) {
   return duet::make_vector(.55 + .4 * cos(psi), .4 * sin(psi), 0 * psi);
 };
 
-/// Where the circles about the cranks' ends meet, the upper point.
+/// The upper intersection of the circles about the ends of the cranks.
 inline constexpr auto five_bar = [](const auto& u) {
   using std::cos;
   using std::sin;
@@ -88,8 +88,8 @@ inline constexpr auto five_bar = [](const auto& u) {
   return duet::make_vector(ax + dx / 2 - up * dy, ay + dy / 2 + up * dx, 0 * up);
 };
 
-/// The lower point where the spheres about the ends of the arms, moved inwards by what the plate
-/// measures, meet.
+/// The lower intersection of the spheres about the ends of the arms, which are moved inwards by the
+/// radius of the plate.
 inline constexpr auto delta = [](const auto& u) {
   using std::cos;
   using std::sin;
@@ -97,12 +97,12 @@ inline constexpr auto delta = [](const auto& u) {
   using S = std::decay_t<decltype(u[0] + 0.)>;
   std::array<duet::vector3<S>, 3> c;
   for (int i = 0; i < 3; ++i) {
-    const double turn = 2 * std::numbers::pi * i / 3;
+    const double angle = 2 * std::numbers::pi * i / 3;
     const S out = .15 + .25 * cos(u[i]);
-    c[std::size_t(i)] = {out * std::cos(turn), out * std::sin(turn), -.25 * sin(u[i])};
+    c[std::size_t(i)] = {out * std::cos(angle), out * std::sin(angle), -.25 * sin(u[i])};
   }
   const duet::vector3<S> a = c[1] - c[0], b = c[2] - c[0];
-  const duet::vector3<S> n = a.cross(b); // up, where arms are on the order of the axes
+  const duet::vector3<S> n = a.cross(b); // points upwards for arms in the order of the axes
   const S area = n.dot(n);
   const duet::vector3<S> centre = (a.dot(a) * b.cross(n) + b.dot(b) * n.cross(a)) / (2 * area);
   const S height = sqrt((.36 - centre.dot(centre)) / area);
@@ -110,10 +110,11 @@ inline constexpr auto delta = [](const auto& u) {
 };
 
 /// The wheel centre by the constraints of the example `wheel_carrier`.
-inline path wheel_centre(const VectorXd& from, const VectorXd& way, double part) {
+inline path wheel_centre(const VectorXd& from, const VectorXd& direction, double part) {
   static const ::wheel_carrier::carrier carrier(::wheel_carrier::example_hardpoints());
-  const auto state = carrier.at(from[0] + part * way[0]);
-  return {state.centre, state.centre_first * way[0], state.centre_second * way[0] * way[0]};
+  const auto state = carrier.at(from[0] + part * direction[0]);
+  return {state.centre, state.centre_first * direction[0],
+          state.centre_second * direction[0] * direction[0]};
 }
 
 inline VectorXd numbers(std::initializer_list<double> x) {
@@ -126,12 +127,12 @@ inline VectorXd numbers(std::initializer_list<double> x) {
 inline std::vector<mechanism> known_mechanisms() {
   using detail::along;
   using detail::numbers;
-  const double turn = 2 * std::numbers::pi;
+  const double full_turn = 2 * std::numbers::pi;
   return {{"four_bar",
            {"crank"},
            numbers({0, 1.1, 2.1}),
            numbers({0}),
-           numbers({turn}),
+           numbers({full_turn}),
            "rocker",
            {.4, 0, 0},
            {0, -1e-3, 1},

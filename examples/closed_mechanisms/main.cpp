@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Mechanisms with loops out of files, a robot description and a list of loops each: in how many
-// ways they move, how their loops close, their motion by drives and its derivatives beside formulas
-// by hand, and where drives are dead.
+// Closed-chain mechanisms from files, a robot description and a list of loop constraints each:
+// their mobility, assembly configurations, driven motion and its derivatives compared with closed
+// forms, and dead points.
 
 #include "formulas.hpp"
 #include "pictures.hpp"
@@ -87,10 +87,11 @@ std::string names(const duet::closed_chain_mechanism& mechanism,
   return result;
 }
 
-void print(const duet::assembly_search_result& found) {
-  std::printf("%zu ways to close from %d starts, of which %d closed; chance of more %.2g:\n",
-              found.positions.size(), found.starts, found.converged, found.missing_probability());
-  for (const duet::assembly_configuration& each : found.positions) {
+void print(const duet::assembly_search_result& result) {
+  std::printf(
+      "%zu assembly configurations from %d starts, of which %d closed; missing probability %.2g:\n",
+      result.positions.size(), result.starts, result.converged, result.missing_probability());
+  for (const duet::assembly_configuration& each : result.positions) {
     for (const double x : each.coordinates) {
       std::printf(" %9.5f", std::abs(x) < 5e-6 ? 0 : x);
     }
@@ -98,57 +99,57 @@ void print(const duet::assembly_search_result& found) {
   }
 }
 
-/// Along the way of the drives, beside what is known by hand.
+/// Moves the driven coordinates and compares the motion with the closed form.
 void follow(const options& settings, const mechanism& known, duet::driven_motion motion,
             example::drawing& picture) {
   const duet::closed_chain_mechanism mechanism = motion.mechanism();
   const auto at = mechanism.tree().link(known.link).at_point(known.point);
-  const VectorXd way = known.to - known.from;
+  const VectorXd direction = known.to - known.from;
   std::string table = "part,x,y,z,dx,dy,dz,ddx,ddy,ddz\n";
-  std::array<double, 3> apart{};
+  std::array<double, 3> differences{};
   std::vector<example::point> curve;
   for (int i = 0; i < settings.samples; ++i) {
     const double part = double(i) / (settings.samples - 1);
-    motion = motion.warm_started_at(known.from + part * way);
+    motion = motion.warm_started_at(known.from + part * direction);
     const path x =
-        along_way([&](const auto& u) { return translation(mechanism.tree().pose(motion(u), at)); },
-                  known.from, way, part);
-    const path expected = known.by_hand(known.from, way, part);
+        along_line([&](const auto& u) { return translation(mechanism.tree().pose(motion(u), at)); },
+                   known.from, direction, part);
+    const path expected = known.by_hand(known.from, direction, part);
     std::vector<double> row{part};
     for (std::size_t k = 0; k < 3; ++k) {
-      apart[k] = std::max(apart[k], (x[k] - expected[k]).norm());
+      differences[k] = std::max(differences[k], (x[k] - expected[k]).norm());
       row.insert(row.end(), x[k].begin(), x[k].end());
     }
     table += duet::csv_line(row);
     curve.push_back(x[0]);
-    const int drawn = way.size() == 1 ? 4 : 2;
+    const int drawn = direction.size() == 1 ? 4 : 2;
     if (i % ((settings.samples + drawn - 1) / drawn) == 0) {
       add(picture, mechanism, motion.start(),
           example::mixed(colours[0], "#ffffff", .7 * (1 - part)));
     }
   }
   picture.line(curve, colours[1], "lw 3", 10 * mechanism.length());
-  duet::write_file(settings.out + "/" + known.name + "_way.csv", table);
+  duet::write_file(settings.out + "/" + known.name + "_motion.csv", table);
   std::printf("by hand: position_difference=%.2g first_derivative_difference=%.2g "
               "second_derivative_difference=%.2g\n",
-              apart[0], apart[1], apart[2]);
+              differences[0], differences[1], differences[2]);
 }
 
-/// The whole motion by one drive, and where joints are dead.
-void print(const duet::closed_chain_mechanism& mechanism, const duet::motion_trace& whole) {
-  std::printf("the whole motion: %zu positions, %s\n", whole.positions.size(),
-              whole.is_closed       ? "comes back"
-              : whole.stopped_early ? "ends where branches touch"
-                                    : "goes on");
-  for (const duet::branch_point& each : whole.branch_points) {
-    std::printf("  %zu ways leave from", each.tangents.size());
+/// Prints the complete motion of a mechanism with one driven coordinate, and its dead points.
+void print(const duet::closed_chain_mechanism& mechanism, const duet::motion_trace& motion) {
+  std::printf("complete motion: %zu positions, %s\n", motion.positions.size(),
+              motion.is_closed        ? "closed"
+              : motion.stopped_early ? "ends at a branch point"
+                                      : "not closed");
+  for (const duet::branch_point& each : motion.branch_points) {
+    std::printf("  %zu tangents at the branch point", each.tangents.size());
     for (const double x : each.coordinates) {
       std::printf(" %.10f", std::abs(x) < 5e-11 ? 0 : x);
     }
     std::printf("\n");
   }
   const auto& joints = mechanism.tree().joints();
-  for (const duet::dead_point& each : whole.dead_points) {
+  for (const duet::dead_point& each : motion.dead_points) {
     const std::string& name = mechanism.tree().coordinate_names()[std::size_t(each.coordinate)];
     if (std::any_of(joints.begin(), joints.end(),
                     [&](const duet::tree_joint& joint) { return joint.name == name; })) {
@@ -176,25 +177,25 @@ void run(const options& settings) {
     drives.push_back(mechanism.tree().coordinate(name));
   }
   std::printf("%s: %d coordinates, %d equations\n", known->name.c_str(), mechanism.size(),
-              mechanism.equation_count());
-  const auto found = duet::find_assembly_configurations(mechanism, drives, known->from,
-                                                        {.random_starts = settings.starts});
-  if (found.positions.empty()) {
+              mechanism.equations());
+  const auto result = duet::find_assembly_configurations(mechanism, drives, known->from,
+                                                         {.random_starts = settings.starts});
+  if (result.positions.empty()) {
     throw std::runtime_error("no assembly configuration found (increase --random-starts)");
   }
   const VectorXd q =
-      drives.empty() ? found.positions[0].coordinates : mechanism.assemble(known->guess, drives);
+      drives.empty() ? result.positions[0].coordinates : mechanism.closed(known->guess, drives);
   std::printf("%s\n", to_text(duet::mobility(mechanism, q)).c_str());
   const auto independent = mechanism.independent_coordinates(q);
-  std::printf("drives:%s; by condition:%s\n", names(mechanism, drives).c_str(),
+  std::printf("driven:%s; best conditioned:%s\n", names(mechanism, drives).c_str(),
               names(mechanism, independent).c_str());
-  print(found);
+  print(result);
   std::filesystem::create_directories(settings.out);
   example::drawing picture(known->view);
   if (drives.empty()) {
     add(picture, mechanism, q, colours[0]);
-    for (std::size_t i = 1; i < found.positions.size(); ++i) {
-      add_lines(picture, mechanism, found.positions[i].coordinates, colours[i % colours.size()]);
+    for (std::size_t i = 1; i < result.positions.size(); ++i) {
+      add_lines(picture, mechanism, result.positions[i].coordinates, colours[i % colours.size()]);
     }
   } else {
     const duet::driven_motion motion(mechanism, q, drives);

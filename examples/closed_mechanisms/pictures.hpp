@@ -15,12 +15,12 @@
 #include <vector>
 
 /// \file
-/// Mechanisms with loops as they stand.
+/// Drawings of closed-chain mechanisms.
 
 namespace closed_mechanisms {
 
-/// Calls bar(from, to) for all links, between their joints and loops, rod(from, to) for rods, and
-/// fixed(point) for what of them is on the root.
+/// Calls bar(from, to) for all links, between their joints and loop constraints, rod(from, to) for
+/// rods, and fixed(point) for their points on the root.
 template <class Bar, class Rod, class Fixed>
 void for_each_part(const duet::closed_chain_mechanism& mechanism, const Eigen::VectorXd& q,
                    const Bar& bar, const Rod& rod, const Fixed& fixed) {
@@ -55,7 +55,7 @@ void for_each_part(const duet::closed_chain_mechanism& mechanism, const Eigen::V
   }
 }
 
-/// As solids.
+/// Draws a mechanism as solids.
 inline void add(example::drawing& picture, const duet::closed_chain_mechanism& mechanism,
                 const Eigen::VectorXd& q, const std::string& colour) {
   using example::point;
@@ -67,7 +67,7 @@ inline void add(example::drawing& picture, const duet::closed_chain_mechanism& m
       [&](const point& x) { picture.ball(x, 2 * radius, "#6e7781"); });
 }
 
-/// Its links as lines.
+/// Draws the links as lines.
 inline void add_lines(example::drawing& picture, const duet::closed_chain_mechanism& mechanism,
                       const Eigen::VectorXd& q, const std::string& colour) {
   using example::point;
@@ -79,7 +79,7 @@ inline void add_lines(example::drawing& picture, const duet::closed_chain_mechan
       [](const point&, const point&) {}, [](const point&) {});
 }
 
-/// Writes the drawing; false where gnuplot is not installed.
+/// Writes the drawing; false if gnuplot is not installed.
 inline bool draw(const std::string& folder, const std::string& name,
                  const example::drawing& picture) {
   duet::write_file(folder + "/" + name + ".csv", picture.csv());

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A robot arm: where its tip is, how it moves with the joints, the joints for another pose, and
-// joint coordinates along the screw motion that leads there.
+// A robot arm: forward kinematics, Jacobian, inverse kinematics, and a plan along a screw motion.
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/mechanism/jacobian.hpp>
@@ -22,12 +21,12 @@ int main() {
   std::cout << "twists [v; omega] with each joint, in the base's axes, v that of the tip\n"
             << jacobian(arm, theta, duet::frame::hybrid) << "\n";
 
-  // 0.2 m further and turned.
+  // A goal 0.22 m away, with another orientation.
   const auto goal =
       duet::pose(duet::from_axis_angle(duet::vector3<double>(0, 1, 0), 0.3) * rotation(start),
                  duet::vector3<double>(translation(start) + duet::vector3<double>(0.1, 0.2, 0)));
-  const auto found = duet::inverse_kinematics(arm, goal, theta);
-  std::cout << "joints there  " << found.joints.transpose() << "\n";
+  const auto solution = duet::inverse_kinematics(arm, goal, theta);
+  std::cout << "joints there  " << solution.joints.transpose() << "\n";
 
   const auto plan = duet::plan_screw_motion(arm, theta, goal);
   std::cout << "along a screw " << to_text(plan.reason) << " in " << plan.joints.size()

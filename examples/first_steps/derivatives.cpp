@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Derivatives of functions as they are written: a template, or a lambda with auto, is all it takes.
+// Derivatives of ordinary functions: any template, or lambda with auto parameters, can be
+// differentiated.
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
@@ -14,7 +15,8 @@
 int main() {
   using std::cos, std::exp, std::sin;
 
-  // Of one number. The constant is a double, so exp and sin may be std's or duet's: no prefix.
+  // A function of one number. The constant is a double, so exp and sin may be std's or duet's: no
+  // prefix.
   const auto f = [](auto x) { return exp(-x) * sin(3 * x); };
   const auto [y, slope] = duet::derivative(f, 0.5);
   std::cout << "f = " << y << ", f' = " << slope << "\n";
@@ -23,13 +25,13 @@ int main() {
   }
   std::cout << "  f and four derivatives\n";
 
-  // Of several.
+  // A function of several numbers.
   const auto g = [](const auto& x) { return x[0] * x[0] * cos(x[1]) + x[2]; };
   const Eigen::Vector3d x(1, 2, 3);
   std::cout << "gradient " << duet::gradient(g, x).gradient.transpose() << "\n";
   std::cout << "Hessian\n" << duet::hessian(g, x).hessian << "\n";
 
-  // Of several, to several. What is returned holds its numbers itself: an array, or .eval().
+  // Several results. The function returns an object that owns its data: an array, or .eval().
   const auto polar = [](const auto& p) { return std::array{p[0] * cos(p[1]), p[0] * sin(p[1])}; };
   std::cout << "Jacobian\n" << duet::jacobian(polar, Eigen::Vector2d(2, 0.5)).jacobian << "\n";
 }

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 // Rotations as unit quaternions: active, Hamilton's product, scalar first. Angular velocities come
-// from the derivative of the motion, in fixed or in moving axes; which, must be said.
+// from the derivative of the motion; the axes, fixed or moving, must be specified.
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/euler.hpp>
@@ -18,9 +18,9 @@ int main() {
 
   const auto q = from_axis_angle(vector3<double>(0, 0, 1), 1.5);
   const auto p = from_euler<zyx>(0.3, -0.2, 0.1); // yaw, pitch, roll
-  std::cout << "first p, then q, turn x to   "
+  std::cout << "first p, then q, rotate x to "
             << rotate(q * p, vector3<double>(1, 0, 0)).transpose() << "\n";
-  std::cout << "the turn from p to q is by   " << rotation_vector(conj(p) * q).norm() << " rad\n";
+  std::cout << "the angle from p to q is     " << rotation_vector(conj(p) * q).norm() << " rad\n";
 
   // A motion: any function of time that returns a quaternion.
   const auto motion = [&](auto t) { return slerp(p, q, t); };

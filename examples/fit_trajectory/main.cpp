@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// Recorded motion, smoothed: a cumulative B-spline of poses near the rows of a file, by robust
-// least squares. Velocities and accelerations are the curve's own, exact derivatives, not
-// differences.
+// Smoothing of recorded motion: a cumulative B-spline of poses is fitted to the samples of a file
+// by robust least squares. Velocities and accelerations are exact derivatives of the curve instead
+// of finite differences.
 
 #include "options.hpp"
 #include "smoothing.hpp"
@@ -25,7 +25,7 @@
 namespace fit_trajectory {
 namespace {
 
-void print_faults(const recording& r, const std::string& path) {
+void print_issues(const recording& r, const std::string& path) {
   if (!r.remark.empty()) {
     std::cerr << duet::printable(path) << ": " << r.remark << "\n";
   }
@@ -44,16 +44,17 @@ void run(const options& settings) {
   example::require_folder(settings.out);
   const recording r =
       settings.file ? duet::load_recording<duet::screw_dual<double>>(*settings.file, settings.times)
-                    : made_up_recording();
+                    : synthetic_recording();
   if (settings.file) {
-    print_faults(r, *settings.file);
+    print_issues(r, *settings.file);
   }
   const auto samples_per_knot = std::size_t(settings.samples_per_knot);
   const std::size_t rows = r.lines.size();
   if (rows < samples_per_knot + 4) {
-    throw std::runtime_error(settings.file.value_or("the made-up recording") + ": " +
-                             std::to_string(rows) + " usable rows are too few for one knot in " +
-                             std::to_string(samples_per_knot));
+    throw std::runtime_error(settings.file.value_or("the synthetic recording") + ": " +
+                             std::to_string(rows) + " usable rows (expected at least " +
+                             std::to_string(samples_per_knot + 4) + " for --samples-per-knot " +
+                             std::to_string(samples_per_knot) + ")");
   }
   const double duration = r.table.parameters.back();
   const double rate = rate_for(duration, settings.rate);

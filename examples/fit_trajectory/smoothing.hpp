@@ -26,7 +26,7 @@
 #include <vector>
 
 /// \file
-/// The curve near recorded rows, and the tables made of it.
+/// The fitted curve and its tables.
 
 namespace fit_trajectory {
 
@@ -34,9 +34,9 @@ using curve = duet::cumulative_bspline<duet::dual<double, 1, duet::screw_tag>, 4
 using fitted = duet::fit_result<curve>;
 
 inline double median(std::vector<double> x) {
-  const auto middle = x.begin() + std::ptrdiff_t(x.size() / 2);
-  std::nth_element(x.begin(), middle, x.end());
-  return *middle;
+  const auto midpoint = x.begin() + std::ptrdiff_t(x.size() / 2);
+  std::nth_element(x.begin(), midpoint, x.end());
+  return *midpoint;
 }
 
 struct smoothed {
@@ -44,8 +44,7 @@ struct smoothed {
   double outlier; ///< residuals beyond this count as outliers
 };
 
-/// A robust fit, with three times the median of the residuals as the limit of outliers unless one
-/// is given.
+/// A robust fit. The outlier threshold is three times the median residual by default.
 inline smoothed smooth(const recording& r, std::size_t samples_per_knot,
                        double characteristic_length, double outlier) {
   const duet::fit_options options{.characteristic_length = characteristic_length,
@@ -62,14 +61,15 @@ inline std::size_t outliers(const smoothed& s) {
   return std::size_t(std::count_if(s.fit.residuals.begin(), s.fit.residuals.end(), is_far));
 }
 
-/// Poses per second of the table: those asked for, else 100 or as many as make a million.
-/// \throws std::runtime_error where those asked for would be too many
+/// Poses per second of the table: the requested rate; by default 100, or less for at most a million
+/// poses.
+/// \throws std::runtime_error if the requested rate gives too many
 inline double rate_for(double duration, const std::optional<double>& requested) {
-  constexpr double usual = 100, usual_poses = 1e6, most_poses = 1e7;
+  constexpr double default_rate = 100, default_poses = 1e6, max_poses = 1e7;
   if (!requested) {
-    return std::min(usual, usual_poses / duration);
+    return std::min(default_rate, default_poses / duration);
   }
-  if (!(duration * *requested <= most_poses)) {
+  if (!(duration * *requested <= max_poses)) {
     throw std::runtime_error("--rate: " + duet::to_text(*requested) + " Hz over " +
                              duet::to_text(duration) + " s would make more than 10000000 poses");
   }
@@ -95,7 +95,7 @@ inline std::string trajectory_csv(const recording& r, const curve& s, double rat
   return text;
 }
 
-/// Row by row what was measured and how far the curve is from it.
+/// Measured position and residual of every row.
 inline std::string rows_csv(const recording& r, const smoothed& s) {
   std::string text = "line,timestamp,tx,ty,tz,residual,is_outlier\n";
   for (std::size_t i = 0; i < r.lines.size(); ++i) {
@@ -107,18 +107,17 @@ inline std::string rows_csv(const recording& r, const smoothed& s) {
   return text;
 }
 
-/// What gnuplot reads of a table with so many lines: some thousand, evenly, kept for both pictures.
+/// Commands that read a few thousand evenly spaced lines of a table, once for both pictures.
 inline std::string picture_data(const std::string& name, std::size_t lines,
                                 const std::string& columns) {
-  constexpr std::size_t most = 5000;
+  constexpr std::size_t max_lines = 5000;
   return "set table $" + name + "\nplot '" + name + ".csv' skip 1 every " +
-         std::to_string(lines / most + 1) + " using " + columns + " with table\nunset table\n";
+         std::to_string(lines / max_lines + 1) + " using " + columns + " with table\nunset table\n";
 }
 
-/// When the three coordinates of a position, or of one of its velocities, are most apart: there
-/// their names can be read.
-/// \param group  0 position, 1 velocity, 2 angular velocity
-inline std::pair<double, vector3<double>> most_apart(const curve& s, std::size_t group) {
+/// The time at which the three coordinates are best separated, and their values: the position of
+/// their names. \param group  0 position, 1 velocity, 2 angular velocity
+inline std::pair<double, vector3<double>> best_separated(const curve& s, std::size_t group) {
   std::pair<double, vector3<double>> result{};
   double widest = -1;
   for (int i = 4; i <= 96; ++i) {
@@ -127,37 +126,36 @@ inline std::pair<double, vector3<double>> most_apart(const curve& s, std::size_t
     const vector3<double> x = group == 0   ? vector3<double>(duet::translation(m.value))
                               : group == 1 ? vector3<double>(m.velocity.template head<3>())
                                            : vector3<double>(m.velocity.template tail<3>());
-    const double apart =
+    const double separation =
         std::min({std::abs(x[0] - x[1]), std::abs(x[1] - x[2]), std::abs(x[2] - x[0])});
-    if (apart > widest) {
-      widest = apart;
+    if (separation > widest) {
+      widest = separation;
       result = {t, x};
     }
   }
   return result;
 }
 
-/// Position with the rows far off, velocities, and how far rows are from the curve.
-/// \param rows, poses  their numbers: of more rows than some thousand those far off are left out
-/// too
+/// Position with outliers, velocities, and residuals.
+/// \param rows, poses  their numbers; with more than 5000 rows outliers are not drawn
 inline std::string picture_script(double start, double duration, const smoothed& s,
                                   std::size_t rows, std::size_t poses) {
   const std::string first = "-(" + duet::to_text(start) + ")";
   const char* const colours[] = {"vermillion", "green", "blue"};
   const char* const axes[] = {"x", "y", "z"};
-  std::string far;
+  std::string outlier_points;
   if (rows <= 5000) {
     for (int k = 2; k < 5; ++k) {
-      far += "$rows using 1:($6 > 0 ? $" + std::to_string(k) +
-             " : 1/0) with points pt 7 ps .5 lc rgb grey, \\\n     ";
+      outlier_points += "$rows using 1:($6 > 0 ? $" + std::to_string(k) +
+                        " : 1/0) with points pt 7 ps .5 lc rgb grey, \\\n     ";
     }
   }
   const auto curves = [&](std::size_t group) {
     std::string names, text = "plot ";
     if (group == 0) {
-      text += far;
+      text += outlier_points;
     }
-    const auto [t, values] = most_apart(s.fit.curve, group);
+    const auto [t, values] = best_separated(s.fit.curve, group);
     for (std::size_t k = 0; k < 3; ++k) {
       names += std::string("set label '") + axes[k] + "' at " + duet::to_text(t) + "," +
                duet::to_text(values[Eigen::Index(k)]) + " center offset 0,.7 front tc rgb " +

@@ -19,7 +19,7 @@ namespace four_bar {
 /// Coupler angle β and rocker angle ψ, from the ground link.
 using angles = Eigen::Vector2d;
 
-/// The crank turns about (0, 0), the rocker about (ground, 0).
+/// The crank rotates about (0, 0), the rocker about (ground, 0).
 struct linkage {
   double crank, coupler, rocker, ground;
 
@@ -49,7 +49,7 @@ struct linkage {
 };
 
 /// β and ψ by Freudenstein's equation k cos ψ + s sin ψ = (c² + k² + s² − b²)/2c with
-/// k + is = a e^{iθ} − d; not a number where the linkage cannot close.
+/// k + is = a e^{iθ} − d; NaN if the linkage cannot close.
 ///
 /// \param side  −1 or 1: which of its two solutions
 inline angles closed_form(const linkage& l, double theta, double side) {
@@ -61,8 +61,8 @@ inline angles closed_form(const linkage& l, double theta, double side) {
   return {std::atan2(l.rocker * std::sin(psi) - s, l.rocker * std::cos(psi) - k), psi};
 }
 
-/// The closed forms of ψ′ and ψ″ by θ, from the loop's first and second derivative seen along the
-/// coupler.
+/// Closed forms of ψ′ and ψ″ with respect to θ: the first and second derivative of the loop
+/// equation, projected onto the coupler.
 struct rocker_rates {
   double first, second;
 
@@ -80,12 +80,13 @@ struct rocker_rates {
 
 /// A point of the coupler.
 template <class X, class T>
-[[nodiscard]] auto coupler_point(const linkage& l, const Eigen::Vector2d& place, const X& x,
+[[nodiscard]] auto coupler_point(const linkage& l, const Eigen::Vector2d& position, const X& x,
                                  const T& theta) {
   using std::cos;
   using std::sin;
-  return duet::make_vector(l.crank * cos(theta) + place[0] * cos(x[0]) - place[1] * sin(x[0]),
-                           l.crank * sin(theta) + place[0] * sin(x[0]) + place[1] * cos(x[0]));
+  return duet::make_vector(l.crank * cos(theta) + position[0] * cos(x[0]) - position[1] * sin(x[0]),
+                           l.crank * sin(theta) + position[0] * sin(x[0]) +
+                               position[1] * cos(x[0]));
 }
 
 } // namespace four_bar

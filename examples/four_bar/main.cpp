@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A crank drives a rocker through a coupler: a closed loop given by its constraints only, its
-// motion and the rates of its motion beside the textbook's closed forms.
+// A crank drives a rocker through a coupler: a closed loop defined by its constraints alone. Its
+// motion, velocities and accelerations are compared with the closed forms of textbooks.
 
 #include "linkage.hpp"
 
@@ -48,19 +48,20 @@ std::optional<options> parse_options(int argc, char** argv) {
       "acceleration of the rocker, and the curve of a coupler point, over the crank's angle.\n"
       "Lengths in metres, angles in degrees. Options");
   description.flag("help", "print this and stop")
-      .value<double>("crank", "X", "length (default: 0.2)")
-      .value<double>("coupler", "X", "length (default: 0.5)")
-      .value<double>("rocker", "X", "length (default: 0.4)")
-      .value<double>("ground", "X", "length (default: 0.55)")
-      .value<double>("along", "X",
-                     "of the coupler point, from the crank along the coupler (default: 0.3)")
-      .value<double>("beside", "X",
-                     "of the coupler point, to the left of the coupler (default: 0.25)")
+      .value<double>("crank", "X", "length of the crank (default: 0.2)")
+      .value<double>("coupler", "X", "length of the coupler (default: 0.5)")
+      .value<double>("rocker", "X", "length of the rocker (default: 0.4)")
+      .value<double>("ground", "X", "length of the ground link (default: 0.55)")
+      .value<double>(
+          "along", "X",
+          "position of the coupler point along the coupler, from the crank (default: 0.3)")
+      .value<double>("across", "X",
+                     "position of the coupler point to the left of the coupler (default: 0.25)")
       .value<double>("from", "X", "first angle of the crank (default: 0)")
       .value<double>("to", "X", "last angle of the crank (default: 360)")
-      .value<double>("speed", "X", "of the crank, rad/s (default: 1)")
+      .value<double>("speed", "X", "angular velocity of the crank, rad/s (default: 1)")
       .flag("crossed", "assemble it with crossed links instead of open")
-      .value<int>("samples", "N", "positions (default: 361)")
+      .value<int>("samples", "N", "number of positions (default: 361)")
       .value<std::string>("out", "DIR",
                           "folder for the table and the picture (default: four_bar_out)");
   const auto arguments = example::command_line::parse(argc, argv, description);
@@ -71,8 +72,9 @@ std::optional<options> parse_options(int argc, char** argv) {
   const auto read = [&](const char* name, double& x, bool is_length) {
     x = arguments->get<double>(name).value_or(x);
     if (!std::isfinite(x) || (is_length && x <= 0)) {
-      throw std::runtime_error(std::string("--") + name + ": " + duet::to_text(x) +
-                               (is_length ? " is no length" : " is not finite"));
+      throw std::runtime_error(
+          std::string("--") + name + " is " + duet::to_text(x) +
+          (is_length ? " (expected a positive length)" : " (expected a finite number)"));
     }
   };
   read("crank", result.links.crank, true);
@@ -80,7 +82,7 @@ std::optional<options> parse_options(int argc, char** argv) {
   read("rocker", result.links.rocker, true);
   read("ground", result.links.ground, true);
   read("along", result.point[0], false);
-  read("beside", result.point[1], false);
+  read("across", result.point[1], false);
   read("from", result.from, false);
   read("to", result.to, false);
   read("speed", result.speed, false);
@@ -88,7 +90,8 @@ std::optional<options> parse_options(int argc, char** argv) {
   result.samples = arguments->get<int>("samples").value_or(result.samples);
   result.out = arguments->text("out").value_or(result.out);
   if (result.samples < 2) {
-    throw std::runtime_error("--samples: 2 or more");
+    throw std::runtime_error("--samples is " + std::to_string(result.samples) +
+                             " (expected at least 2)");
   }
   return result;
 }
@@ -101,7 +104,7 @@ struct sample {
   Eigen::Vector2d point;                     ///< m
 };
 
-/// From angle to angle, so that every loop starts where the one before ended.
+/// Solves the loop at one angle after the other, each warm-started with the previous solution.
 std::vector<sample> run_through(const options& settings) {
   const double first = settings.from * degree;
   const angles start = closed_form(settings.links, first, settings.side);
@@ -144,7 +147,7 @@ double difference(const std::vector<sample>& samples, Automatic automatic, ByHan
   return largest > 0 ? worst / largest : worst;
 }
 
-/// The same for ψ itself, in radians.
+/// The largest difference of ψ from its closed form, in radians.
 double angle_difference(const std::vector<sample>& samples, const options& settings) {
   double worst = 0;
   for (const sample& s : samples) {
@@ -180,13 +183,14 @@ std::string links_csv(const options& settings, const std::vector<sample>& sample
   return text;
 }
 
-/// Left the linkage and the way of its coupler point, right the rates of its rocker.
+/// Left: the linkage and the path of its coupler point. Right: velocity and acceleration of the
+/// rocker.
 std::string picture_script(const std::vector<sample>& samples) {
   const std::size_t rows = samples.size();
   const auto top =
       std::max_element(samples.begin(), samples.end(),
                        [](const sample& a, const sample& b) { return a.point[1] < b.point[1]; });
-  using enum example::beside;
+  using enum example::label_position;
   const char* const circles = "points pt 6 ps .9";
   return "set multiplot layout 1,2 title " +
          example::title("The loop's rates of the rocker (lines) are those of the closed form "

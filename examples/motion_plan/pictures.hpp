@@ -53,7 +53,7 @@ inline std::string joints_script(const problem& p, const plan_type& plan,
     turns = turns && p.arm.kind(i) != duet::joint_kind::prismatic;
   }
   const std::string unit = turns ? "rad" : "(rad or m)";
-  using enum example::beside;
+  using enum example::label_position;
   return "max(a, b) = a > b ? a : b\nset multiplot layout 3,1 title " +
          example::title("At nearly every moment one joint is at a limit") +
          "\nset lmargin 11\nset rmargin 12\nset xrange [*:*] noextend\n"
@@ -74,7 +74,7 @@ inline std::string joints_script(const problem& p, const plan_type& plan,
 /// \param duration  with limits of jerk
 /// \param rows  of both tables
 inline std::string jerk_script(double duration, std::size_t rows) {
-  using enum example::beside;
+  using enum example::label_position;
   const auto panel = [&](const std::string& file) {
     return example::plot_command(file, {{"1:4", "purple", "jerk", rows - 1, right},
                                         {"1:2", "vermillion", "rate", rows / 2, above},
@@ -93,7 +93,7 @@ inline std::string jerk_script(double duration, std::size_t rows) {
 
 /// \param rows  of deviations.csv, eleven between two waypoints
 inline std::string deviation_script(const problem& p, std::size_t rows) {
-  using enum example::beside;
+  using enum example::label_position;
   const std::string both =
       "set ylabel 'off the screw / (µm, µrad)'\nset xrange [0:1]\nset yrange [0:12]\n" +
       example::plot_command("deviations.csv",
@@ -134,7 +134,7 @@ inline std::string arm_script(const example::drawing& d, const problem& p, const
     return ends + d.script("arm_shapes.csv");
   }
   const auto& gap = nearest->clearance.points;
-  using enum example::beside;
+  using enum example::label_position;
   return "set multiplot title " +
          example::title(obstacles_of(p, "The arm keeps ", "Links keep ") +
                         millimetres(plan.smallest_clearance) + " or more from " +

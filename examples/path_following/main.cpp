@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// The tip of an arm draws a helix without turning: follow_path along a function. Writes the joint
-// path as a table, and draws it. The arm is one of duet's or read from a URDF file.
+// The tip of an arm draws a helix with constant orientation: follow_path along a function. Writes
+// the joint path as a table and draws it. The arm is built in or read from a URDF file.
 
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"

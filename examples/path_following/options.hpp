@@ -5,6 +5,8 @@
 #include "../support/command_line.hpp"
 #include "../support/numbers.hpp"
 
+#include <duet/core/text/number_text.hpp>
+
 #include <Eigen/Core>
 
 #include <cmath>
@@ -25,11 +27,11 @@ struct options {
   std::string out = "path_following_out";
 };
 
-/// Where duet's arms are bent and have room.
-/// \throws std::runtime_error for another one
+/// Start configurations of the built-in arms, bent and far from the joint limits.
+/// \throws std::runtime_error for a URDF file
 inline std::string usual_start(const example::command_line& line) {
   if (line.has("urdf")) {
-    throw std::runtime_error("--urdf: say where to start, too, by --joints");
+    throw std::runtime_error("--urdf requires --joints, the start configuration");
   }
   const std::string name = line.text("robot").value_or("panda");
   return name == "iiwa14"        ? "0,0.6,0,-1.2,0,0.9,0"
@@ -42,16 +44,16 @@ inline std::string usual_start(const example::command_line& line) {
 /// \throws std::exception with a one-line message
 inline std::optional<options> parse_options(int argc, char** argv) {
   example::option_list description(
-      "The tip of an arm draws a helix about a vertical axis, without turning.\nWrites the joint "
+      "The tip of an arm draws a helix about a vertical axis with constant orientation.\nWrites "
+      "the joint "
       "path (path.csv) and a picture of it. Metres and radians. Options");
   description.flag("help", "print this and stop");
   example::add_arm_options(description);
   description.value<std::string>("joints", "X,X,...",
-                                 "where to start (default: bent, for arms by name)");
-  description.value<double>("radius", "R", "of the helix (default: 0.08)");
-  description.value<double>("pitch", "P",
-                            "how far it rises per turn, down if negative (default: 0.06)");
-  description.value<double>("turns", "N", "how many (default: 2)");
+                                 "start configuration (default: a bent one, for built-in arms)");
+  description.value<double>("radius", "R", "radius of the helix (default: 0.08)");
+  description.value<double>("pitch", "P", "rise per turn, downwards if negative (default: 0.06)");
+  description.value<double>("turns", "N", "number of turns (default: 2)");
   description.value<std::string>(
       "out", "DIR", "folder for the table and the picture (default: path_following_out)");
   const auto line = example::command_line::parse(argc, argv, description);
@@ -71,13 +73,16 @@ inline std::optional<options> parse_options(int argc, char** argv) {
   result.turns = line->get<double>("turns").value_or(result.turns);
   result.out = line->text("out").value_or(result.out);
   if (!(result.radius >= 0 && std::isfinite(result.radius))) {
-    throw std::runtime_error("--radius: a number from 0 up");
+    throw std::runtime_error("--radius is " + duet::to_text(result.radius) +
+                             " (expected at least 0)");
   }
   if (!std::isfinite(result.pitch)) {
-    throw std::runtime_error("--pitch: a finite number");
+    throw std::runtime_error("--pitch is " + duet::to_text(result.pitch) +
+                             " (expected a finite number)");
   }
   if (!(result.turns > 0 && result.turns <= 1000)) {
-    throw std::runtime_error("--turns: a number above 0, at most 1000");
+    throw std::runtime_error("--turns is " + duet::to_text(result.turns) +
+                             " (expected more than 0, at most 1000)");
   }
   return result;
 }

@@ -39,8 +39,8 @@ std::string path_csv(const duet::motion_plan<N>& plan) {
   return text;
 }
 
-/// The arm at the start, pale, and at the end, as thick lines from joint to joint, and the ways of
-/// the path and of its tip.
+/// The arm at the start, pale, and at the end, as thick lines from joint to joint, with the
+/// required path and that of the tip.
 template <class Arm, int N, class Path>
 example::drawing drawing_of(const Arm& arm, const duet::motion_plan<N>& plan, const Path& path,
                             double turns) {
@@ -62,16 +62,16 @@ example::drawing drawing_of(const Arm& arm, const duet::motion_plan<N>& plan, co
     d.line({{x, -.3, 0}, {x, .3, 0}}, "#c4ccd4", "lw 1", 2 * behind);
     d.line({{-.3, x, 0}, {.3, x, 0}}, "#c4ccd4", "lw 1", 2 * behind);
   }
-  std::vector<example::point> asked, gone;
+  std::vector<example::point> required_path, tip_path;
   const int steps = int(60 * turns) + 1;
   for (int i = 0; i <= steps; ++i) {
-    asked.push_back(duet::translation(path(turns * i / steps)));
+    required_path.push_back(duet::translation(path(turns * i / steps)));
   }
   for (const auto& theta : plan.joints) {
-    gone.push_back(duet::translation(arm.pose(theta)));
+    tip_path.push_back(duet::translation(arm.pose(theta)));
   }
-  d.line(asked, "#f0c060", "lw 6", before);
-  d.line(gone, "#d55e00", "lw 2", 2 * before);
+  d.line(required_path, "#f0c060", "lw 6", before);
+  d.line(tip_path, "#d55e00", "lw 2", 2 * before);
   return d;
 }
 
@@ -88,7 +88,7 @@ std::string picture_script(const example::drawing& d, const duet::motion_plan<N>
     return std::string("set lmargin at screen ") + left + "\nset rmargin at screen " + right +
            "\nset bmargin at screen " + bottom + "\nset tmargin at screen " + top + "\n";
   };
-  using enum example::beside;
+  using enum example::label_position;
   return "set multiplot title " +
          example::title("The tip stays on the helix, within " +
                         example::two_digits(1e9 * off.translation) + " nm and " +

@@ -16,11 +16,11 @@
 #include <vector>
 
 /// \file
-/// The arms that examples run on: duet's, or one from a URDF file.
+/// The arms of the examples: the built-in ones, or one from a URDF file.
 
 namespace example {
 
-/// Any of the arms, so that what is done with it is compiled once.
+/// One type for all arms, so that code for it is compiled once.
 using arm_chain = duet::bounded_chain<16>;
 
 /// The options --robot, --urdf, --base and --tip.
@@ -28,9 +28,9 @@ inline void add_arm_options(example::option_list& description) {
   description.value<std::string>("robot", "NAME",
                                  "panda, iiwa14, ur5e or baxter_left (default: panda)");
   description.value<std::string>("urdf", "FILE",
-                                 "a robot description instead, with --base and --tip");
-  description.value<std::string>("base", "LINK", "its link to start from");
-  description.value<std::string>("tip", "LINK", "its link to end with");
+                                 "robot description (URDF) instead, with --base and --tip");
+  description.value<std::string>("base", "LINK", "base link of the chain");
+  description.value<std::string>("tip", "LINK", "tip link of the chain");
 }
 
 /// The arm that these options name.
@@ -38,7 +38,7 @@ inline void add_arm_options(example::option_list& description) {
   namespace robots = duet::robots;
   const auto joints_of = [](const arm_chain& arm) {
     if (arm.size() == 0) {
-      throw std::runtime_error("no joint moves between base and tip");
+      throw std::runtime_error("there is no movable joint between base and tip");
     }
     return arm;
   };
@@ -59,12 +59,12 @@ inline void add_arm_options(example::option_list& description) {
   if (name == "baxter_left") {
     return robots::baxter_left().table();
   }
-  throw std::runtime_error("--robot: '" + name +
-                           "' is none of panda, iiwa14, ur5e and baxter_left");
+  throw std::runtime_error("--robot is '" + name +
+                           "' (expected panda, iiwa14, ur5e or baxter_left)");
 }
 
-/// The coordinates that an option of this name gives, else the middle of the limits, or 0 where
-/// there are none.
+/// The coordinates from the option of this name; by default the midpoint of the limits, or 0
+/// without limits.
 [[nodiscard]] inline Eigen::VectorXd
 coordinates(const arm_chain& arm, const command_line& arguments, const std::string& name) {
   Eigen::VectorXd theta(arm.size());

@@ -18,8 +18,8 @@ namespace {
 
 namespace po = boost::program_options;
 
-/// Messages of Boost replace `%value%` by the value for as long as there is one: where that holds
-/// `%value%` itself, for ever.
+/// Messages of Boost replace `%value%` by the value again and again: if the value contains
+/// `%value%` itself, the replacement never ends.
 void require_no_placeholders(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string text(argv[i]);

@@ -6,16 +6,15 @@
 #include <string>
 
 /// \file
-/// Command lines, by Boost.Program_options, whose headers are read once, for command_line.cpp.
+/// Command lines by Boost.Program_options, whose headers are compiled once, in command_line.cpp.
 
 namespace example {
 
-/// The options that a program knows. What is given with one is a `T`: an int, a long long, a
-/// std::uint64_t, a double, a std::string or, where the option may be repeated, a
-/// std::vector<std::string>.
+/// The options of a program. The value of an option is a `T`: an int, a long long, a std::uint64_t,
+/// a double, a std::string or, if the option may be repeated, a std::vector<std::string>.
 class option_list {
 public:
-  /// \param title  what --help prints before the options
+  /// \param title  text that --help prints before the options
   explicit option_list(const std::string& title);
 
   template <class T>
@@ -28,11 +27,11 @@ private:
   std::shared_ptr<data> data_;
 };
 
-/// What was given.
+/// The options of a command line with their values.
 class command_line {
 public:
-  /// Nothing where only help was asked for, which has then been printed.
-  /// \param positional  the option that a bare argument stands for, none if empty
+  /// Returns nothing if only help was requested, which has then been printed.
+  /// \param positional  the option whose value an argument without a name is; empty for none
   /// \throws std::exception with a one-line message
   [[nodiscard]] static std::optional<command_line>
   parse(int argc, char** argv, const option_list& known, const std::string& positional = {});

@@ -11,23 +11,32 @@
 #include <vector>
 
 /// \file
-/// Curves of a table with their names beside them, for scripts of gnuplot.
+/// Curves of a table, labelled with their names, for gnuplot scripts.
 
 namespace example {
 
-enum class beside { right, left, above, below, above_right, above_left, below_right, below_left };
+enum class label_position {
+  right,
+  left,
+  above,
+  below,
+  above_right,
+  above_left,
+  below_right,
+  below_left
+};
 
-/// A curve of a table, and at which of its rows, from 0, its name stands where.
+/// A curve of a table with its label: text, row of the table (from 0), position next to the curve.
 struct named_line {
   std::string columns; ///< as gnuplot has them: `1:2`, `1:(abs($3))`
   std::string colour;  ///< a name of `picture_style`
   std::string name;
   std::size_t row = 0;
-  beside place = beside::right;
+  label_position position = label_position::right;
   std::string style = "lines lw 2";
 };
 
-/// `text` within quotation marks of gnuplot, to the letter.
+/// `text` as a string literal of gnuplot.
 [[nodiscard]] inline std::string in_quotes(const std::string& text) {
   std::string result = "'";
   for (const char c : text) {
@@ -49,28 +58,28 @@ struct named_line {
   return text;
 }
 
-/// What follows `title`: a sentence that says what the picture shows.
+/// Argument of `title`: a sentence that states what the picture shows.
 [[nodiscard]] inline std::string title(const std::string& sentence) {
   return in_quotes("{/:Bold " + sentence + "}");
 }
 
-/// What follows `plot`: a curve, then its name.
+/// Argument of `plot`: a curve, then its label.
 [[nodiscard]] inline std::string plot_element(const std::string& file, const named_line& line) {
-  const char* const places[] = {"left offset 1,0",    "right offset -1,0",   "center offset 0,1",
-                                "center offset 0,-1", "left offset .5,.6",   "right offset -.5,.6",
-                                "left offset .5,-.6", "right offset -.5,-.6"};
+  const char* const placements[] = {
+      "left offset 1,0",   "right offset -1,0",   "center offset 0,1",  "center offset 0,-1",
+      "left offset .5,.6", "right offset -.5,.6", "left offset .5,-.6", "right offset -.5,-.6"};
   const std::string row = std::to_string(line.row);
   std::string text = in_quotes(file) + " using " + line.columns + " skip 1 with " + line.style +
                      " lc rgb " + line.colour;
   if (!line.name.empty()) {
     text += ", \\\n     '' using " + line.columns + ":(" + in_quotes(line.name) +
             ") skip 1 every ::" + row + "::" + row + " with labels noenhanced " +
-            places[int(line.place)] + " tc rgb " + line.colour;
+            placements[int(line.position)] + " tc rgb " + line.colour;
   }
   return text;
 }
 
-/// An arrow at x from one curve to another, and beside it what is between them.
+/// An arrow at x from one curve to another, labelled with a text.
 [[nodiscard]] inline std::string gap(double x, double from, double to, const std::string& text) {
   const std::string at = duet::to_text(x) + ",";
   return "set arrow from " + at + duet::to_text(from) + " to " + at + duet::to_text(to) +
@@ -79,7 +88,7 @@ struct named_line {
          " left offset .7,0 tc rgb ink front\n";
 }
 
-/// The command that plots them all, the first on top.
+/// The command that plots all curves, the first one on top.
 [[nodiscard]] inline std::string plot_command(const std::string& file,
                                               const std::vector<named_line>& lines) {
   std::string text;

@@ -18,20 +18,21 @@
 #include <vector>
 
 /// \file
-/// Drawings of solids, seen from far away: shapes on the page, the farther ones below.
+/// Orthographic drawings of solids: shapes on the page, sorted by depth.
 
 namespace example {
 
 using point = Eigen::Vector3d;
 
-/// A colour `#rrggbb`, some of the way to another.
-[[nodiscard]] inline std::string mixed(const std::string& from, const std::string& to, double way) {
+/// Linear interpolation between two colours `#rrggbb`.
+[[nodiscard]] inline std::string mixed(const std::string& from, const std::string& to,
+                                       double fraction) {
   std::string text = "#";
   for (std::size_t i = 1; i < 7; i += 2) {
     const auto part = [&](const std::string& c) { return std::stoi(c.substr(i, 2), nullptr, 16); };
     char digits[3];
     std::snprintf(digits, sizeof digits, "%02x",
-                  unsigned(std::lround(std::lerp(part(from), part(to), way))) & 255U);
+                  unsigned(std::lround(std::lerp(part(from), part(to), fraction))) & 255U);
     text += digits;
   }
   return text;
@@ -46,11 +47,11 @@ public:
     axes_ << right.transpose(), towards.cross(right).transpose(), towards.transpose();
   }
 
-  /// To the right, up, and towards who looks.
+  /// Coordinates to the right, upwards, and towards the viewer.
   [[nodiscard]] point seen(const point& x) const { return axes_ * x; }
 
-  /// All points within a radius of a line from point to point, with the light from above on the
-  /// left. \param shift  of its place in the order, towards who looks
+  /// All points within a radius of a line segment, lit from above left.
+  /// \param shift  added to the depth, towards the viewer
   void capsule(const point& from, const point& to, double radius, const std::string& colour,
                double shift = 0) {
     const point a = seen(from), b = seen(to);
@@ -83,7 +84,7 @@ public:
   }
 
   /// \param style  of gnuplot: `lw 2 dt 2`
-  /// \param shift  of its place in the order, towards who looks
+  /// \param shift  added to the depth, towards the viewer
   void line(const std::vector<point>& points, const std::string& colour,
             const std::string& style = "lw 2", double shift = 0) {
     std::vector<point> on_page;
@@ -95,11 +96,11 @@ public:
     add(on_page, depth, "with lines lc rgb '" + colour + "' " + style);
   }
 
-  /// Above all shapes.
+  /// An arrow in front of all shapes.
   void arrow(const point& from, const point& to, const std::string& colour,
              const std::string& style = "lw 3") {
     const point a = seen(from), b = seen(to);
-    arrows_ += "set arrow from " + place(a) + " to " + place(b) +
+    arrows_ += "set arrow from " + page_position(a) + " to " + page_position(b) +
                " size screen .014,18 filled front lc rgb '" + colour + "' " + style + "\n";
     include(a);
     include(b);
@@ -114,7 +115,7 @@ public:
     add(outline, c[2] + radius, "with lines lc rgb '" + colour + "' " + style);
   }
 
-  /// The shapes as x, y on the page, those below first, two empty lines between.
+  /// The shapes as x, y on the page, the farthest first, separated by two empty lines.
   [[nodiscard]] std::string csv() const {
     std::string result = "x,y\n";
     for (const shape& s : in_order()) {
@@ -126,7 +127,8 @@ public:
     return result;
   }
 
-  /// Shows all of it. \param file  of `csv`
+  /// The gnuplot script that shows the drawing.
+  /// \param file  path of the output of `csv`
   [[nodiscard]] std::string script(const std::string& file) const {
     const auto range = [&](int i) {
       return " [" + duet::to_text(low_[i]) + ":" + duet::to_text(high_[i]) + "]\n";
@@ -142,8 +144,8 @@ public:
     return result + "\nunset arrow\nunset label\n";
   }
 
-  /// A point on the page, as scripts of gnuplot have it.
-  [[nodiscard]] std::string at(const point& x) const { return place(seen(x)); }
+  /// A point on the page in the syntax of gnuplot.
+  [[nodiscard]] std::string at(const point& x) const { return page_position(seen(x)); }
 
 private:
   struct shape {
@@ -152,7 +154,7 @@ private:
     std::string style;
   };
 
-  static std::string place(const point& x) {
+  static std::string page_position(const point& x) {
     return duet::to_text(x[0]) + "," + duet::to_text(x[1]);
   }
 

@@ -13,13 +13,13 @@
 
 namespace example {
 
-/// Finds out before the work whether files could be written to a folder, or to one to be made;
-/// makes nothing.
+/// Checks before the computation that files can be written to a folder, or that the folder can be
+/// created; creates nothing.
 /// \throws std::runtime_error
 inline void require_folder(const std::string& folder) {
   namespace fs = std::filesystem;
   if (folder.empty()) {
-    throw std::runtime_error("--out: a folder's name is empty");
+    throw std::runtime_error("--out is empty (expected a folder)");
   }
   std::error_code ignored;
   fs::path above = fs::path(folder);
@@ -30,13 +30,14 @@ inline void require_folder(const std::string& folder) {
     }
   }
   if (!is_directory(fs::status(above, ignored))) {
-    throw std::runtime_error(folder + ": " +
-                             (above == folder ? "is no folder" : above.string() + " is no folder"));
+    throw std::runtime_error(
+        folder + ": " +
+        (above == folder ? "is not a folder" : above.string() + " is not a folder"));
   }
   try {
     duet::require_writable((above / "duet").string());
   } catch (const duet::file_error&) {
-    throw std::runtime_error(folder + ": nothing can be written to the folder " + above.string());
+    throw std::runtime_error(folder + ": cannot write to the folder " + above.string());
   }
 }
 

@@ -20,7 +20,7 @@
 
 namespace example {
 
-/// Within apostrophes; one of the text becomes `apostrophe`.
+/// The text in single quotes; a quote inside becomes `apostrophe`.
 [[nodiscard]] inline std::string quoted(const std::string& text, const char* apostrophe) {
   std::string result = "'";
   for (const char c : text) {
@@ -32,8 +32,8 @@ namespace example {
   return quoted(text, "'\\''");
 }
 
-/// Runs a command of the shell; the status that it ends with. Ctrl-C, which meanwhile only the
-/// command hears, ends this program too.
+/// Runs a shell command and returns its exit status. Ctrl-C, which only the command receives while
+/// it runs, ends this program, too.
 inline int run_command(const std::string& command) {
   int status = std::system(command.c_str());
 #ifdef WIFSIGNALED
@@ -45,13 +45,13 @@ inline int run_command(const std::string& command) {
   return status;
 }
 
-/// Draws folder/name.svg and folder/name.png in the one style, both or neither; false where gnuplot
-/// is not installed. The script is left in folder/name.gnuplot, to be changed and run there.
-/// \param height  in pixels of a page, on which the picture is `picture_width` wide
-/// \throws std::runtime_error where it fails, duet::file_error
+/// Draws folder/name.svg and folder/name.png, both or neither; false if gnuplot is not installed.
+/// The script remains in folder/name.gnuplot, where it can be changed and run. \param height  in
+/// pixels of a page, on which the picture is `picture_width` wide \throws std::runtime_error if
+/// gnuplot fails, duet::file_error
 inline bool draw(const std::string& folder, const std::string& name, int height,
                  const std::string& script) {
-  // By itself the script draws to these names; here it is given those of drafts.
+  // Run by hand, the script writes to these names; here they are replaced by temporary files.
   const auto output = [&](const std::string& kind) {
     const std::string variable = kind + "_file";
     return "if (!exists('" + variable + "')) " + variable + " = '" + name + "." + kind +
@@ -74,11 +74,11 @@ inline bool draw(const std::string& folder, const std::string& name, int height,
   };
   const std::string variables = "svg_file=" + quoted(absolute(svg.name()), "''") +
                                 "; png_file=" + quoted(absolute(png.name()), "''");
-  // Neither the user's start files nor a terminal that the environment names count.
+  // The user's start files and the terminal named by the environment are ignored.
   const int status =
       run_command("cd " + quoted_for_shell(absolute(folder)) + " && GNUTERM=svg gnuplot -d -e " +
                   quoted_for_shell(variables) + " '" + name + ".gnuplot' >/dev/null 2>&1");
-  if (status == 127) { // the shell has not found it
+  if (status == 127) { // the shell did not find gnuplot
     return false;
   }
   if (status != 0) {

@@ -14,7 +14,7 @@
 #include <vector>
 
 /// \file
-/// Curves of an arm's joints: four that move most in colours and with their names, others pale.
+/// Curves of the joints of an arm: the four that move most in colours, with names; the others pale.
 
 namespace example {
 
@@ -51,20 +51,20 @@ public:
     return plot_command(file, lines);
   }
 
-  /// The names, to the right of where the coordinates end, none on another.
+  /// The names to the right of the last coordinates, without overlaps.
   [[nodiscard]] std::string names() const {
     std::vector<std::size_t> by_end(named_.size());
     std::iota(by_end.begin(), by_end.end(), std::size_t(0));
     std::sort(by_end.begin(), by_end.end(),
               [&](std::size_t a, std::size_t b) { return last_[named_[a]] < last_[named_[b]]; });
-    const double apart = .11 * (high_.maxCoeff() - low_.minCoeff());
+    const double spacing = .11 * (high_.maxCoeff() - low_.minCoeff());
     std::string text;
     double free = low_.minCoeff();
     for (const std::size_t k : by_end) {
       const double y = std::max(free, last_[named_[k]]);
       text += "set label 'joint " + std::to_string(named_[k]) + "' at graph 1.015, first " +
               duet::to_text(y) + " tc rgb " + colours[k] + "\n";
-      free = y + apart;
+      free = y + spacing;
     }
     return text;
   }

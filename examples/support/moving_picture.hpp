@@ -14,17 +14,17 @@
 #include <vector>
 
 /// \file
-/// A point that runs along its curve with two velocities, as an SVG that moves by itself.
+/// Animated SVG of a point that moves along a curve, with two velocities.
 
 namespace example {
 
-/// Where the point is at one instant, and what both formulas say of its velocity.
+/// Position of the point at one instant, and its velocity by both formulas.
 struct moving_point {
-  point place, velocity, printed;
+  point position, velocity, printed;
   double angle; ///< between both, degrees
 };
 
-/// Writes the picture: a ball with the curve and the point on it, and the angle over time.
+/// The picture: a ball with the curve and the point on it, and the angle over time.
 class moving_picture {
 public:
   moving_picture(const drawing& view, std::vector<moving_point> instants)
@@ -34,7 +34,7 @@ public:
     }
   }
 
-  /// \param circles  on the ball, which are seen where they are on the near side
+  /// \param circles  on the ball, drawn if on the visible side
   [[nodiscard]] std::string svg(const std::vector<std::vector<point>>& circles) const {
     std::string result = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 660 400\" "
                          "font-family=\"sans-serif\" font-size=\"20\">\n"
@@ -47,13 +47,13 @@ public:
     }
     std::vector<point> curve, angles;
     for (const moving_point& each : instants_) {
-      curve.push_back(on_page(each.place));
+      curve.push_back(on_page(each.position));
       angles.push_back(in_plot(each));
     }
     result += path(grid, "#dbe3ea", 1) + path(line(curve), "#24292f", 3) +
               path("M440 220V350H650", "#6e7781", 1.5) + path(line(angles), "#d55e00", 2.5);
-    const auto label = [&](const char* place, const char* style, const std::string& text) {
-      result += "<text " + std::string(place) + " " + style + ">" + text + "</text>\n";
+    const auto label = [&](const char* attributes, const char* style, const std::string& text) {
+      result += "<text " + std::string(attributes) + " " + style + ">" + text + "</text>\n";
     };
     char angle[8];
     std::snprintf(angle, sizeof angle, "%.0f°", largest_);
@@ -98,10 +98,10 @@ private:
     std::string result;
     bool is_drawn = false;
     for (const point& x : circle) {
-      const point placed = on_page(x);
-      const bool is_seen = placed[2] >= 0;
+      const point x_on_page = on_page(x);
+      const bool is_seen = x_on_page[2] >= 0;
       if (is_seen) {
-        result += (is_drawn ? "L" : "M") + pair(placed);
+        result += (is_drawn ? "L" : "M") + pair(x_on_page);
       }
       is_drawn = is_seen;
     }
@@ -116,16 +116,16 @@ private:
     return "<" + name + " " + attributes +
            (inner.empty() ? "/>\n" : ">" + inner + "</" + name + ">\n");
   }
-  static std::string path(const std::string& way, const std::string& colour, double width,
+  static std::string path(const std::string& outline, const std::string& colour, double width,
                           const std::string& inner = "") {
     return element("path",
-                   "d=\"" + way +
+                   "d=\"" + outline +
                        "\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" " +
                        stroke(colour, width),
                    inner);
   }
 
-  /// An attribute that takes one value after another, over and over.
+  /// An attribute that takes the values in turn, repeatedly.
   static std::string moving(const std::string& attribute, const std::vector<std::string>& values) {
     std::string joined;
     for (const std::string& value : values) {
@@ -136,22 +136,22 @@ private:
   }
 
   [[nodiscard]] std::string arrow(point moving_point::*velocity, const std::string& colour) const {
-    std::vector<std::string> ways;
+    std::vector<std::string> outlines;
     for (const moving_point& each : instants_) {
-      const point from = on_page(each.place), to = on_page(each.place + .6 * each.*velocity);
+      const point from = on_page(each.position), to = on_page(each.position + .6 * each.*velocity);
       Eigen::Vector2d along = (to - from).head<2>();
       along *= 14 / std::max(along.norm(), 14.);
       const point back(-along[0], -along[1], 0), aside(-along[1] / 2, along[0] / 2, 0);
-      ways.push_back("M" + pair(from) + "L" + pair(to) + "M" + pair(to + back + aside) + "L" +
-                     pair(to) + "L" + pair(to + back - aside));
+      outlines.push_back("M" + pair(from) + "L" + pair(to) + "M" + pair(to + back + aside) + "L" +
+                         pair(to) + "L" + pair(to + back - aside));
     }
-    return path(ways.front(), colour, 4.5, moving("d", ways));
+    return path(outlines.front(), colour, 4.5, moving("d", outlines));
   }
 
-  static std::string dot(const std::vector<point>& places, double radius,
+  static std::string dot(const std::vector<point>& centres, double radius,
                          const std::string& colour) {
     std::array<std::vector<std::string>, 2> values;
-    for (const point& x : places) {
+    for (const point& x : centres) {
       values[0].push_back(number(x[0]));
       values[1].push_back(number(x[1]));
     }

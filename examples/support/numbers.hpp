@@ -14,7 +14,7 @@
 
 namespace example {
 
-/// Finite numbers apart by commas.
+/// Finite numbers separated by commas.
 /// \throws std::runtime_error with the option's name
 [[nodiscard]] inline std::vector<double> parse_numbers(const std::string& option,
                                                        const std::string& text) {

@@ -18,12 +18,12 @@
 #include <vector>
 
 /// \file
-/// Poses as command lines and files give them.
+/// Poses of command lines and files.
 
 namespace example {
 
 /// The pose of `x, y, z, qw, qx, qy, qz` or of a matrix [R t; 0 1], row by row, 12 or 16 numbers.
-/// \throws duet::invalid_input that says what is wrong, without a place
+/// \throws duet::invalid_input with a message that names neither option nor file
 inline duet::dual_quaternion<double> parse_pose(const std::vector<double>& x) {
   const std::string count = std::to_string(x.size());
   if (x.size() == 7) {
@@ -57,7 +57,7 @@ inline duet::dual_quaternion<double> parse_pose(const std::string& option,
   }
 }
 
-/// A message of the library, which begins with its name.
+/// A message of the library without its leading name.
 inline std::string without_name(const std::string& message) {
   const std::string name = "duet: ";
   return message.starts_with(name) ? message.substr(name.size()) : message;

@@ -13,12 +13,12 @@
 #include <string>
 
 /// \file
-/// What all programs do around their work.
+/// Signals, output and errors of all programs.
 
 namespace example {
 
-/// Ctrl-C and its like end the program as they would, but leave no drafts of files. Signals that
-/// are ignored, as under nohup, still are.
+/// Signals that end the program, such as Ctrl-C, first remove its temporary files. Ignored signals,
+/// as under nohup, remain ignored.
 inline void remove_drafts_on_signals() {
   for (const int number : {
 #ifdef SIGHUP
@@ -36,7 +36,7 @@ inline void remove_drafts_on_signals() {
   }
 }
 
-/// \throws std::runtime_error where not all of the standard output could be written
+/// \throws std::runtime_error if not all of the standard output could be written
 inline void flush_output() {
   std::cout.flush();
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout) {
@@ -44,8 +44,8 @@ inline void flush_output() {
   }
 }
 
-/// Calls `body` and returns the status to end with: what it returns, or 1 with one line on standard
-/// error where it throws or its standard output could not be written.
+/// Calls `body` and returns the exit status: that of `body`, or 1 with one line on standard error
+/// if it throws or its standard output could not be written.
 template <class Body>
 int run_program(const std::string& name, const Body& body) {
   remove_drafts_on_signals();

@@ -2,16 +2,16 @@
 #pragma once
 
 /// \file
-/// The one style of all pictures.
+/// The style of all pictures.
 
 namespace example {
 
 /// Pictures are as wide as the text of a page, in pixels of it; PNG files have twice as many.
 inline constexpr int picture_width = 830;
 
-/// The head of every script. Colours are those of Okabe and Ito, which the colour-blind tell apart
-/// too, without the ones that are too pale for letters on white. The background is a white card, so
-/// that a dark page changes nothing. Curves have their names beside them: there is no key.
+/// The head of every script. Colours are those of Okabe and Ito, which colour-blind readers can
+/// distinguish, without those too pale for letters on white. The background is white on dark pages,
+/// too. Names stand next to their curves instead of in a key.
 inline constexpr const char* picture_style = R"(reset
 set encoding utf8
 set datafile separator ','

@@ -157,7 +157,7 @@ inline void print(const results& r, const hardpoints& points) {
       "\nset lmargin 10\nset rmargin 3\nset xlabel 'wheel height u / m'\nset xtics .05\n"
       "set yrange [*:*]\nset xrange [" +
       duet::to_text(r.heights.front()) + ":" + duet::to_text(r.heights.back()) + "]\n";
-  using enum example::beside;
+  using enum example::label_position;
   const std::size_t middle = r.heights.size() / 2;
   for (std::size_t angle = 0; angle < 2; ++angle) {
     const auto column = [angle](std::size_t i) { return std::to_string(i + 6 * angle); };

@@ -102,11 +102,13 @@ inline std::string errors_script(const std::vector<named_curve>& curves,
     text += example::plot_command(
         "errors_between_rows.csv",
         {{columns(0, panel), "blue", "true formula", 2 * heights.size() / 3,
-          example::beside::below_left, "lines lw 3"},
+          example::label_position::below_left, "lines lw 3"},
          {columns(printed, panel), "vermillion", "printed formula", 11 * heights.size() / 20,
-          panel == 0 ? example::beside::above_right : example::beside::above, "lines lw 3"},
+          panel == 0 ? example::label_position::above_right : example::label_position::above,
+          "lines lw 3"},
          {where_it_differs(column(other, panel), column(0, panel)), "grey",
-          "true formula, " + other_ends + " ends", 2, example::beside::right, "lines lw 2"}});
+          "true formula, " + other_ends + " ends", 2, example::label_position::right,
+          "lines lw 2"}});
   }
   return text + "unset multiplot\n";
 }
@@ -125,7 +127,7 @@ inline std::string splines_script(const std::vector<named_curve>& curves, std::s
   const auto largest = [&](const char* name) {
     return summarise(curves[number(name)].second.delta_first).maximum;
   };
-  using enum example::beside;
+  using enum example::label_position;
   return "set multiplot layout 2,1 title " +
          example::title("Degree five is " +
                         example::two_digits(largest("rotation-vector, clamped") /
@@ -169,7 +171,7 @@ inline std::string path_script(const std::vector<state>& states) {
                           [](const state& a, const state& b) { return camber(a.q) < camber(b.q); });
   const double range = (camber(most->q) - camber(least->q)) * 180 / std::numbers::pi;
   const std::size_t high = 9 * states.size() / 10, low = states.size() / 10;
-  using enum example::beside;
+  using enum example::label_position;
   return "set multiplot layout 1,2 title " +
          example::title("Camber changes by " + example::two_digits(range) +
                         " degrees as the wheel goes up and down") +

@@ -41,8 +41,8 @@ if(NOT line MATCHES "^1,(1|0.99999|1.00000)[0-9]*,0.(1|099999|100000)[0-9]*,")
   message(FATAL_ERROR "the pose after a second: ${line}")
 endif()
 
-# usage: expect_fault(<text> <rows>): named on the error stream, and the fit goes on
-function(expect_fault text content)
+# usage: expect_issue(<text> <rows>): named on the error stream, and the fit goes on
+function(expect_issue text content)
   file(WRITE ${folder}/rows.txt "${content}")
   execute_process(COMMAND ${program} --out out rows.txt WORKING_DIRECTORY ${folder}
     RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
@@ -51,15 +51,15 @@ function(expect_fault text content)
     message(FATAL_ERROR "status ${result}, says\n${error}instead of: ${text}")
   endif()
 endfunction()
-expect_fault("rows.txt:42: timestamp 0.5 repeats line 7: left out" "${rows}0.5 1 0.05 0 0.6 0 0 0.8\n")
-expect_fault("rows.txt:42: timestamp 0.55 is out of order: sorted in"
+expect_issue("rows.txt:42: timestamp 0.5 repeats line 7: left out" "${rows}0.5 1 0.05 0 0.6 0 0 0.8\n")
+expect_issue("rows.txt:42: timestamp 0.55 is out of order: sorted in"
   "${rows}0.55 1 0.055 0 0.6 0 0 0.8\n")
-expect_fault("rows.txt:42: qw is nan: left out" "${rows}4.1 1 0.41 0 0.6 0 0 nan\n")
-expect_fault("rows.txt:42: tx is inf: left out" "${rows}4.1 inf 0.41 0 0.6 0 0 0.8\n")
-expect_fault("rows.txt:42: the quaternion of qw, qx, qy, qz has norm 0, not 1: left out" "${rows}4.1 1 0.41 0 0 0 0 0\n")
-expect_fault("rows.txt:42: tx is 1e400, beyond the range of a double: left out"
+expect_issue("rows.txt:42: qw is nan: left out" "${rows}4.1 1 0.41 0 0.6 0 0 nan\n")
+expect_issue("rows.txt:42: tx is inf: left out" "${rows}4.1 inf 0.41 0 0.6 0 0 0.8\n")
+expect_issue("rows.txt:42: the quaternion of qw, qx, qy, qz has norm 0, not 1: left out" "${rows}4.1 1 0.41 0 0 0 0 0\n")
+expect_issue("rows.txt:42: tx is 1e400, beyond the range of a double: left out"
   "${rows}4.1 1e400 0.41 0 0.6 0 0 0.8\n")
-expect_fault("rows.txt:42: tz is -1e-400, beyond the range of a double: left out"
+expect_issue("rows.txt:42: tz is -1e-400, beyond the range of a double: left out"
   "${rows}4.1 1 0.41 -1e-400 0.6 0 0 0.8\n")
 
 # EuRoC's files: by their header, by timestamps and commas; nanoseconds where w is last, as blanks tell. All
@@ -78,7 +78,7 @@ foreach(i RANGE 39)
   string(APPEND swapped "0.8,0.6,0,0,1,0.${tens}${ones},0,${i}00,n/a\r\n")
 endforeach()
 function(expect_rotation content said)
-  expect_fault("${said}" "${content}")
+  expect_issue("${said}" "${content}")
   file(STRINGS ${folder}/out/trajectory.csv lines LIMIT_COUNT 2)
   list(GET lines 1 line)
   if(NOT line MATCHES "^[0-9.]+,(1|0.99999|1.00000)[0-9]*,[-0-9.e]+,[-0-9.e]+,0.(6|59999|60000)[0-9]*,[-0-9.e]+,[-0-9.e]+,0.(8|79999|80000)[0-9]*,")
@@ -102,7 +102,7 @@ endforeach()
 file(WRITE ${folder}/times.txt "${times}")
 run_rows(0 "40 rows over 3.9 s.* rows=40 left_out=0" "${matrices}" --times times.txt)
 expect_rotation("${matrices}" "rows.txt: 12 columns: read as in KITTI files, the matrix .R t. row by row")
-run_rows(1 "rows.txt:1: has times of its own besides those of times.txt" "0 1 2 3 0 0 0 1\n" --times times.txt)
+run_rows(1 "rows.txt:1: the rows have times, and so does times.txt" "0 1 2 3 0 0 0 1\n" --times times.txt)
 run(1 "--times requires FILE" --times times.txt)
 # Its own output is as good as any.
 run_rows(0 "" "${rows}")
@@ -118,7 +118,7 @@ run_rows(1 "rows.txt:2: timestamp 0.5 is not an integer number of nanoseconds .o
 run_rows(1 "rows.txt:2: the unit of timestamps is 'h' .expected s, ms, us or ns." "t [h],x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n")
 run_rows(1 "rows.txt:2: the unit of positions is 'mm' .expected m." "t,x [mm],y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n")
 run_rows(1 "rows.txt: holds no usable rows" "# nothing\n")
-run_rows(1 "rows.txt: 14 usable rows are too few for one knot in 20" "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1
+run_rows(1 "rows.txt: 14 usable rows .expected at least 24 for --samples-per-knot 20." "0 1 2 3 0 0 0 1\n1 1 2 3 0 0 0 1
 2 1 2 3 0 0 0 1\n3 1 2 3 0 0 0 1\n4 1 2 3 0 0 0 1\n5 1 2 3 0 0 0 1\n6 1 2 3 0 0 0 1\n7 1 2 3 0 0 0 1
 8 1 2 3 0 0 0 1\n9 1 2 3 0 0 0 1\n10 1 2 3 0 0 0 1\n11 1 2 3 0 0 0 1\n12 1 2 3 0 0 0 1
 13 1 2 3 0 0 0 1\n" --samples-per-knot 20)

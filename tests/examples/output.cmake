@@ -1,7 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# Where output goes: to a full device, pipes, links, folders that are none. A program's status says whether all of it
-# was written, standard output included; signals leave whole files.
+# Output to a full device, to pipes, links and paths that are not folders. The status of a program tells whether all
+# output was written, standard output included; after a signal all files are complete.
 #
 # cmake -Dprograms=<folder of the examples> -Dfolder=<for files> -P output.cmake
 
@@ -45,13 +45,13 @@ file(CREATE_LINK nowhere/folder ${folder}/dangling SYMBOLIC)
 foreach(tool IN LISTS tools)
   cmake_path(GET tool FILENAME name)
   foreach(out IN ITEMS /dev/full file dangling)
-    shell(${tool} 1 "${name}: ${out}: is no folder\n" "\"$tool\" --out ${out}")
+    shell(${tool} 1 "${name}: ${out}: is not a folder\n" "\"$tool\" --out ${out}")
   endforeach()
-  shell(${tool} 1 "${name}: file/a/b: file is no folder\n" "\"$tool\" --out file/a/b")
-  shell(${tool} 1 "${name}: --out: a folder's name is empty\n" "\"$tool\" --out ''")
+  shell(${tool} 1 "${name}: file/a/b: file is not a folder\n" "\"$tool\" --out file/a/b")
+  shell(${tool} 1 "${name}: --out is empty .expected a folder.\n" "\"$tool\" --out ''")
 endforeach()
 foreach(name IN ITEMS tolerance_study/tolerance_study workspace_sweep)
-  shell(${name} 1 "[a-z_]+: file: is no folder\n" "\"$tool\" --samples 10000000 --out file")
+  shell(${name} 1 "[a-z_]+: file: is not a folder\n" "\"$tool\" --samples 10000000 --out file")
 endforeach()
 shell(inverse_kinematics 1 "inverse_kinematics: duet: none/a.csv: cannot be written: No such file or directory\n"
   "\"$tool\" --out none/a.csv")
@@ -66,7 +66,7 @@ shell(screw_motion/screw_motion 0 "" "
   chmod a-w closed
   if test ! -w closed; then # who is root may
     ! \"$tool\" --out closed/out 2>message
-    test \"$(cat message)\" = 'screw_motion: closed/out: nothing can be written to the folder closed'
+    test \"$(cat message)\" = 'screw_motion: closed/out: cannot write to the folder closed'
   fi")
 
 # Standard output by name, with what else is printed.
