@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A robot arm's way to a goal: the tip along a screw motion, the joints within limits and away from
-// obstacles, and when they are where under limits of velocity and acceleration. The arm is one of
-// duet's or read from a URDF file.
+// Motion planning for a robot arm: the tip follows a screw motion to a goal, the joints respect
+// their limits and avoid obstacles, and the time scaling respects limits of velocity, acceleration
+// and jerk. The arm is built in or read from a URDF file.
 
 #include "options.hpp"
 #include "pictures.hpp"
@@ -28,7 +28,7 @@
 namespace motion_plan_example {
 namespace {
 
-/// Says that it is still at work, where that takes long.
+/// Plans, and displays the elapsed time.
 plan_type plan(const problem& p) {
   auto result = std::async(std::launch::async, [&] {
     return duet::plan_screw_motion(p.arm, p.start, p.goal, {}, {}, p.scene);
@@ -43,12 +43,12 @@ plan_type plan(const problem& p) {
   return result.get();
 }
 
-/// The limits given, and those of the joints where they are lower.
+/// The requested velocity limit, or that of the joint if it is lower.
 Eigen::VectorXd velocities(const problem& p) {
   Eigen::VectorXd result(p.arm.size());
   for (int i = 0; i < p.arm.size(); ++i) {
-    const double own = p.arm.limits(i).velocity;
-    result[i] = own > 0 ? std::min(p.velocity, own) : p.velocity;
+    const double joint_limit = p.arm.limits(i).velocity;
+    result[i] = joint_limit > 0 ? std::min(p.velocity, joint_limit) : p.velocity;
   }
   return result;
 }
@@ -62,55 +62,57 @@ std::vector<point> tip_path(const problem& p, const duet::joint_trajectory<-16>&
   return result;
 }
 
-/// Whether the goal was reached.
+/// Returns true if the goal was reached.
 bool run(const problem& p) {
   example::require_folder(p.out);
-  const plan_type found = plan(p);
+  const plan_type result = plan(p);
   const Eigen::VectorXd acceleration = Eigen::VectorXd::Constant(p.arm.size(), p.acceleration);
-  duet::time_parametrisation_options options{
-      .curve = p.jerk ? duet::waypoint_interpolation::natural_cubic
-                      : duet::waypoint_interpolation::pchip};
-  const auto without = duet::time_optimal_trajectory(found, velocities(p), acceleration, options);
+  duet::time_parametrisation_options options{.curve = p.jerk
+                                                          ? duet::waypoint_interpolation::natural_cubic
+                                                          : duet::waypoint_interpolation::pchip};
+  const auto without_jerk_limit =
+      duet::time_optimal_trajectory(result, velocities(p), acceleration, options);
   if (p.jerk) {
     options.jerk.assign(std::size_t(p.arm.size()), *p.jerk);
   }
   const auto trajectory =
-      duet::time_optimal_trajectory(found, velocities(p), acceleration, options);
+      duet::time_optimal_trajectory(result, velocities(p), acceleration, options);
   std::filesystem::create_directories(p.out);
   std::string deviations;
-  const worst_case worst = deviations_csv(p, found, deviations);
-  duet::save_plan(p.out + "/plan.csv", found);
+  const worst_case worst = deviations_csv(p, result, deviations);
+  duet::save_plan(p.out + "/plan.csv", result);
   duet::save_trajectory(p.out + "/trajectory.csv", trajectory,
                         trajectory.duration() > 0 ? trajectory.duration() / 500 : 1);
   duet::write_file(p.out + "/deviations.csv", deviations);
   const std::vector<point> tip = tip_path(p, trajectory);
-  const auto nearest = closest(p, found);
-  const example::drawing arm = drawing_of(p, found, tip, nearest);
+  const auto nearest = closest(p, result);
+  const example::drawing arm = drawing_of(p, result, tip, nearest);
   duet::write_file(p.out + "/arm_shapes.csv", arm.csv());
 
-  std::printf("%s: %zu waypoints, %d iterations\n", duet::to_text(found.reason),
-              found.joints.size(), found.iterations);
-  std::printf("from the screw motion        %.2g m and %.2g rad at most\n",
+  std::printf("%s: %zu waypoints, %d iterations\n", duet::to_text(result.reason),
+              result.joints.size(), result.iterations);
+  std::printf("deviation from the screw     %.2g m and %.2g rad at most\n",
               worst.deviation.translation, worst.deviation.rotation);
-  std::printf("smallest singular value      %.3g\n", found.smallest_singular_value);
-  std::printf("nearest to a joint's limit   %.3g\n", found.smallest_limit_margin);
+  std::printf("smallest singular value      %.3g\n", result.smallest_singular_value);
+  std::printf("smallest joint limit margin  %.3g\n", result.smallest_limit_margin);
   if (p.has_margins()) {
     std::printf("nearest to %s %.4g m\n", obstacles_of(p, "an obstacle      ", "another link     "),
                 worst.clearance);
   }
   std::printf("duration                     %.3f s\n", trajectory.duration());
   if (p.jerk) {
-    std::printf("without the limit of jerk    %.3f s\n", without.duration());
+    std::printf("without the jerk limit       %.3f s\n", without_jerk_limit.duration());
   }
-  const std::size_t rows = 11 * (found.joints.size() - 1); // of deviations.csv
+  const std::size_t rows = 11 * (result.joints.size() - 1); // of deviations.csv
   const bool drawn =
-      found.joints.size() > 1 &&
-      example::draw(p.out, "joints", 640, joints_script(p, found, velocities(p), 500)) &&
+      result.joints.size() > 1 &&
+      example::draw(p.out, "joints", 640, joints_script(p, result, velocities(p), 500)) &&
       example::draw(p.out, "deviation", 480, deviation_script(p, rows)) &&
-      example::draw(p.out, "arm", 440, arm_script(arm, p, found, tip, nearest, rows));
+      example::draw(p.out, "arm", 440, arm_script(arm, p, result, tip, nearest, rows));
   if (p.jerk && drawn) {
     constexpr int count = 1001;
-    duet::write_file(p.out + "/shares_without.csv", shares_csv(p, velocities(p), without, count));
+    duet::write_file(p.out + "/shares_without.csv",
+                     shares_csv(p, velocities(p), without_jerk_limit, count));
     duet::write_file(p.out + "/shares.csv", shares_csv(p, velocities(p), trajectory, count));
     example::draw(p.out, "jerk", 520, jerk_script(trajectory.duration(), count));
   }
@@ -121,15 +123,15 @@ bool run(const problem& p) {
   }
   std::printf("motion plan: reason=%s tau=%.4f waypoints=%zu deviation_m=%.2g deviation_rad=%.2g "
               "duration=%.4g\n",
-              duet::to_text(found.reason), found.tau.back(), found.joints.size(),
+              duet::to_text(result.reason), result.tau.back(), result.joints.size(),
               worst.deviation.translation, worst.deviation.rotation, trajectory.duration());
-  if (found.reason != duet::stop_reason::reached) {
+  if (result.reason != duet::stop_reason::reached) {
     std::fflush(stdout);
-    std::cerr << "motion_plan: the goal is not reached: " << duet::to_text(found.reason)
-              << " after " << duet::to_text(std::floor(1000 * found.tau.back()) / 10)
-              << " % of the way\n";
+    std::cerr << "motion_plan: the goal is not reached: " << duet::to_text(result.reason)
+              << " after " << duet::to_text(std::floor(1000 * result.tau.back()) / 10)
+              << " % of the path\n";
   }
-  return found.reason == duet::stop_reason::reached;
+  return result.reason == duet::stop_reason::reached;
 }
 
 } // namespace

@@ -27,20 +27,20 @@ inline std::string millimetres(double length) {
   return text;
 }
 
-/// One or the other word, for what the arm keeps its margin from.
+/// The first text if there are obstacles, otherwise the second.
 inline const char* obstacles_of(const problem& p, const char* obstacles, const char* links) {
   return p.scene.obstacles.empty() ? links : obstacles;
 }
 
-/// Above and in the middle the joints that move most in colours, the others grey; below how much of
-/// its limit the joint takes that takes most.
+/// Top and middle: the joints that move most in colours, the others grey. Bottom: the largest
+/// velocity and acceleration relative to their limits.
 /// \param rows  of trajectory.csv
 inline std::string joints_script(const problem& p, const plan_type& plan,
                                  const Eigen::VectorXd& velocities, std::size_t rows) {
   const int joints = p.arm.size();
   const example::joint_curves curves(plan.joints);
   const auto panel = [&](int group) { return curves.plot("trajectory.csv", 2 + group * joints); };
-  const auto share = [&](int group, const auto& limit) {
+  const auto fraction_of_limit = [&](int group, const auto& limit) {
     std::string largest = "0";
     for (int i = 0; i < joints; ++i) {
       largest = "max(" + largest + ", abs($" + std::to_string(2 + group * joints + i) + ")/" +
@@ -48,11 +48,11 @@ inline std::string joints_script(const problem& p, const plan_type& plan,
     }
     return "1:(100*" + largest + ")";
   };
-  bool turns = true;
+  bool is_all_rotational = true;
   for (int i = 0; i < joints; ++i) {
-    turns = turns && p.arm.kind(i) != duet::joint_kind::prismatic;
+    is_all_rotational = is_all_rotational && p.arm.kind(i) != duet::joint_kind::prismatic;
   }
-  const std::string unit = turns ? "rad" : "(rad or m)";
+  const std::string unit = is_all_rotational ? "rad" : "(rad or m)";
   using enum example::label_position;
   return "max(a, b) = a > b ? a : b\nset multiplot layout 3,1 title " +
          example::title("At nearly every moment one joint is at a limit") +
@@ -62,16 +62,16 @@ inline std::string joints_script(const problem& p, const plan_type& plan,
          "/s)'\n" + panel(1) +
          "set format x '%g'\nset xlabel 'time / s'\nset ylabel 'share of a limit / %'\n"
          "set yrange [0:109]\n" +
-         example::plot_command("trajectory.csv", {{share(1, [&](int i) { return velocities[i]; }),
-                                                   "vermillion", "rate", rows - 1, right},
-                                                  {share(2, [&](int) { return p.acceleration; }),
-                                                   "blue", "acceleration", rows - 1, right}}) +
+         example::plot_command("trajectory.csv",
+                               {{fraction_of_limit(1, [&](int i) { return velocities[i]; }),
+                                 "vermillion", "rate", rows - 1, right},
+                                {fraction_of_limit(2, [&](int) { return p.acceleration; }), "blue",
+                                 "acceleration", rows - 1, right}}) +
          "unset multiplot\n";
 }
 
-/// How much of its limits the joint takes that takes most: above without limits of jerk, where what
-/// is beyond the frame jumps, and below with them.
-/// \param duration  with limits of jerk
+/// The largest velocity, acceleration and jerk relative to their limits: top without jerk limits,
+/// where the jerk exceeds the frame, bottom with them. \param duration  duration with jerk limits
 /// \param rows  of both tables
 inline std::string jerk_script(double duration, std::size_t rows) {
   using enum example::label_position;
@@ -100,14 +100,14 @@ inline std::string deviation_script(const problem& p, std::size_t rows) {
                             {{"1:(1e6*$2)", "blue", "position", rows - 6, right},
                              {"1:(1e6*$3)", "vermillion", "orientation", rows - 6, right},
                              {"1:(10)", "ink", "allowed", rows - 1, right, "lines lw 2 dt 2"}});
-  const std::string way = "set xlabel 'share of the way'\n";
+  const std::string x_axis = "set xlabel 'fraction of the path'\n";
   return "set lmargin 9\nset rmargin 12\n" +
          (p.has_margins()
               ? "set multiplot layout 2,1 title " +
                     example::title(
                         std::string("The tip keeps to its screw motion, ") +
                         obstacles_of(p, "the arm off the obstacles", "links off each other")) +
-                    "\n" + both + way + "set ylabel 'distance / mm'\nset yrange [0:*]\n" +
+                    "\n" + both + x_axis + "set ylabel 'distance / mm'\nset yrange [0:*]\n" +
                     example::plot_command(
                         "deviations.csv",
                         {{"1:(1000*$4)", "blue",
@@ -116,10 +116,10 @@ inline std::string deviation_script(const problem& p, std::size_t rows) {
                          {"1:(" + duet::to_text(1000 * p.scene.margin) + ")", "ink", "margin",
                           rows - 1, right, "lines lw 2 dt 2"}}) +
                     "unset multiplot\n"
-              : way + both);
+              : x_axis + both);
 }
 
-/// The drawing, and beside it how near the arm is to obstacles, or to itself, on the way.
+/// The drawing, and the clearance of the arm along the path.
 /// \param rows  of deviations.csv
 inline std::string arm_script(const example::drawing& d, const problem& p, const plan_type& plan,
                               const std::vector<point>& tip,
@@ -142,7 +142,7 @@ inline std::string arm_script(const example::drawing& d, const problem& p, const
                         millimetres(p.scene.margin)) +
          "\nset lmargin at screen .62\nset rmargin at screen .96\nset tmargin at screen .8\n"
          "set bmargin at screen .2\nset xrange [0:1]\nset yrange [0:*]\n"
-         "set xlabel 'share of the way'\nset ylabel 'distance " +
+         "set xlabel 'fraction of the path'\nset ylabel 'distance " +
          obstacles_of(p, "to obstacles", "from link to link") + " / mm'\n" +
          example::plot_command("deviations.csv",
                                {{"1:(1000*$4)", "blue", obstacles_of(p, "arm", "links"), rows / 5,

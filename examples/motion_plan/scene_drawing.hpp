@@ -18,31 +18,30 @@
 #include <vector>
 
 /// \file
-/// The arm among its obstacles, drawn.
+/// Drawing of the arm and its obstacles.
 
 namespace motion_plan_example {
 
-/// Where the way first leads as near to an obstacle, or another link, as it does anywhere, but for
-/// a hundredth.
+/// The first waypoint whose clearance is within 1 % of the smallest.
 struct closest_approach {
   std::size_t waypoint;
   duet::chain_clearance<double> clearance;
 };
 
-/// Nothing where there is nothing to touch.
+/// Nothing without obstacles and collision pairs.
 inline std::optional<closest_approach> closest(const problem& p, const plan_type& plan) {
   std::optional<closest_approach> result;
   for (std::size_t k = 0; k < plan.joints.size() && p.has_margins(); ++k) {
-    const auto here = duet::clearance(p.arm, plan.joints[k], p.scene);
-    const double before = result ? result->clearance.distance : 0;
-    if (!result || here.distance < before - .01 * std::abs(before)) {
-      result = {k, here};
+    const auto clearance_at_waypoint = duet::clearance(p.arm, plan.joints[k], p.scene);
+    const double smallest = result ? result->clearance.distance : 0;
+    if (!result || clearance_at_waypoint.distance < smallest - .01 * std::abs(smallest)) {
+      result = {k, clearance_at_waypoint};
     }
   }
   return result;
 }
 
-/// The arm as the planner takes it, capsules along its links, on a stand that it does not look at.
+/// The arm as the planner models it, capsules along its links, on a stand that the planner ignores.
 inline void add_arm(example::drawing& d, const problem& p, const Eigen::VectorXd& theta,
                     const std::string& colour, double shift = 0) {
   d.capsule(point::Zero(), duet::translation(p.arm.pose(theta, 1)), .03, "#9aa5b1", shift);
@@ -52,7 +51,7 @@ inline void add_arm(example::drawing& d, const problem& p, const Eigen::VectorXd
   }
 }
 
-/// A ball with the margin around it, a capsule, a box as its faces, a half-space as a grid around
+/// Draws a sphere with its margin, a capsule, a box as its faces, or a half-space as a grid around
 /// the base.
 inline void add_obstacle(example::drawing& d, const duet::obstacle& each, double margin) {
   std::visit(
@@ -92,7 +91,8 @@ inline void add_obstacle(example::drawing& d, const duet::obstacle& each, double
       each);
 }
 
-/// From where the closest approach is seen in its true size, and is not hidden by the arm.
+/// Direction of view in which the closest approach has its true length and is not hidden by the
+/// arm.
 inline point viewpoint(const problem& p, const plan_type& plan,
                        const std::optional<closest_approach>& nearest) {
   const point n = nearest ? nearest->clearance.points.normal : point(0, 0, 1);
@@ -105,8 +105,7 @@ inline point viewpoint(const problem& p, const plan_type& plan,
   return (hides ? -1 : 1) * level + .6 * (point::UnitZ() - n[2] * n).normalized();
 }
 
-/// The arm where it is nearest to what it must not touch; behind it, pale, where it starts and
-/// ends.
+/// The arm at its closest approach; behind it, pale, at the start and at the end.
 inline example::drawing drawing_of(const problem& p, const plan_type& plan,
                                    const std::vector<point>& tip,
                                    const std::optional<closest_approach>& nearest) {

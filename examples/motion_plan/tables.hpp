@@ -15,7 +15,7 @@
 #include <vector>
 
 /// \file
-/// What is found, as CSV.
+/// Tables of a plan as CSV.
 
 namespace motion_plan_example {
 
@@ -26,29 +26,29 @@ struct worst_case {
   double clearance = std::numeric_limits<double>::infinity();
 };
 
-/// How far the tip is from the screw motion and the arm from obstacles, at ten points from waypoint
-/// to waypoint; and the largest and smallest of them.
+/// Deviation of the tip from the screw motion and clearance of the arm at ten points between any
+/// two waypoints; returns the largest deviation and the smallest clearance.
 inline worst_case deviations_csv(const problem& p, const plan_type& plan, std::string& text) {
   worst_case worst;
   text = "tau,deviation [m],deviation [rad],clearance [m]\n";
   for (std::size_t k = 1; k < plan.joints.size(); ++k) {
-    for (int part = 0; part <= 10; ++part) {
-      const double x = part / 10.0;
+    for (int step = 0; step <= 10; ++step) {
+      const double x = step / 10.0;
       const Eigen::VectorXd theta = (1 - x) * plan.joints[k - 1] + x * plan.joints[k];
       const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
       const auto d = duet::pose_error_between(p.arm.pose(theta),
                                               duet::sclerp(plan.poses.front(), p.goal, tau));
-      const double apart = duet::clearance(p.arm, theta, p.scene).distance;
+      const double clearance = duet::clearance(p.arm, theta, p.scene).distance;
       worst.deviation.translation = std::max(worst.deviation.translation, d.translation);
       worst.deviation.rotation = std::max(worst.deviation.rotation, d.rotation);
-      worst.clearance = std::min(worst.clearance, apart);
-      text += duet::csv_line({tau, d.translation, d.rotation, std::min(apart, 1e9)});
+      worst.clearance = std::min(worst.clearance, clearance);
+      text += duet::csv_line({tau, d.translation, d.rotation, std::min(clearance, 1e9)});
     }
   }
   return worst;
 }
 
-/// How much of its limits the joint takes that takes most, in per cent, at `rows` times.
+/// Largest velocity, acceleration and jerk relative to their limits, in per cent, at `rows` times.
 inline std::string shares_csv(const problem& p, const Eigen::VectorXd& velocities,
                               const duet::joint_trajectory<-16>& trajectory, int rows) {
   std::string text = "t [s],rate [%],acceleration [%],jerk [%]\n";

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A whole robot from its description: where all links stand at given coordinates, how each
-// coordinate moves the centre of mass, and a picture of links, axes and that centre. The robot is
-// one with two arms on a base that drives, or read from another URDF file.
+// A robot from its description: poses of all links in a configuration, Jacobian of the centre of
+// mass, and a picture of links, axes and the centre of mass. The default robot has two arms on a
+// mobile base; others are read from a URDF file.
 
 #include "../support/command_line.hpp"
 #include "../support/folder.hpp"
@@ -31,7 +31,7 @@ namespace {
 
 using namespace duet;
 
-/// What is given, or the middle of the limits, and 0 where there are none.
+/// The coordinates of the command line; by default the midpoint of the limits, or 0 without limits.
 [[nodiscard]] Eigen::VectorXd coordinates(const kinematic_tree& robot,
                                           const example::command_line& arguments) {
   Eigen::VectorXd q = Eigen::VectorXd::Zero(robot.size());
@@ -56,7 +56,7 @@ using namespace duet;
   return q;
 }
 
-/// Without what would part it into cells.
+/// A name without characters that would split it into cells.
 [[nodiscard]] std::string cell(std::string name) {
   for (char& c : name) {
     c = c == ',' || c == ';' || c == '"' || c == '#' || c == '\n' || c == ' ' ? '_' : c;
@@ -64,7 +64,7 @@ using namespace duet;
   return printable(name);
 }
 
-/// Name, place and unit quaternion of each link.
+/// Name, position and unit quaternion of each link.
 [[nodiscard]] std::string links_csv(const kinematic_tree& robot, const Eigen::VectorXd& q) {
   std::string text = "link,x,y,z,qw,qx,qy,qz\n";
   const auto poses = robot.poses(q);
@@ -77,7 +77,7 @@ using namespace duet;
   return text;
 }
 
-/// Of each coordinate its value, its limits, and how it moves the centre of mass.
+/// Value and limits of each coordinate, and its column of the Jacobian of the centre of mass.
 [[nodiscard]] std::string coordinates_csv(const kinematic_tree& robot, const Eigen::VectorXd& q,
                                           const Eigen::MatrixXd& of_centre) {
   std::string text = "coordinate,value,lower,upper,dcx,dcy,dcz\n";
@@ -129,15 +129,16 @@ void run(const example::command_line& arguments) {
 
 int main(int argc, char** argv) {
   return example::run_program("robot_tree", [&] {
-    example::option_list description("A whole robot from its description. Options");
-    description.value<std::string>("urdf", "FILE",
-                                   "a robot description (default: one with two arms on a base)");
+    example::option_list description(
+        "Forward kinematics and centre of mass of a robot from its description. Options");
+    description.value<std::string>(
+        "urdf", "FILE", "robot description (default: a robot with two arms on a mobile base)");
     description.value<std::string>(
         "joints", "X,X,...",
-        "all coordinates, as in coordinates.csv: radians or metres (default: the middle of the "
-        "limits)");
-    description.value<std::string>("out", "FOLDER",
-                                   "for tables and the picture (default: robot_tree_out)");
+        "all coordinates, as in coordinates.csv: radians or metres (default: the midpoint of "
+        "the limits)");
+    description.value<std::string>(
+        "out", "FOLDER", "output folder for tables and the picture (default: robot_tree_out)");
     description.flag("help", "print this and stop");
     if (const auto line = example::command_line::parse(argc, argv, description)) {
       run(*line);

@@ -18,13 +18,13 @@
 #include <vector>
 
 /// \file
-/// A tree, drawn.
+/// Drawing of a kinematic tree.
 
 namespace robot_tree_example {
 
 using example::point;
 
-/// In which the robot of this folder is drawn.
+/// Configuration in which the robot of this folder is drawn.
 inline constexpr std::array<std::pair<const char*, double>, 15> posture{{{"drive.x", .1},
                                                                          {"drive.y", -.05},
                                                                          {"drive.angle", .25},
@@ -41,8 +41,8 @@ inline constexpr std::array<std::pair<const char*, double>, 15> posture{{{"drive
                                                                          {"right_turn", .8},
                                                                          {"right_grip", .05}}};
 
-/// Links as rods from joint to joint, axes of joints as arrows, of those that slide orange; the
-/// centre of mass as a ball above its place on the floor.
+/// Links as rods from joint to joint; joint axes as arrows, orange for prismatic joints; the centre
+/// of mass as a ball with its projection onto the floor.
 class picture {
 public:
   picture(const duet::kinematic_tree& robot, const Eigen::VectorXd& q, bool has_mass)
@@ -83,7 +83,7 @@ private:
     if (!is_base && (to - from).norm() > .001 * size_) {
       drawing_.capsule(from, to, .011 * size_, joint.mimic ? "#9aa5b1" : "#7fa8c9");
     }
-    const Eigen::Matrix3d turn = duet::rotation_matrix(duet::rotation(child));
+    const Eigen::Matrix3d rotation = duet::rotation_matrix(duet::rotation(child));
     const point axis(joint.motion.axis[0], joint.motion.axis[1], joint.motion.axis[2]);
     switch (joint.motion.kind) {
     case duet::joint_kind::fixed:
@@ -92,11 +92,11 @@ private:
     case duet::joint_kind::spherical:
     case duet::joint_kind::floating:
       for (int k = 0; k < 3; ++k) {
-        arrow(to, turn.col(k), "#a8497c");
+        arrow(to, rotation.col(k), "#a8497c");
       }
       return;
     default:
-      arrow(to, turn * axis, joint.motion.is_translational() ? "#b37700" : "#d55e00");
+      arrow(to, rotation * axis, joint.motion.is_translational() ? "#b37700" : "#d55e00");
     }
   }
   void arrow(const point& at, const point& along, const std::string& colour) {

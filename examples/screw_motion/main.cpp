@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 // The screw motion between two poses (N19): in words, as a table of poses and velocities along it,
-// and as a picture. Velocities come from automatic differentiation and are held against the closed
-// form, a constant twist.
+// and as a picture. Velocities are computed by automatic differentiation and compared with the
+// closed form, a constant twist.
 
 #include "options.hpp"
 #include "path.hpp"
@@ -22,14 +22,14 @@ namespace {
 void run(const options& settings) {
   example::require_folder(settings.out);
   const auto [from, to] = poses(settings);
-  const duet::slerp_arc round =
+  const duet::slerp_arc arc =
       settings.is_longer_arc ? duet::slerp_arc::longest : duet::slerp_arc::shortest;
   const screw between = screw_between(from, to, settings.is_longer_arc);
   std::cout << in_words(between);
   if (differs_by_half_turn(from, to)) {
-    std::cout << "The poses are half a turn apart: the other way round is as short.\n";
+    std::cout << "The poses differ by half a turn: both arcs have the same length.\n";
   }
-  const std::vector<sample> path = samples(from, to, round, settings.steps);
+  const std::vector<sample> path = samples(from, to, arc, settings.steps);
   const double difference = largest_difference(path, between);
 
   std::filesystem::create_directories(settings.out);

@@ -20,7 +20,7 @@
 #include <vector>
 
 /// \file
-/// The screw between two poses, and what is on the way.
+/// The screw motion between two poses, and poses and velocities along it.
 
 namespace screw_motion {
 
@@ -28,7 +28,7 @@ using duet::vector3;
 using duet::vector6;
 using screw = duet::screw_motion<double>;
 
-/// B A*, the displacement that takes A to B in fixed axes.
+/// Screw of the displacement B A* from A to B in fixed axes.
 inline screw screw_between(const pose_type& from, const pose_type& to, bool is_longer_arc) {
   screw s = duet::screw_parameters(to * conj(from));
   if (is_longer_arc && s.angle > 0) {
@@ -57,8 +57,8 @@ inline std::string triple(const vector3<double>& v) {
   return text.str();
 }
 
-/// The point of the axis next to the origin, n × m.
-inline vector3<double> place(const screw& s) { return s.axis.cross(s.moment); }
+/// The point of the axis closest to the origin, n × m.
+inline vector3<double> point_on_axis(const screw& s) { return s.axis.cross(s.moment); }
 
 inline std::string in_words(const screw& s) {
   std::ostringstream text;
@@ -71,10 +71,11 @@ inline std::string in_words(const screw& s) {
   default:
     break;
   }
-  text << "A turn by " << s.angle << " rad (" << s.angle * 180 / duet::constant::pi<double>()
-       << " degrees) about the line through " << triple(place(s)) << " along " << triple(s.axis);
+  text << "A rotation by " << s.angle << " rad (" << s.angle * 180 / duet::constant::pi<double>()
+       << " degrees) about the line through " << triple(point_on_axis(s)) << " along "
+       << triple(s.axis);
   if (s.kind == duet::screw_kind::screw) {
-    text << ",\nand a shift by " << s.translation << " along it: a pitch of "
+    text << ",\nand a translation by " << s.translation << " along it: a pitch of "
          << s.translation / s.angle * 2 * duet::constant::pi<double>() << " per turn";
   }
   text << ".\n";
@@ -88,20 +89,20 @@ struct sample {
   vector6<double> rates; ///< the same, hybrid: of the pose's own origin, in fixed axes
 };
 
-inline std::vector<sample> samples(const pose_type& from, const pose_type& to,
-                                   duet::slerp_arc round, int steps) {
+inline std::vector<sample> samples(const pose_type& from, const pose_type& to, duet::slerp_arc arc,
+                                   int steps) {
   std::vector<sample> result;
   for (int i = 0; i <= steps; ++i) {
     const double tau = double(i) / steps;
     const auto [a, a_dot] =
-        duet::derivative([&](auto t) { return duet::sclerp(from, to, t, round); }, tau);
+        duet::derivative([&](auto t) { return duet::sclerp(from, to, t, arc); }, tau);
     result.push_back({tau, a, duet::twist(a, a_dot, duet::frame::spatial),
                       duet::twist(a, a_dot, duet::frame::hybrid)});
   }
   return result;
 }
 
-/// The closed form of the twist, the same all the way: ω = φ n, v = d n + φ m.
+/// Closed form of the twist, which is constant along the path: ω = φ n, v = d n + φ m.
 inline vector6<double> constant_twist(const screw& s) {
   vector6<double> v;
   v << s.translation * s.axis + s.angle * s.moment, s.angle * s.axis;
@@ -130,18 +131,19 @@ inline std::string path_csv(const std::vector<sample>& path) {
   return text;
 }
 
-/// A sixth of how far the origin goes.
+/// Length of the drawn axes: a sixth of the largest displacement of the origin.
 inline double axis_length(const std::vector<sample>& path) {
   double size = 0;
   for (const sample& p : path) {
-    const vector3<double> way = duet::translation(p.pose) - duet::translation(path.front().pose);
-    size = std::max(size, way.norm());
+    const vector3<double> displacement =
+        duet::translation(p.pose) - duet::translation(path.front().pose);
+    size = std::max(size, displacement.norm());
   }
   return size > 0 ? size / 6 : 1;
 }
 
-/// Arrows of about ten frames on the way, and the axis: start, direction, which (0 to 2, 3 the
-/// axis).
+/// Arrows of about ten frames along the path, and of the axis: start, direction, number (0 to 2; 3
+/// for the axis).
 inline std::string frames_csv(const std::vector<sample>& path, const screw& s) {
   std::string text = "x,y,z,dx,dy,dz,arrow\n";
   double low = 0;
@@ -164,7 +166,7 @@ inline std::string frames_csv(const std::vector<sample>& path, const screw& s) {
     }
   }
   if (s.kind == duet::screw_kind::rotation || s.kind == duet::screw_kind::screw) {
-    add(place(s) + (low - length) * s.axis, (high - low + 2 * length) * s.axis, 3);
+    add(point_on_axis(s) + (low - length) * s.axis, (high - low + 2 * length) * s.axis, 3);
   }
   return text;
 }
@@ -186,8 +188,8 @@ inline std::string path_title(const screw& s) {
   }
 }
 
-/// Frames on the way and the axis of the screw, with their names; lengths are in the unit of the
-/// poses.
+/// Frames along the path and the axis of the screw, with their names; lengths are in the unit of
+/// the poses.
 inline std::string path_script(const screw& s, const std::vector<sample>& path) {
   const auto label = [](const std::string& text, const vector3<double>& at, const char* style) {
     return "set label " + example::in_quotes(text) + " at " + duet::to_text(at[0]) + "," +
@@ -208,7 +210,8 @@ inline std::string path_script(const screw& s, const std::vector<sample>& path) 
             label("to", duet::translation(path.back().pose), "right offset -.5,-1 tc rgb ink");
   if (s.kind == duet::screw_kind::rotation || s.kind == duet::screw_kind::screw) {
     const double along = s.axis.dot(duet::translation(path.front().pose));
-    labels += label("screw axis", place(s) + along * s.axis, "right offset -1,0 tc rgb ink");
+    labels +=
+        label("screw axis", point_on_axis(s) + along * s.axis, "right offset -1,0 tc rgb ink");
   }
   const auto arrows = [](int which, const char* style) {
     return "'frames.csv' using ($7==" + std::to_string(which) +

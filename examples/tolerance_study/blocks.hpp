@@ -20,25 +20,25 @@
 #include <vector>
 
 /// \file
-/// Samples in blocks, each a file that is there as a whole or not at all.
+/// Samples in blocks, each a file that is written atomically.
 
 namespace tolerance_study {
 
 inline constexpr double degrees = 180 / std::numbers::pi;
 
-/// Blocks do not depend on who computes them, so the study does not either.
+/// Blocks do not depend on the process that computes them, nor does the study.
 class block_store {
 public:
   block_store(const options& settings, const hardpoints& points)
       : folder_(settings.out + "/samples"), samples_(std::size_t(settings.samples)),
-        seed_(settings.seed), tolerance_(settings.deviation),
+        seed_(settings.seed), deviation_(settings.deviation),
         settings_(settings_of(settings, points)) {}
 
   [[nodiscard]] std::size_t count() const { return (samples_ + size - 1) / size; }
   [[nodiscard]] const std::string& folder() const { return folder_; }
 
-  /// The blocks that are not there.
-  /// \throws duet::file_error where one that is there was made with other settings
+  /// The blocks without a file.
+  /// \throws duet::file_error if a file was written with other settings
   [[nodiscard]] std::vector<std::size_t> missing() const {
     std::vector<std::size_t> result;
     for (std::size_t block = 0; block < count(); ++block) {
@@ -59,7 +59,7 @@ public:
     }
     text += "toe-in and camber in degrees at every height\n";
     for (std::size_t sample = first(block); sample < first(block + 1); ++sample) {
-      const errors e = sample_errors(seed_, sample, tolerance_);
+      const errors e = sample_errors(seed_, sample, deviation_);
       std::vector<double> row{double(sample)};
       for (std::size_t i = 0; i < mechanism.rows(); ++i) {
         const vector2 angles = angles_of_sample(mechanism, i, sample, e) * degrees;
@@ -70,8 +70,7 @@ public:
     duet::write_file(path(block), text);
   }
 
-  /// Column by column, toe-in and camber at the first height, then at the others: all samples in
-  /// their order.
+  /// All samples in order, by columns: toe-in and camber at the first height, then at the others.
   [[nodiscard]] std::vector<std::vector<double>> columns(std::size_t heights) const {
     std::vector<std::vector<double>> result(2 * heights);
     for (std::size_t block = 0; block < count(); ++block) {
@@ -87,9 +86,9 @@ public:
         }
       }
       if (sample != first(block + 1)) {
-        throw duet::file_error(path(block), "holds " + std::to_string(rows.size()) +
-                                                " samples instead of " +
-                                                std::to_string(first(block + 1) - first(block)));
+        throw duet::file_error(path(block),
+                               "contains " + std::to_string(rows.size()) + " samples (expected " +
+                                   std::to_string(first(block + 1) - first(block)) + ")");
       }
     }
     return result;
@@ -148,10 +147,10 @@ private:
       if (end == std::string::npos) {
         throw duet::file_error(file, 1, "has no first line with the settings of the study");
       }
-      const std::string found = line.substr(at, end - at);
-      if (found != setting) {
+      const std::string stored = line.substr(at, end - at);
+      if (stored != setting) {
         throw duet::file_error(file, 1,
-                               "made with " + found + ", not " + setting +
+                               "made with " + stored + ", not " + setting +
                                    " (remove the file or choose another folder)");
       }
       at = end + 2;
@@ -161,11 +160,11 @@ private:
   std::string folder_;
   std::size_t samples_;
   std::uint64_t seed_;
-  double tolerance_;
+  double deviation_;
   std::vector<std::string> settings_;
 };
 
-/// Numbers in ascending order with runs drawn together: 1, 4-7.
+/// Ascending numbers as text, with runs as ranges: 1, 4-7.
 [[nodiscard]] inline std::string runs(const std::vector<std::size_t>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < numbers.size();) {

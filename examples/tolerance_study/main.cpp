@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// How accurately must the hardpoints of a suspension be made? Sensitivities of toe-in and camber to
-// each coordinate by automatic differentiation through the closed loop, and what they predict
-// against samples, which any number of processes and threads may share.
+// Tolerance analysis of the hardpoints of a suspension: sensitivities of toe-in and camber to each
+// coordinate by automatic differentiation through the closed loop, and their predictions compared
+// with random samples, which any number of processes and threads may share.
 
 #include "blocks.hpp"
 #include "options.hpp"
@@ -42,7 +42,7 @@ std::vector<double> heights(const options& settings) {
   return result;
 }
 
-/// Of the missing blocks, every size-th is this process's.
+/// Computes the share of this process: every size-th missing block.
 void compute_share(const block_store& blocks, const toleranced_carrier& mechanism,
                    const std::vector<std::size_t>& missing, const processes& all,
                    unsigned threads) {
@@ -51,13 +51,13 @@ void compute_share(const block_store& blocks, const toleranced_carrier& mechanis
     share.push_back(missing[i]);
   }
   duet::progress_line line("blocks");
-  duet::execution how{threads};
+  duet::execution execution{threads};
   if (all.rank() == 0) {
-    how.report = line;
+    execution.report = line;
   }
   duet::parallel_for_blocks(
-      share.size(), [&](std::size_t i, std::size_t) { blocks.compute(mechanism, share[i]); }, how,
-      1);
+      share.size(), [&](std::size_t i, std::size_t) { blocks.compute(mechanism, share[i]); },
+      execution, 1);
 }
 
 void summarise(const options& settings, const hardpoints& points,
@@ -105,7 +105,7 @@ int run(const options& settings, const processes& all) {
     return result;
   });
   if (!missing) {
-    return 0; // the first process says why, and fails
+    return 0; // the first process prints the error and fails
   }
   std::exception_ptr error;
   if (!settings.summary_only) {
@@ -143,6 +143,6 @@ int main(int argc, char** argv) {
   }
   const tolerance_study::processes all(argc, argv);
   const int result = guarded([&] { return tolerance_study::run(*settings, all); });
-  all.wait(); // mpirun ends all once one has failed, also those that have not yet said why
+  all.wait(); // mpirun ends all processes when one fails, even before they print their errors
   return result;
 }

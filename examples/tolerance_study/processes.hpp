@@ -27,7 +27,7 @@ public:
   [[nodiscard]] std::size_t rank() const { return std::size_t(world_.rank()); }
   [[nodiscard]] std::size_t size() const { return std::size_t(world_.size()); }
 
-  /// Until all are here.
+  /// Waits until all processes call it.
   void wait() const { world_.barrier(); }
 #else
   processes(int&, char**&) {}
@@ -37,8 +37,8 @@ public:
   static void wait() {}
 #endif
 
-  /// The numbers that `compute` returns in the first process, told to all, so that they agree.
-  /// Where it throws, the first process does, and the others get nothing.
+  /// The numbers that `compute` returns in the first process, sent to all. If it throws, the first
+  /// process throws, and the others return nothing.
   template <class F>
   [[nodiscard]] std::optional<std::vector<std::size_t>> from_first(const F& compute) const {
     std::vector<std::size_t> numbers;

@@ -20,7 +20,7 @@
 #include <vector>
 
 /// \file
-/// First order and samples side by side: tables and a picture. Degrees, metres.
+/// Comparison of first order and samples: tables and a picture. Degrees, metres.
 
 namespace tolerance_study {
 
@@ -40,8 +40,8 @@ struct results {
   std::array<std::array<double, coordinate_count>, 2> influence; ///< root mean square of these
 };
 
-/// √Σ (σ ∂/∂h_j)² beside what the samples say.
-[[nodiscard]] inline results results_of(const toleranced_carrier& mechanism, double tolerance,
+/// First-order standard deviation √Σ (σ ∂/∂h_j)² and statistics of the samples.
+[[nodiscard]] inline results results_of(const toleranced_carrier& mechanism, double deviation,
                                         const std::vector<std::vector<double>>& columns) {
   results r{};
   for (std::size_t row = 0; row < mechanism.rows(); ++row) {
@@ -50,7 +50,7 @@ struct results {
     r.sensitivities.push_back(mechanism.sensitivities(row) * degrees);
     for (std::size_t angle = 0; angle < 2; ++angle) {
       const auto i = Eigen::Index(angle);
-      r.spreads[angle].push_back({design[i], tolerance * r.sensitivities[row].row(i).norm(),
+      r.spreads[angle].push_back({design[i], deviation * r.sensitivities[row].row(i).norm(),
                                   statistics_of(columns[2 * row + angle])});
       for (int j = 0; j < coordinate_count; ++j) {
         const double s = r.sensitivities[row](i, j);
@@ -66,7 +66,7 @@ struct results {
   return r;
 }
 
-/// The five coordinates that matter most, the first of them most.
+/// The five most influential coordinates, in descending order.
 [[nodiscard]] inline std::array<int, 5> most_influential(const results& r, std::size_t angle) {
   std::array<int, coordinate_count> order{};
   std::iota(order.begin(), order.end(), 0);
@@ -148,7 +148,7 @@ inline void print(const results& r, const hardpoints& points) {
   return text;
 }
 
-/// Above: toe-in and camber over the travel. Below: what moves them most.
+/// Top: toe-in and camber over the travel. Bottom: the most influential coordinates.
 [[nodiscard]] inline std::string picture_script(const results& r, const hardpoints& points) {
   std::string text =
       "set multiplot layout 2,2 title " +
@@ -185,19 +185,19 @@ inline void print(const results& r, const hardpoints& points) {
           "set xlabel 'degrees per mm'\n";
   for (std::size_t angle = 0; angle < 2; ++angle) {
     std::string labels, boxes;
-    int place = 1;
+    int rank = 1;
     for (const int j : most_influential(r, angle)) {
-      labels += (place > 1 ? ", " : "") + example::in_quotes(coordinate_name(points, j)) + " " +
-                std::to_string(place);
-      const std::string y = std::to_string(place);
+      labels += (rank > 1 ? ", " : "") + example::in_quotes(coordinate_name(points, j)) + " " +
+                std::to_string(rank);
+      const std::string y = std::to_string(rank);
       boxes += "set object " + y + " rectangle from 0," + y + "-0.35 to " +
                duet::to_text(r.influence[angle][std::size_t(j)] / 1000) + "," + y +
                "+0.35 fc rgb blue fs solid noborder\n";
-      ++place;
+      ++rank;
     }
-    const double most = r.influence[angle][std::size_t(most_influential(r, angle)[0])] / 1000;
+    const double largest = r.influence[angle][std::size_t(most_influential(r, angle)[0])] / 1000;
     text += boxes + "set ytics (" + labels +
-            ") noenhanced\nset xrange [0:" + duet::to_text(1.1 * most) +
+            ") noenhanced\nset xrange [0:" + duet::to_text(1.1 * largest) +
             "]\nset title 'what moves " + angle_names[angle] + " most'\nplot 1/0\n";
   }
   return text + "unset multiplot\nunset object\n";

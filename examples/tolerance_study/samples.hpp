@@ -14,11 +14,11 @@
 #include <vector>
 
 /// \file
-/// Hardpoints at random, and what is made of many.
+/// Random errors of the hardpoints, and their statistics.
 
 namespace tolerance_study {
 
-/// Numbers apart become seeds far apart (SplitMix64, by S. Vigna).
+/// Maps consecutive numbers to unrelated seeds (SplitMix64, by S. Vigna).
 [[nodiscard]] inline std::uint64_t scattered(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
@@ -27,7 +27,7 @@ namespace tolerance_study {
 }
 
 /// The errors of one sample: normally distributed, independent, with the given standard deviation.
-/// They depend on the sample's number only, not on who computes it or what before.
+/// They depend only on the number of the sample.
 [[nodiscard]] inline errors sample_errors(std::uint64_t seed, std::uint64_t sample,
                                           double deviation) {
   duet::random_source random(scattered(scattered(seed) + sample));
@@ -43,7 +43,7 @@ struct statistics {
   double low, high; ///< quantiles 2.5 % and 97.5 %
 };
 
-/// Of two numbers or more.
+/// Statistics of at least two numbers.
 [[nodiscard]] inline statistics statistics_of(std::vector<double> numbers) {
   using boost::math::statistics::mean;
   using boost::math::statistics::sample_variance;
@@ -51,9 +51,9 @@ struct statistics {
   const double deviation = std::sqrt(sample_variance(numbers));
   std::sort(numbers.begin(), numbers.end());
   const auto quantile = [&numbers](double fraction) {
-    const double place = fraction * double(numbers.size() - 1);
-    const auto i = std::min(std::size_t(place), numbers.size() - 2);
-    return std::lerp(numbers[i], numbers[i + 1], place - double(i));
+    const double position = fraction * double(numbers.size() - 1);
+    const auto i = std::min(std::size_t(position), numbers.size() - 2);
+    return std::lerp(numbers[i], numbers[i + 1], position - double(i));
   };
   return {average, deviation, quantile(0.025), quantile(0.975)};
 }

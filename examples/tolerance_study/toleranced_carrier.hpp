@@ -19,7 +19,7 @@
 #include <vector>
 
 /// \file
-/// The wheel carrier whose hardpoints are not quite where they should be.
+/// The wheel carrier with errors of its hardpoints.
 
 namespace tolerance_study {
 
@@ -29,13 +29,14 @@ using wheel_carrier::rotation;
 using wheel_carrier::vector2;
 using wheel_carrier::vector3;
 
-/// Of ten hardpoints: rod by rod, the chassis' end before the carrier's, each x, y, z.
+/// Number of coordinates of the ten hardpoints: rod by rod, the chassis end before the carrier end,
+/// each x, y, z.
 inline constexpr int coordinate_count = 30;
 
-/// How far each is off, metres.
+/// Errors of the coordinates, metres.
 using errors = Eigen::Matrix<double, coordinate_count, 1>;
 
-/// Toe-in and camber of the left wheel, rad, by the coordinates.
+/// Derivatives of toe-in and camber of the left wheel, rad, with respect to the coordinates.
 using sensitivity = Eigen::Matrix<double, 2, coordinate_count>;
 
 [[nodiscard]] inline std::string coordinate_name(const hardpoints& points, int i) {
@@ -55,7 +56,7 @@ struct toleranced_constraints {
     const auto& [xy, q] = x;
     using S = std::common_type_t<std::decay_t<decltype(q.w())>, typename P::Scalar>;
     const duet::vector3<S> centre(xy[0], xy[1], S(p[0]));
-    const duet::quaternion<S> turn(q);
+    const duet::quaternion<S> orientation(q);
     Eigen::Matrix<S, 5, 1> result;
     for (int i = 0; i < 5; ++i) {
       const rod& r = points.rods[std::size_t(i)];
@@ -64,7 +65,7 @@ struct toleranced_constraints {
                                 S(design[2] + p[first + 2]));
       };
       const duet::vector3<S> arm = off(6 * i + 4, r.carrier - points.wheel_centre);
-      const duet::vector3<S> d = centre + rotate(turn, arm) - off(6 * i + 1, r.chassis);
+      const duet::vector3<S> d = centre + rotate(orientation, arm) - off(6 * i + 1, r.chassis);
       result[i] = d.squaredNorm() - (r.carrier - r.chassis).squaredNorm();
     }
     return result;
@@ -83,7 +84,7 @@ template <class X>
 /// driving parameters, so that errors, too, are followed without change of branch.
 class toleranced_carrier {
 public:
-  /// \throws std::runtime_error where the rods of the design cannot close
+  /// \throws std::runtime_error if the rods of the design cannot close
   toleranced_carrier(const hardpoints& points, const std::vector<double>& heights) {
     const unknowns design(points.wheel_centre.head<2>(), rotation(1));
     try {
@@ -102,15 +103,17 @@ public:
   [[nodiscard]] double height(std::size_t row) const { return loops_[row].parameter()[0]; }
 
   /// Toe-in and camber, rad.
-  /// \throws duet::loop_closure_failure where the rods cannot
+  /// \throws duet::loop_closure_failure if the rods cannot close
   [[nodiscard]] vector2 angles(std::size_t row, const errors& e) const {
     return angles_of(loops_[row](parameters_at(height(row), e)));
   }
 
-  /// Their derivatives by the errors at the design, by dual numbers through the closed loop.
+  /// Derivatives of toe-in and camber with respect to the errors at the design, by dual numbers
+  /// through the closed loop.
   [[nodiscard]] sensitivity sensitivities(std::size_t row) const {
-    const loop& here = loops_[row];
-    return duet::jacobian([&here](const auto& p) { return angles_of(here(p)); }, here.parameter())
+    const loop& loop_at_height = loops_[row];
+    return duet::jacobian([&loop_at_height](const auto& p) { return angles_of(loop_at_height(p)); },
+                          loop_at_height.parameter())
         .jacobian.rightCols<coordinate_count>();
   }
 

@@ -46,7 +46,7 @@ inline hardpoints example_hardpoints() {
             {"tie rod", {-0.257, 0.320, -0.116}, {-0.144, 0.862, -0.056}}}}};
 }
 
-/// Toe-in of the left wheel for a carrier turned by q, rad.
+/// Toe-in of the left wheel for the orientation q of the carrier, rad.
 template <class T>
 [[nodiscard]] T toe_in(const duet::quaternion<T>& q) {
   using std::atan2;
@@ -54,7 +54,7 @@ template <class T>
   return -atan2(ahead[1], ahead[0]);
 }
 
-/// Camber of the left wheel for a carrier turned by q, rad.
+/// Camber of the left wheel for the orientation q of the carrier, rad.
 template <class T>
 [[nodiscard]] T camber(const duet::quaternion<T>& q) {
   using std::atan2;
@@ -96,7 +96,7 @@ struct constraints {
   }
 };
 
-/// The carrier on its rods, from the design position on.
+/// The carrier on its rods, solved by continuation from the design position.
 class carrier {
 public:
   explicit carrier(const hardpoints& points)
@@ -107,7 +107,7 @@ public:
   [[nodiscard]] const hardpoints& points() const { return points_; }
 
   /// Position, orientation and their first two derivatives.
-  /// \throws duet::loop_closure_failure where the rods cannot
+  /// \throws duet::loop_closure_failure if the rods cannot close
   [[nodiscard]] state at(double u) const {
     const auto x = duet::derivatives<2>(loop_, u);
     const auto centre = [&](std::size_t order, double height) {

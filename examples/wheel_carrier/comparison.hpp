@@ -17,8 +17,8 @@
 #include <vector>
 
 /// \file
-/// Angular velocity per unit of u, δ, and its derivative ∂δ/∂u from a spline in several ways, and
-/// their errors against the mechanism (P5, P6).
+/// Angular velocity per unit of u, δ, and its derivative ∂δ/∂u of a spline by several methods, and
+/// their errors relative to the mechanism (P5, P6).
 
 namespace wheel_carrier {
 
@@ -34,13 +34,13 @@ inline rates rates_of(const rotation& q, const rotation& first, const rotation& 
   return {2 * (first * conj(q)).vec(), 2 * (second * conj(q)).vec()};
 }
 
-/// The exact closed form: P3 and P4 in their true form.
+/// The exact closed form: P3 and P4, corrected.
 inline rates closed_form(const spline& s, double u) {
   const auto m = s.motion(u, duet::frame::spatial);
   return {m.velocity, m.acceleration};
 }
 
-/// Taylor numbers through the evaluation of the curve.
+/// Automatic differentiation: Taylor numbers through the evaluation of the curve.
 inline rates automatic(const spline& s, double u) {
   const auto q = duet::derivatives<2>(s, u);
   return rates_of(q[0], q[1], q[2]);
@@ -58,7 +58,7 @@ std::array<duet::taylor<double, 2>, 3> angle_series(const std::array<rotation, N
                                component([](const auto& p) { return p.z(); })));
 }
 
-/// Through Euler angles (P5, true form): δ = A [ψ′ θ′ φ′]ᵀ and its derivative.
+/// By Euler angles (P5, corrected): δ = A [ψ′ θ′ φ′]ᵀ and its derivative.
 inline rates through_euler_angles(const spline& s, double u) {
   const auto angles = angle_series(s.derivatives(u));
   using linear = duet::taylor<double, 1>;
@@ -74,13 +74,13 @@ inline rates through_euler_angles(const spline& s, double u) {
           delta.unaryExpr([](const linear& x) { return x.derivative(1); })};
 }
 
-/// P3 and P4 to the letter, with basis functions from B_{-1}.
+/// P3 and P4 as printed, with basis functions from B_{-1}.
 inline rates as_printed(const spline& s, double u) {
   const auto p = duet::printed_derivative(s, u);
   return rates_of(s(u), p.literal_first, p.literal_second);
 }
 
-/// P3 and P4 to the letter, with basis functions from B_0.
+/// P3 and P4 as printed, with basis functions from B_0.
 inline rates as_printed_from_zero(const spline& s, double u) {
   const auto p = duet::printed_derivative(s, u);
   return rates_of(s(u), p.from_zero_first, p.from_zero_second);
@@ -92,8 +92,8 @@ inline rates commuting(const spline& s, double u) {
   return rates_of(s(u), p.commuting_first, p.commuting_second);
 }
 
-/// What is done without any of this: a parabola through three neighbouring rotation vectors, inside
-/// the domain central differences.
+/// Numerical differentiation: a parabola through three neighbouring rotation vectors, which gives
+/// central differences inside the domain.
 inline rates central_differences(const spline& s, double u) {
   constexpr double h = 1e-4; // balances truncation against rounding in the second difference
   const double a = std::clamp(u, s.basis().front() + h, s.basis().back() - h);
@@ -104,25 +104,25 @@ inline rates central_differences(const spline& s, double u) {
   return {(ahead - behind) / (2 * h) + second * (u - a), second};
 }
 
-/// The ways, in the order of the report.
-struct way {
+/// The methods, in the order of the report.
+struct method {
   const char* name;
   rates (*evaluate)(const spline&, double);
 };
-inline constexpr std::array ways{way{"closed form", closed_form},
-                                 way{"automatic (Taylor)", automatic},
-                                 way{"Euler angles, P5", through_euler_angles},
-                                 way{"printed, functions from B_-1", as_printed},
-                                 way{"printed, functions from B_0", as_printed_from_zero},
-                                 way{"basis corrected, commuting", commuting},
-                                 way{"central differences", central_differences}};
+inline constexpr std::array methods{method{"closed form", closed_form},
+                                    method{"automatic (Taylor)", automatic},
+                                    method{"Euler angles, P5", through_euler_angles},
+                                    method{"printed, functions from B_-1", as_printed},
+                                    method{"printed, functions from B_0", as_printed_from_zero},
+                                    method{"basis corrected, commuting", commuting},
+                                    method{"central differences", central_differences}};
 
 /// P6 at the samples, in percent: δ_E and dδ_E.
 struct error_curve {
   std::vector<double> delta, delta_first;
 };
 
-inline error_curve errors(const std::vector<state>& reference, const spline& s, const way& w) {
+inline error_curve errors(const std::vector<state>& reference, const spline& s, const method& w) {
   error_curve result;
   for (const state& exact : reference) {
     const rates r = w.evaluate(s, exact.u);

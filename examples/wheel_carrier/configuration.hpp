@@ -11,15 +11,15 @@
 #include <vector>
 
 /// \file
-/// What the paper computes from the table: the carrier's configuration q_K = [x y z φ θ ψ] and its
-/// first two derivatives by u.
+/// The configuration of the carrier q_K = [x y z φ θ ψ] and its first two derivatives with respect
+/// to u, computed from the table as in the paper.
 
 namespace wheel_carrier {
 
 /// The wheel centre W and the angles [φ θ ψ] of R = Rz(ψ) Ry(θ) Rx(φ), each with first and second
-/// derivatives by u; metres and radians.
+/// derivatives with respect to u; metres and radians.
 struct configuration {
-  std::array<vector3, 3> place, angles;
+  std::array<vector3, 3> position, angles;
 };
 
 template <std::size_t N>
@@ -40,18 +40,18 @@ inline configuration configuration_of(const state& s) {
 
 /// P2 for vectors, W(u) = W_{−1} + Σ (W_i − W_{i−1}) B̃_i(u): the cubic curve through the wheel
 /// centres of the rows, with known derivatives at the ends.
-class place_spline {
+class position_spline {
 public:
-  place_spline(const std::vector<double>& u, const std::vector<vector3>& rows,
-               const vector3& start_rate, const vector3& end_rate)
+  position_spline(const std::vector<double>& u, const std::vector<vector3>& rows,
+                  const vector3& start_rate, const vector3& end_rate)
       : basis_(duet::clamped_knots(u, spline::order)), controls_(basis_.size()) {
     const std::size_t n = rows.size() - 1;
     controls_[0] = rows[0];
     controls_[1] = rows[0] + start_rate / basis_.weights<1>(0, u.front())[1][0];
     controls_[n + 2] = rows[n];
     controls_[n + 1] = rows[n] - end_rate / basis_.weights<1>(n - 1, u.back())[1][2];
-    // Of the rows between, each meets three controls. Gauss without pivots: with B-splines no
-    // element grows.
+    // Each interior row depends on three control points. Gaussian elimination without pivoting: for
+    // B-splines no element grows.
     std::vector<double> ratio(n);
     std::vector<vector3> reduced(n);
     reduced[0] = controls_[1];
@@ -85,14 +85,14 @@ private:
   std::vector<vector3> controls_;
 };
 
-/// How far the configuration is off: norms of the errors of (x, y, z) and (φ, θ, ψ), of their first
+/// Errors of the configuration: norms of the errors of (x, y, z) and (φ, θ, ψ), of their first
 /// and of their second derivatives.
 struct configuration_errors {
-  std::array<std::vector<double>, 3> place, angles;
+  std::array<std::vector<double>, 3> position, angles;
 
   void add(const configuration& c, const configuration& exact) {
     for (std::size_t k = 0; k < 3; ++k) {
-      place[k].push_back((c.place[k] - exact.place[k]).norm());
+      position[k].push_back((c.position[k] - exact.position[k]).norm());
       angles[k].push_back((c.angles[k] - exact.angles[k]).norm());
     }
   }

@@ -12,7 +12,7 @@
 #include <vector>
 
 /// \file
-/// The look-up table made from the mechanism: orientations over u, at equal arcs.
+/// The lookup table of the mechanism: orientations over u, at equal arcs.
 
 namespace wheel_carrier {
 
@@ -33,7 +33,7 @@ inline constexpr double paper_angle = 0.003;
 class arc_length {
 public:
   explicit arc_length(const carrier& mechanism) : mechanism_(mechanism), sums_{0} {
-    for (int i = 0; i < pieces; ++i) {
+    for (int i = 0; i < intervals; ++i) {
       sums_.push_back(sums_.back() + integral(node(i), node(i + 1)));
     }
   }
@@ -49,19 +49,19 @@ public:
       return highest;
     }
     const auto i = int(std::upper_bound(sums_.begin(), sums_.end(), arc) - sums_.begin()) - 1;
-    const auto missing = [&](double u) {
+    const auto residual = [&](double u) {
       return sums_[std::size_t(i)] + (u > node(i) ? integral(node(i), u) : 0.0) - arc;
     };
     std::uintmax_t iterations = 100;
     const auto [below, above] = boost::math::tools::toms748_solve(
-        missing, node(i), node(i + 1), boost::math::tools::eps_tolerance<double>(46), iterations);
+        residual, node(i), node(i + 1), boost::math::tools::eps_tolerance<double>(46), iterations);
     return (below + above) / 2;
   }
 
 private:
-  static constexpr int pieces = 40;
+  static constexpr int intervals = 40;
 
-  [[nodiscard]] static double node(int i) { return lowest + (highest - lowest) * i / pieces; }
+  [[nodiscard]] static double node(int i) { return lowest + (highest - lowest) * i / intervals; }
   [[nodiscard]] double integral(double from, double to) const {
     const auto speed = [this](double u) { return mechanism_.at(u).omega().norm(); };
     return boost::math::quadrature::gauss<double, 7>::integrate(speed, from, to);

@@ -25,8 +25,9 @@ inline void require_order(const csv_file& file, const std::string& path) {
   for (std::size_t i = 0; !header.empty() && i < names.size(); ++i) {
     const std::string name = i + 1 < header.size() ? header[i + 1] : "";
     if (header.size() != 7 || name.substr(0, name.find_first_of(" [(")) != names[i]) {
-      throw file_error(path, file.header_line(),
-                       "the columns are name, ax, ay, az, px, py, pz; the header says otherwise");
+      throw file_error(
+          path, file.header_line(),
+          "the header differs from the columns (expected name, ax, ay, az, px, py, pz)");
     }
   }
 }
@@ -45,20 +46,21 @@ inline hardpoints read_hardpoints(const std::string& path) {
       result.wheel_centre = {x[0], x[1], x[2]};
       has_centre = true;
     } else if (row.name == "wheel centre") {
-      throw file_error(path, row.line, "the wheel centre has three coordinates, once");
+      throw file_error(path, row.line, "the wheel centre is not a single row of three coordinates");
     } else if (x.size() != 6) {
-      throw file_error(path, row.line, "a rod is name, ax, ay, az, px, py, pz");
+      throw file_error(path, row.line,
+                       "the row is not a rod (expected name, ax, ay, az, px, py, pz)");
     } else if (rods == 5) {
-      throw file_error(path, row.line, "a sixth rod; the carrier has five");
+      throw file_error(path, row.line, "there is a sixth rod (expected five)");
     } else {
       result.rods[rods++] = {duet::printable(row.name), {x[0], x[1], x[2]}, {x[3], x[4], x[5]}};
     }
   }
   if (rods != 5) {
-    throw file_error(path, std::to_string(rods) + " rods instead of five");
+    throw file_error(path, std::to_string(rods) + " rods (expected five)");
   }
   if (!has_centre) {
-    throw file_error(path, "no line `wheel centre, x, y, z`");
+    throw file_error(path, "there is no line `wheel centre, x, y, z`");
   }
   return result;
 }

@@ -12,7 +12,7 @@
 #include <vector>
 
 /// \file
-/// The alternative that the paper names: Hermite interpolation, from the rates of every row.
+/// Hermite interpolation with the rates of every row, the alternative that the paper mentions.
 
 namespace wheel_carrier {
 

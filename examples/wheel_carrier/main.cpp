@@ -58,25 +58,25 @@ std::vector<state> solve(const carrier& mechanism, const std::vector<double>& sa
 
 end_rates rates_at(const state& first, const state& last) { return {first.omega(), last.omega()}; }
 
-/// δ_E and dδ_E of every way to the derivatives, for the chosen ends and beside them for the
+/// δ_E and dδ_E of every method for the chosen end conditions, and of the closed form for the
 /// others.
-std::vector<named_curve> compare_ways(const std::vector<double>& samples,
-                                      const std::vector<state>& states, const spline& chosen,
-                                      const std::string& chosen_name, const spline& other,
-                                      const std::string& other_name) {
+std::vector<named_curve> compare_methods(const std::vector<double>& samples,
+                                         const std::vector<state>& states, const spline& chosen,
+                                         const std::string& chosen_name, const spline& other,
+                                         const std::string& other_name) {
   std::printf("Errors against the mechanism, in percent\n\n");
   print_header_of_errors();
   std::vector<named_curve> curves;
-  for (const way& w : ways) {
+  for (const method& w : methods) {
     const std::string name = chosen_name + " ends: " + w.name;
     const error_curve curve = errors(states, chosen, w);
     print_error_row(name, samples, curve);
-    // On paper the first three lie on one another, and so do they in the figure.
+    // The first three curves coincide, in the paper and in the figure.
     if (w.evaluate != automatic && w.evaluate != through_euler_angles) {
       curves.emplace_back(name, curve);
     }
   }
-  curves.emplace_back(other_name + " ends: closed form", errors(states, other, ways[0]));
+  curves.emplace_back(other_name + " ends: closed form", errors(states, other, methods[0]));
   print_error_row(curves.back().first, samples, curves.back().second);
   return curves;
 }
@@ -89,18 +89,20 @@ configurations(const carrier& mechanism, const std::vector<double>& samples,
   for (const double u : t.u) {
     rows.push_back(mechanism.at(u).centre);
   }
-  const place_spline place(t.u, rows, states.front().centre_first, states.back().centre_first);
+  const position_spline position(t.u, rows, states.front().centre_first,
+                                 states.back().centre_first);
   std::vector<configuration> values;
   configuration_errors off;
   for (const state& exact : states) {
-    values.push_back({place.at(exact.u), angles_of(orientation.derivatives(exact.u))});
+    values.push_back({position.at(exact.u), angles_of(orientation.derivatives(exact.u))});
     off.add(values.back(), configuration_of(exact));
   }
   std::printf("\nErrors of the configuration, in metres and radians, per metre, per metre twice\n\n"
               "| | median | maximum | at u | at both ends |\n|---|---|---|---|---|\n");
   const char* const orders[] = {"", ", first derivative", ", second derivative"};
   for (std::size_t k = 0; k < 3; ++k) {
-    std::printf("| x, y, z%s |%s\n", orders[k], error_cells(samples, off.place[k], 1e-12).c_str());
+    std::printf("| x, y, z%s |%s\n", orders[k],
+                error_cells(samples, off.position[k], 1e-12).c_str());
   }
   for (std::size_t k = 0; k < 3; ++k) {
     std::printf("| phi, theta, psi%s |%s\n", orders[k],
@@ -127,7 +129,7 @@ std::string convergence(const carrier& mechanism, const arc_length& arcs,
     std::array<double, 4> now{};
     std::size_t k = 0;
     for (const char* const ends : {"clamped", "natural"}) {
-      const error_curve curve = errors(states, cumulative_curve(t, ends, known), ways[0]);
+      const error_curve curve = errors(states, cumulative_curve(t, ends, known), methods[0]);
       now[k++] = summarise(curve.delta).maximum;
       now[k++] = summarise(curve.delta_first).maximum;
     }
@@ -143,8 +145,8 @@ std::string convergence(const carrier& mechanism, const arc_length& arcs,
   return csv;
 }
 
-/// δ_E and dδ_E of every spline with every end, and of Hermite's. What the table has too few rows
-/// for is left out.
+/// δ_E and dδ_E of every spline with every end condition, and of the Hermite spline. Those that
+/// need more rows than the table has are skipped.
 std::vector<named_curve> compare_splines(const carrier& mechanism,
                                          const std::vector<double>& samples,
                                          const std::vector<state>& states, const table& t) {
@@ -167,7 +169,7 @@ std::vector<named_curve> compare_splines(const carrier& mechanism,
   return curves;
 }
 
-/// Maximal dδ_E of every spline with every end for tables of 25 … 400 rows.
+/// Maximal dδ_E of every spline with every end condition for tables of 25 … 400 rows.
 std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
                                const std::vector<state>& states) {
   const known_ends known = ends_of(states.front(), states.back());
@@ -188,7 +190,7 @@ std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
       const curve c = make(made[i]);
       name = c.name();
       columns[i].push_back(summarise(errors(states, c).delta_first).maximum);
-      cells += " " + error_text(columns[i].back(), least_delta_first) + " |";
+      cells += " " + error_text(columns[i].back(), min_delta_first) + " |";
     }
     names.push_back(name);
     std::printf("| %s |%s\n", name.c_str(), cells.c_str());
@@ -214,7 +216,7 @@ void run(const options& settings) {
   if (settings.table) {
     t = read_table(*settings.table);
   } else {
-    solve(mechanism, {lowest, 0, highest}); // says where the rods cannot close
+    solve(mechanism, {lowest, 0, highest}); // throws if the rods cannot close
     arcs.emplace(mechanism);
     const int rows = settings.rows.value_or(int(std::lround(arcs->total() / paper_angle)) + 1);
     t = equal_arc_table(mechanism, *arcs, rows);
@@ -248,8 +250,8 @@ void run(const options& settings) {
   std::vector<double> heights;
   const std::string others = paper_ends == "natural" ? "clamped" : "natural";
   if (has_reference) {
-    curves = compare_ways(samples, states, paper, paper_ends, cumulative_curve(t, others, known),
-                          others);
+    curves = compare_methods(samples, states, paper, paper_ends, cumulative_curve(t, others, known),
+                             others);
     const auto configuration_files = configurations(mechanism, samples, states, t, paper);
     files.insert(files.end(), configuration_files.begin(), configuration_files.end());
     splines = compare_splines(mechanism, samples, states, t);

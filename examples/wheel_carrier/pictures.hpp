@@ -21,8 +21,8 @@
 
 namespace wheel_carrier {
 
-/// Errors oscillate, as curves go through the rows: of every curve the largest error between two
-/// rows, where some sample is, and the heights in the middle.
+/// Errors oscillate since the curves interpolate the rows: the largest error of every curve between
+/// two rows with a sample between them, and the midpoints of these intervals.
 inline std::pair<std::vector<double>, std::vector<named_curve>>
 largest_between_rows(const std::vector<double>& samples, const std::vector<named_curve>& curves,
                      const std::vector<double>& rows) {
@@ -60,17 +60,17 @@ inline const char* percent_tics() {
          "1e6)\n";
 }
 
-/// Where both curves differ by more than half, the second of them.
-inline std::string where_it_differs(std::size_t column, std::size_t from) {
+/// Columns of a curve, plotted only where it is more than 1.5 times another.
+inline std::string columns_if_different(std::size_t column, std::size_t from) {
   const std::string a = "$" + std::to_string(column), b = "$" + std::to_string(from);
   return "1:(" + a + " > 1.5*" + b + " ? " + a + " : 1/0)";
 }
 
-/// Figure 1 of the paper, of `errors_between_rows.csv`: the printed formulas, in the reading that
-/// is kinder to them, against the true ones.
-/// \param curves  as `compare_ways` has them
-/// \param heights, largest  what that table is made of
-/// \param other_ends  those of the last curve, in a word
+/// Figure 1 of the paper, from `errors_between_rows.csv`: the printed formulas, in the reading with
+/// smaller errors, and the corrected ones.
+/// \param curves  result of `compare_methods`
+/// \param heights, largest  contents of that table
+/// \param other_ends  end conditions of the last curve, in a word
 inline std::string errors_script(const std::vector<named_curve>& curves,
                                  const std::vector<double>& heights,
                                  const std::vector<named_curve>& largest,
@@ -106,15 +106,15 @@ inline std::string errors_script(const std::vector<named_curve>& curves,
          {columns(printed, panel), "vermillion", "printed formula", 11 * heights.size() / 20,
           panel == 0 ? example::label_position::above_right : example::label_position::above,
           "lines lw 3"},
-         {where_it_differs(column(other, panel), column(0, panel)), "grey",
+         {columns_if_different(column(other, panel), column(0, panel)), "grey",
           "true formula, " + other_ends + " ends", 2, example::label_position::right,
           "lines lw 2"}});
   }
   return text + "unset multiplot\n";
 }
 
-/// Splines with known end rates, and the quintic where the ends are not known: of
-/// `splines_between_rows.csv` over u, of `spline_convergence.csv` over the rows.
+/// Splines with known end velocities, and the quintic without: `splines_between_rows.csv` over u
+/// and `spline_convergence.csv` over the number of rows.
 inline std::string splines_script(const std::vector<named_curve>& curves, std::size_t heights) {
   const auto number = [&](const std::string& name) {
     return std::size_t(std::find_if(curves.begin(), curves.end(),
@@ -136,16 +136,16 @@ inline std::string splines_script(const std::vector<named_curve>& curves, std::s
          "\nset lmargin 13\nset rmargin 3\nset xrange [*:*] noextend\n" + percent_tics() +
          "set xlabel 'wheel height u / m'\nset ylabel 'error of acceleration'\n"
          "set yrange [1e-9:1e3]\n" +
-         example::plot_command(
-             "splines_between_rows.csv",
-             {{columns(over_height("cumulative, clamped")), "vermillion", "cumulative cubic",
-               3 * heights / 5, above},
-              {columns(over_height("rotation-vector, clamped")), "blue", "rotation-vector cubic",
-               3 * heights / 5, below},
-              {columns(over_height("quintic, clamped")), "green", "quintic", 3 * heights / 5,
-               above},
-              {where_it_differs(over_height("quintic, natural"), over_height("quintic, clamped")),
-               "grey", "quintic, natural ends", 4, above_right}}) +
+         example::plot_command("splines_between_rows.csv",
+                               {{columns(over_height("cumulative, clamped")), "vermillion",
+                                 "cumulative cubic", 3 * heights / 5, above},
+                                {columns(over_height("rotation-vector, clamped")), "blue",
+                                 "rotation-vector cubic", 3 * heights / 5, below},
+                                {columns(over_height("quintic, clamped")), "green", "quintic",
+                                 3 * heights / 5, above},
+                                {columns_if_different(over_height("quintic, natural"),
+                                                      over_height("quintic, clamped")),
+                                 "grey", "quintic, natural ends", 4, above_right}}) +
          "set rmargin 25\nset xlabel 'rows of the table'\nset ylabel 'largest error'\nset logscale "
          "x\n"
          "set xrange [22:450]\nset yrange [1e-8:1e4]\nset xtics (25, 50, 100, 200, 400)\n" +
@@ -164,12 +164,13 @@ inline std::string splines_script(const std::vector<named_curve>& curves, std::s
          "unset multiplot\n";
 }
 
-/// Where the wheel centre goes from the design position, and how the wheel turns.
+/// Displacement of the wheel centre from the design position, toe-in and camber.
 inline std::string path_script(const std::vector<state>& states) {
-  const auto [least, most] =
+  const auto [lowest_camber, highest_camber] =
       std::minmax_element(states.begin(), states.end(),
                           [](const state& a, const state& b) { return camber(a.q) < camber(b.q); });
-  const double range = (camber(most->q) - camber(least->q)) * 180 / std::numbers::pi;
+  const double range =
+      (camber(highest_camber->q) - camber(lowest_camber->q)) * 180 / std::numbers::pi;
   const std::size_t high = 9 * states.size() / 10, low = states.size() / 10;
   using enum example::label_position;
   return "set multiplot layout 1,2 title " +

@@ -17,7 +17,7 @@ namespace {
 using rotation_vector_cubic = duet::rotation_vector_spline<double>;
 using rotation_vector_quintic = duet::rotation_vector_spline<double, 6>;
 
-/// The curve of this type with the ends of this name.
+/// The curve of this type with the end conditions of this name.
 template <class Spline>
 Spline interpolated(const table& t, const std::string& ends, const known_ends& known) {
   const auto need = [&](const std::optional<end_rates>& rates) {

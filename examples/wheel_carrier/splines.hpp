@@ -16,7 +16,7 @@
 
 namespace wheel_carrier {
 
-/// What is known of the ends beyond the table.
+/// Rates at the ends, if they are known.
 struct known_ends {
   std::optional<end_rates> velocity, acceleration;
 };
@@ -26,7 +26,7 @@ inline known_ends ends_of(const state& first, const state& last) {
           end_rates{first.omega_first(), last.omega_first()}};
 }
 
-/// A curve through a table, whatever its type.
+/// A curve through a table, of any type.
 struct curve {
   std::string spline, ends;
   std::function<rates(double)> at, automatic;
@@ -35,11 +35,11 @@ struct curve {
 };
 
 /// The spline of this name through the table, with the ends of this name.
-/// \throws std::runtime_error where they are not known
+/// \throws std::runtime_error if the rates at the ends are not known
 curve make_curve(const std::string& name, const table& t, const std::string& ends,
                  const known_ends& known);
 
-/// The paper's.
+/// The spline of the paper.
 spline cumulative_curve(const table& t, const std::string& ends, const known_ends& known);
 
 struct spline_and_ends {

@@ -12,18 +12,18 @@
 #include <vector>
 
 /// \file
-/// The look-up table: made from the mechanism, or read from a file.
+/// The lookup table: computed from the mechanism or read from a file.
 
 namespace wheel_carrier {
 
 using duet::file_error;
 
-/// Reads u, qw, qx, qy, qz, in the order of the header. Rows a curve cannot go through are reported
-/// here, where their file is known. \throws file_error
+/// Reads u, qw, qx, qy, qz, in the order of the header. Rows that cannot be interpolated are
+/// reported here, since the path of the file is known. \throws file_error
 inline table read_table(const std::string& path) {
   auto [u, q] = duet::load_table<double>(path);
   if (u.size() < 2) {
-    throw file_error(path, "needs two rows or more");
+    throw file_error(path, "has fewer than two rows");
   }
   try {
     q = duet::align_quaternion_signs(q);

@@ -16,7 +16,7 @@
 #include <vector>
 
 /// \file
-/// What a run leaves in its folder: tables as CSV.
+/// Tables of a run as CSV.
 
 namespace wheel_carrier {
 
@@ -66,7 +66,7 @@ inline std::string configuration_csv(const std::vector<double>& samples,
   for (std::size_t i = 0; i < samples.size(); ++i) {
     std::vector<double> row{samples[i]};
     for (std::size_t k = 0; k < 3; ++k) {
-      for (const vector3& v : {values[i].place[k], values[i].angles[k]}) {
+      for (const vector3& v : {values[i].position[k], values[i].angles[k]}) {
         row.insert(row.end(), v.data(), v.data() + 3);
       }
     }
@@ -77,10 +77,11 @@ inline std::string configuration_csv(const std::vector<double>& samples,
 
 inline std::string configuration_errors_csv(const std::vector<double>& samples,
                                             const configuration_errors& off) {
-  std::string text = "u,place,angles,place_first,angles_first,place_second,angles_second\n";
+  std::string text =
+      "u,position,angles,position_first,angles_first,position_second,angles_second\n";
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    text += csv_line({samples[i], off.place[0][i], off.angles[0][i], off.place[1][i],
-                      off.angles[1][i], off.place[2][i], off.angles[2][i]});
+    text += csv_line({samples[i], off.position[0][i], off.angles[0][i], off.position[1][i],
+                      off.angles[1][i], off.position[2][i], off.angles[2][i]});
   }
   return text;
 }

@@ -19,7 +19,7 @@ list(LENGTH coordinates count)
 if(NOT count EQUAL 17 OR NOT coordinates MATCHES ";drive.y,-0.05,-inf,inf,0,1,0;")
   message(FATAL_ERROR "coordinates.csv holds\n${coordinates}")
 endif()
-run(0 "a robot description" --help)
+run(0 "robot description" --help)
 
 set(joint "<parent link=\"a\"/><child link=\"b, 1\"/><origin xyz=\"0 0 2\"/>")
 file(WRITE ${folder}/slides.urdf "<robot><link name=\"a\"/><link name=\"b, 1\"><inertial><mass value=\"3\"/></inertial></link>

@@ -19,8 +19,8 @@ run(0 "kind=screw angle=2.5477 translation=0.620688 ad_vs_closed_form=[0-9.]+e-1
 run(0 "kind=screw angle=-3.73548 translation=0.620688" --longer-arc)
 run(0 "^The poses are the same" --from ${start} --to ${start})
 run(0 "^A translation by 3 along \\(0, 0, 1\\)" --from ${start} --to 1,0,3,1,0,0,0)
-run(0 "the other way round is as short" --from ${start} --to 1,0,0,0,0,0,1)
-run(0 "A turn by 1.5708 rad \\(90 degrees\\) about the line through \\(0.5, -0.5, 0\\) along \\(0, 0, 1\\)"
+run(0 "both arcs have the same length" --from ${start} --to 1,0,0,0,0,0,1)
+run(0 "A rotation by 1.5708 rad \\(90 degrees\\) about the line through \\(0.5, -0.5, 0\\) along \\(0, 0, 1\\)"
   --from ${start} --to 0,-1,0,0,1,0,0,0,0,0,1,0)
 run(0 "--longer-arc" --help)
 run_file(0 "kind=translation angle=0 translation=1" "x,y,z,qw,qx,qy,qz\n0,0,0,1,0,0,0\n0,0,1,1,0,0,0\n")

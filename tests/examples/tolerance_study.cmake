@@ -1,7 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 # Runs the tolerance study in one process: good and bad options, and blocks of samples that are missing, damaged or
-# made otherwise.
+# of other settings.
 #
 # cmake -Dprogram=<tolerance_study> -Dfolder=<for files> -P tolerance_study.cmake
 
@@ -47,7 +47,7 @@ study(0 "^4 of 4 blocks to compute\n1000 samples.* tie rod, carrier y +0[.]32.*b
 file(READ ${folder}/out/summary.csv whole)
 file(READ ${samples}/00002.csv block)
 
-# What is there is not computed again, and the number of threads makes no difference.
+# Existing blocks are not computed again, and the number of threads makes no difference.
 file(REMOVE ${samples}/00000.csv ${samples}/00002.csv ${samples}/00003.csv ${folder}/out/summary.csv)
 study(1 "^$" "blocks 0-3 in out/samples, these are missing: 0, 2-3 .run again" --summary)
 study(0 "^3 of 4 blocks to compute\n" "" --threads 3)
@@ -63,7 +63,7 @@ study(1 "^$" "00000.csv:1: made with travel -0.1 to 0.1, not travel 0 to 0.1" --
 
 string(REGEX REPLACE "\n[^\n]*\n$" "\n" shorter "${block}")
 file(WRITE ${samples}/00002.csv "${shorter}")
-study(1 "^0 of 4 blocks to compute\n$" "00002.csv: holds 255 samples instead of 256")
+study(1 "^0 of 4 blocks to compute\n$" "00002.csv: contains 255 samples .expected 256.")
 string(REGEX REPLACE "\n512," "\n511," other "${block}")
 file(WRITE ${samples}/00002.csv "${other}")
 study(1 "^0 of 4 blocks to compute\n$" "00002.csv:2: sample 512 expected")

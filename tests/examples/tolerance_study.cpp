@@ -2,7 +2,7 @@
 
 // Sensitivities of the wheel carrier's angles to its hardpoints, by dual numbers through the closed
 // loop, against the closed form of rods that keep their lengths, and against the mechanism solved
-// anew.
+// with errors.
 
 #include "../../examples/tolerance_study/samples.hpp"
 #include "../../examples/tolerance_study/toleranced_carrier.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 const std::vector<double> heights{-0.19, -0.1, 0, 0.07, 0.2};
 
-/// The ends of a rod come no nearer: d·(dW + ω × R s) = d·dA − d·R de, d = W + R s − A, where
+/// The length of a rod is constant: d·(dW + ω × R s) = d·dA − d·R de, d = W + R s − A, where
 /// dW_z = 0. Then dh = ω × h of the wheel's axes h.
 sensitivity by_hand(const wheel_carrier::state& s, const hardpoints& points) {
   Eigen::Matrix<double, 5, 5> matrix;
@@ -54,7 +54,7 @@ sensitivity by_hand(const wheel_carrier::state& s, const hardpoints& points) {
 
 } // namespace
 
-TEST_CASE("without errors it is the wheel carrier") {
+TEST_CASE("toleranced_carrier: without errors, toe-in and camber are those of the wheel carrier") {
   const hardpoints points = wheel_carrier::example_hardpoints();
   const wheel_carrier::carrier design(points);
   const toleranced_carrier mechanism(points, heights);
@@ -67,7 +67,7 @@ TEST_CASE("without errors it is the wheel carrier") {
   }
 }
 
-TEST_CASE("sensitivities are those of the closed form") {
+TEST_CASE("toleranced_carrier: sensitivities by dual numbers agree with the closed form") {
   const hardpoints points = wheel_carrier::example_hardpoints();
   const wheel_carrier::carrier design(points);
   const toleranced_carrier mechanism(points, heights);
@@ -79,7 +79,7 @@ TEST_CASE("sensitivities are those of the closed form") {
   }
 }
 
-TEST_CASE("what the first order misses is of the second") {
+TEST_CASE("toleranced_carrier: the error of the first-order prediction is of second order") {
   const toleranced_carrier mechanism(wheel_carrier::example_hardpoints(), heights);
   const errors direction = sample_errors(1, 0, 1);
   for (std::size_t row = 0; row < heights.size(); ++row) {
@@ -94,7 +94,7 @@ TEST_CASE("what the first order misses is of the second") {
   }
 }
 
-TEST_CASE("samples: each seeded by itself, standard normal") {
+TEST_CASE("sample_errors: samples depend on seed and number only and are standard normal") {
   CHECK(sample_errors(1, 7, 2) == 2 * sample_errors(1, 7, 1));
   CHECK(sample_errors(1, 7, 1) != sample_errors(1, 8, 1));
   CHECK(sample_errors(1, 7, 1) != sample_errors(2, 7, 1));
@@ -114,7 +114,7 @@ TEST_CASE("samples: each seeded by itself, standard normal") {
   CHECK(std::abs(neighbours) < 4.5 * std::sqrt(30.0 * count));
 }
 
-TEST_CASE("statistics of known numbers") {
+TEST_CASE("statistics_of: mean, deviation and quantiles of known numbers are exact") {
   std::vector<double> numbers;
   for (int i = 200; i >= 0; --i) {
     numbers.push_back(i);

@@ -9,6 +9,8 @@
 #include "../../examples/wheel_carrier/pictures.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
 
+#include <duet/spline/interpolate.hpp>
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -66,7 +68,7 @@ const experiment& the_experiment() {
 
 } // namespace
 
-TEST_CASE("the closed loop meets the reference values, derivatives included") {
+TEST_CASE("carrier: position, orientation and derivatives agree with the reference values") {
   const carrier mechanism(example_hardpoints());
   for (const reference& expected : references) {
     CAPTURE(expected.u);
@@ -79,26 +81,26 @@ TEST_CASE("the closed loop meets the reference values, derivatives included") {
   }
 }
 
-TEST_CASE("P7: 105 rows, 0.003 rad apart, over heights that are not uniform") {
+TEST_CASE("P7: the table has 105 rows, 0.003 rad apart, at non-uniform heights") {
   const auto& [mechanism, arcs, t, states, samples] = the_experiment();
   CHECK(std::abs(arcs.total() - 0.311551898) < 1e-9);
   for (std::size_t i = 1; i < t.q.size(); ++i) {
     const double angle = duet::rotation_vector(t.q[i] * conj(t.q[i - 1])).norm();
-    // The angle between two rows is a chord of the arc: shorter where the axis turns.
+    // The angle between two rows is a chord of the arc: shorter where the axis moves.
     CHECK(angle < arcs.total() / 104 * (1 + 1e-12));
     CHECK(angle > arcs.total() / 104 * (1 - 5e-4));
   }
   CHECK(t.u[1] - t.u[0] > 1.5 * (t.u[104] - t.u[103]));
 }
 
-TEST_CASE("P5, P6: errors of the spline against the mechanism") {
+TEST_CASE("P5, P6: errors of the spline relative to the mechanism are as expected") {
   const auto& [mechanism, arcs, t, states, samples] = the_experiment();
   const spline clamped = duet::interpolate<spline>(
       t.u, t.q, duet::clamped{states.front().omega(), states.back().omega()});
   const spline natural = duet::interpolate<spline>(t.u, t.q, duet::natural{});
 
-  SUBCASE("clamped ends, every exact way") {
-    for (const way& w : {ways[0], ways[1], ways[2]}) {
+  SUBCASE("clamped ends: all exact methods are accurate") {
+    for (const method& w : {methods[0], methods[1], methods[2]}) {
       CAPTURE(w.name);
       const error_curve e = errors(states, clamped, w);
       CHECK(summarise(e.delta).maximum < 0.001);
@@ -107,23 +109,23 @@ TEST_CASE("P5, P6: errors of the spline against the mechanism") {
       CHECK(summarise(e.delta_first).median < 0.007);
     }
   }
-  SUBCASE("natural ends are wrong at the ends and right between them") {
-    const error_curve e = errors(states, natural, ways[0]);
+  SUBCASE("natural ends: large errors at the ends, small ones between them") {
+    const error_curve e = errors(states, natural, methods[0]);
     CHECK(summarise(e.delta).ends > 1);
     CHECK(summarise(e.delta_first).ends == doctest::Approx(100).epsilon(0.01));
     CHECK(summarise(e.delta_first).median < 0.01);
   }
-  SUBCASE("automatic differentiation is the closed form; the print is not") {
+  SUBCASE("automatic differentiation agrees with the closed form, the printed formulas do not") {
     CHECK(automatic_against_closed_form(clamped, samples) < 1e-12);
     const double printed = printed_formula_error(clamped, samples);
     CHECK(printed > 1e-4);
     CHECK(printed < 1e-3);
-    CHECK(summarise(errors(states, clamped, ways[3]).delta_first).median > 100);
-    CHECK(summarise(errors(states, clamped, ways[4]).delta_first).median > 100);
+    CHECK(summarise(errors(states, clamped, methods[3]).delta_first).median > 100);
+    CHECK(summarise(errors(states, clamped, methods[4]).delta_first).median > 100);
   }
-  SUBCASE("errors of the angular velocity peak inside with clamped ends, at both with natural") {
-    const std::vector<double> inside = errors(states, clamped, ways[0]).delta;
-    const std::vector<double> outside = errors(states, natural, ways[0]).delta;
+  SUBCASE("angular velocity errors peak inside with clamped ends, at both ends with natural ones") {
+    const std::vector<double> inside = errors(states, clamped, methods[0]).delta;
+    const std::vector<double> outside = errors(states, natural, methods[0]).delta;
     const double middle = summarise(inside).interior;
     CHECK(inside.front() < 1e-3 * middle);
     CHECK(inside.back() < 1e-3 * middle);
@@ -131,17 +133,18 @@ TEST_CASE("P5, P6: errors of the spline against the mechanism") {
     CHECK(outside.front() > 10 * summarise(outside).interior);
     CHECK(outside.back() > 2 * summarise(outside).interior);
   }
-  SUBCASE("q_K, q′_K and q″_K") {
+  SUBCASE("q_K, q′_K and q″_K are accurate") {
     std::vector<vector3> rows;
     for (const double u : t.u) {
       rows.push_back(mechanism.at(u).centre);
     }
-    const place_spline place(t.u, rows, states.front().centre_first, states.back().centre_first);
+    const position_spline position(t.u, rows, states.front().centre_first,
+                                   states.back().centre_first);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      CHECK((place.at(t.u[i])[0] - rows[i]).norm() < 1e-14);
+      CHECK((position.at(t.u[i])[0] - rows[i]).norm() < 1e-14);
     }
-    CHECK((place.at(lowest)[1] - states.front().centre_first).norm() < 1e-13);
-    CHECK((place.at(highest)[1] - states.back().centre_first).norm() < 1e-13);
+    CHECK((position.at(lowest)[1] - states.front().centre_first).norm() < 1e-13);
+    CHECK((position.at(highest)[1] - states.back().centre_first).norm() < 1e-13);
     configuration_errors off;
     for (const state& s : states) {
       const configuration exact = configuration_of(s);
@@ -150,17 +153,17 @@ TEST_CASE("P5, P6: errors of the spline against the mechanism") {
       const vector3 omega = duet::euler_rate_matrix<duet::zyx>(angles[2], angles[1]) *
                             vector3(first[2], first[1], first[0]);
       CHECK((omega - s.omega()).norm() < 1e-13 * s.omega().norm());
-      off.add({place.at(s.u), angles_of(clamped.derivatives(s.u))}, exact);
+      off.add({position.at(s.u), angles_of(clamped.derivatives(s.u))}, exact);
     }
     const double limits[2][3] = {{2e-9, 5e-7, 8e-4}, {5e-9, 2e-6, 4e-3}};
     for (std::size_t k = 0; k < 3; ++k) {
-      CHECK(summarise(off.place[k]).maximum < limits[0][k]);
+      CHECK(summarise(off.position[k]).maximum < limits[0][k]);
       CHECK(summarise(off.angles[k]).maximum < limits[1][k]);
     }
   }
 }
 
-TEST_CASE("rods that cannot close are reported") {
+TEST_CASE("carrier: rods that cannot close throw loop_closure_failure with the height") {
   hardpoints points = example_hardpoints();
   points.rods[2].chassis[1] = 0.8;
   try {
@@ -172,7 +175,8 @@ TEST_CASE("rods that cannot close are reported") {
 }
 
 // Samples on a row count for the interval before it; the interval (3, 3.5] has none.
-TEST_CASE("the largest errors between two rows") {
+TEST_CASE(
+    "largest_between_rows: largest errors per interval; intervals without samples are skipped") {
   const std::vector<double> samples{0, .5, 1, 1.5, 2, 3, 4};
   const std::vector<named_curve> curves{{"a", {{1, 3, 2, 5, 4, 0, 6}, {7, 1, 1, 2, 9, 3, 8}}}};
   const auto [heights, largest] = largest_between_rows(samples, curves, {0, 1, 3, 3.5, 4});
@@ -183,7 +187,7 @@ TEST_CASE("the largest errors between two rows") {
   CHECK(largest[0].second.delta_first == std::vector<double>{7, 9, 8});
 }
 
-TEST_CASE("numbers of titles have two digits") {
+TEST_CASE("two_digits: two significant digits, with spaces in groups of three") {
   CHECK(example::two_digits(.0051768) == "0.0052");
   CHECK(example::two_digits(99.4) == "99");
   CHECK(example::two_digits(2634.) == "2600");

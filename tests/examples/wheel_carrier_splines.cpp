@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// How near rotation-vector splines through the wheel carrier's table come to the mechanism.
+// Errors of rotation-vector splines through the table of the wheel carrier.
 
 #include "../../examples/wheel_carrier/carrier.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
@@ -33,7 +33,7 @@ double worst_acceleration(const std::vector<state>& states, const Spline& s) {
 
 } // namespace
 
-TEST_CASE("P7: dδ_E of rotation-vector splines through the 0.003-rad table") {
+TEST_CASE("P7: rotation-vector splines through the 0.003-rad table have small dδ_E") {
   const carrier mechanism(example_hardpoints());
   const table t = equal_arc_table(mechanism, arc_length(mechanism), 105);
   std::vector<state> states;
