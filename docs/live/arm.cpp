@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// An arm in the browser: its tip along the screw motion to a goal, limits, singular values, and
-// joint coordinates for a pose. Metres, radians, axes of the base; poses are w, x, y, z of the
-// rotation, then the place.
+// An arm in the browser: screw motion of the tip to a goal, joint limits, singular values, inverse
+// kinematics. Metres, radians, axes of the base; poses are w, x, y, z of the rotation, then the
+// position.
 
 #include "live.hpp"
 
@@ -22,7 +22,7 @@
 
 namespace {
 
-/// Any of the arms, so that what is done with it is compiled once.
+/// One type for all arms, so that code for it is compiled once.
 using arm_chain = duet::bounded_chain<7>;
 using joints = duet::detail::joint_vector<double, -7>;
 using pose_type = duet::dual_quaternion<double>;
@@ -50,10 +50,10 @@ live::writer& operator<<(live::writer& out, const pose_type& a) {
 
 } // namespace
 
-/// The arm's joints.
+/// Joints of the arm.
 /// \param arm  0 Panda, 1 UR5e, 2 iiwa 14
-/// \param out  lower limits, upper limits, and coordinates to begin with: three times as many
-/// numbers \return how many joints there are, at most 7
+/// \param out  lower limits, upper limits and initial coordinates: 3 joints numbers
+/// \return number of joints, at most 7
 DUET_LIVE int joints_of_arm(int arm, double* out) {
   live::writer to(out);
   const arm_chain chain = chain_of(arm);
@@ -66,7 +66,7 @@ DUET_LIVE int joints_of_arm(int arm, double* out) {
   return chain.size();
 }
 
-/// Where the arm stands at joint coordinates.
+/// Forward kinematics of all links.
 /// \param out  poses of all links from the base to the last, and of the tip: (joints + 2) times 7
 ///             numbers
 DUET_LIVE void links_of_arm(int arm, const double* theta, double* out) {
@@ -89,9 +89,9 @@ DUET_LIVE void singular_values_of_arm(int arm, const double* theta, double* out)
   to << svd.singularValues();
 }
 
-/// A pose moved and turned.
-/// \param by   by how much the place moves (3), and the rotation vector about the pose's own axes
-/// (3) \param out  a pose
+/// A pose moved and rotated.
+/// \param by   displacement of the position (3), and rotation vector in the axes of the pose (3)
+/// \param out  a pose
 DUET_LIVE void moved_pose(const double* pose, const double* by, double* out) {
   live::writer to(out);
   const pose_type a = pose_from(pose);
@@ -101,7 +101,7 @@ DUET_LIVE void moved_pose(const double* pose, const double* by, double* out) {
 
 /// The screw motion from one pose to another.
 /// \param out  the axis's direction (3) and its point nearest to the first pose (3), angle,
-///             translation along the axis, 1 if it turns, else 0; then `count` poses on the way,
+///             translation along the axis, 1 if it rotates, else 0; then `count` poses along it,
 ///             the first and the last included: 9 + 7 count numbers
 DUET_LIVE void screw_between(const double* from, const double* goal, int count, double* out) {
   live::writer to(out);
@@ -117,51 +117,52 @@ DUET_LIVE void screw_between(const double* from, const double* goal, int count, 
   }
 }
 
-/// The plan along the screw motion from where the tip is at the start to a goal.
-/// \param room  for how many waypoints there is room
-/// \param out   why it ended, 0 where the goal is reached, else as `stop_reason` counts; its
-/// smallest
-///              singular value and its smallest margin from a limit; then of each waypoint τ and
-///              the coordinates: 3 + (1 + joints) room numbers
-/// \return how many waypoints there are, of which the first `room` are written
-DUET_LIVE int plan_of_arm(int arm, const double* start, const double* goal, int room, double* out) {
+/// The plan along the screw motion from the pose of the tip at the start to a goal.
+/// \param capacity  maximum number of waypoints that are written
+/// \param out       stop reason (0 if the goal is reached), smallest singular value, smallest
+///                  margin from a limit; then τ and the coordinates of each waypoint:
+///                  3 + (1 + joints) capacity numbers
+/// \return number of waypoints, of which the first `capacity` are written
+DUET_LIVE int plan_of_arm(int arm, const double* start, const double* goal, int capacity,
+                          double* out) {
   live::writer to(out);
   const arm_chain chain = chain_of(arm);
-  // Finer than is seen would be slower than the pointer.
+  // A smaller deviation would not be visible and would be slower than the pointer.
   duet::plan_options options;
   options.deviation = 1e-4;
   const auto plan =
       duet::plan_screw_motion(chain, joints_from(chain, start), pose_from(goal), options);
   to << double(plan.reason) << plan.smallest_singular_value << plan.smallest_limit_margin;
   const int count = int(plan.tau.size());
-  for (int i = 0; i < std::min(count, room); ++i) {
+  for (int i = 0; i < std::min(count, capacity); ++i) {
     to << plan.tau[std::size_t(i)] << plan.joints[std::size_t(i)];
   }
   return count;
 }
 
-/// Joint coordinates for a pose of the tip: of six joints all solutions within the limits, of
-/// seven, which have curves of them, the one that is found from a start. \param room  for how many
-/// solutions there is room \param out   of each solution its coordinates: joints times room numbers
-/// \return how many were found
-DUET_LIVE int solutions_of_arm(int arm, const double* goal, const double* start, int room,
+/// Inverse kinematics: all solutions within the limits of an arm of six joints; for seven joints,
+/// whose solutions form curves, the one that is found from an initial guess.
+/// \param capacity  maximum number of solutions
+/// \param out       coordinates of each solution: joints times capacity numbers
+/// \return number of solutions
+DUET_LIVE int solutions_of_arm(int arm, const double* goal, const double* start, int capacity,
                                double* out) {
   live::writer to(out);
   const arm_chain chain = chain_of(arm);
   if (chain.size() == 6) {
     int count = 0;
     for (const auto& each : duet::all_inverse_kinematics(chain, pose_from(goal)).solutions) {
-      if (each.within_limits && count < room) {
+      if (each.within_limits && count < capacity) {
         to << each.joints;
         ++count;
       }
     }
     return count;
   }
-  const auto found = duet::inverse_kinematics(chain, pose_from(goal), joints_from(chain, start));
-  if (found.reason != duet::stop_reason::reached || room < 1) {
+  const auto solution = duet::inverse_kinematics(chain, pose_from(goal), joints_from(chain, start));
+  if (solution.reason != duet::stop_reason::reached || capacity < 1) {
     return 0;
   }
-  to << found.joints;
+  to << solution.joints;
   return 1;
 }

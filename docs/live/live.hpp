@@ -10,8 +10,8 @@
 #endif
 
 /// \file
-/// What pages call: functions in C over numbers and arrays of doubles, compiled for the browser,
-/// and for this machine as a library that tests compare with it.
+/// Interface of the pages: C functions of numbers and arrays of doubles, compiled for the browser
+/// and, for comparison in tests, as a native library.
 
 #ifdef __EMSCRIPTEN__
 
@@ -22,7 +22,7 @@ EM_JS(void, duet_live_error, (const char* message), { throw new Error(UTF8ToStri
 // clang-format on
 
 namespace live {
-/// Errors become those of JavaScript, which unwind all that was called.
+/// Errors are thrown as JavaScript errors, which unwind all calls.
 inline const bool errors_are_thrown = (duet::set_error_handler(duet_live_error), true);
 } // namespace live
 
@@ -34,7 +34,7 @@ inline const bool errors_are_thrown = (duet::set_error_handler(duet_live_error),
 
 namespace live {
 
-/// Writes one number or vector after the other.
+/// Writes numbers and vectors consecutively.
 class writer {
 public:
   explicit writer(double* out) : out_(out) {}

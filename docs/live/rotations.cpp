@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-// A curve through rotations in the browser: the cubic cumulative B-spline, its rates by the true
-// formula and as printed. Rotations are w, x, y, z, rows are at 0, 1, 2 …; spatial axes.
+// A curve through rotations in the browser: the cubic cumulative B-spline, its rates by the correct
+// formula and as printed. Rotations are w, x, y, z; rows are at 0, 1, 2 …; spatial axes.
 
 #include "live.hpp"
 
@@ -22,7 +22,7 @@ using rotation = duet::quaternion<double>;
 using spline = duet::cumulative_bspline<double>;
 using vector3 = duet::vector3<double>;
 
-/// A point of the body, whose way is drawn.
+/// A point of the body, whose path is drawn.
 const vector3 mark(1, 0, 0);
 
 rotation rotation_from(const double* q) { return {q[0], q[1], q[2], q[3]}; }
@@ -64,7 +64,7 @@ void write_motion(const spline& s, double u, int reading, live::writer& out) {
 
 } // namespace
 
-/// The rows to begin with: those of examples/printed_velocity, about one radian apart.
+/// The initial rows: those of examples/printed_velocity, about one radian apart.
 /// \param out  6 rotations
 DUET_LIVE void first_rows(double* out) {
   live::writer to(out);
@@ -98,23 +98,24 @@ DUET_LIVE void motion_of_curve(int count, const double* rows, int ends, int read
   }
 }
 
-/// The rotation q turned the shortest way so that its mark comes to a direction, of any length but
-/// 0. \param out  a rotation
-DUET_LIVE void turned_to(const double* q, const double* direction, double* out) {
+/// The rotation q, rotated by the smallest angle that takes its mark to a direction.
+/// \param direction  of any length except 0
+/// \param out        a rotation
+DUET_LIVE void rotated_to(const double* q, const double* direction, double* out) {
   live::writer to(out);
   const rotation from = rotation_from(q);
   const vector3 a = duet::rotate(from, mark);
   const vector3 b = vector3(direction[0], direction[1], direction[2]).normalized();
   const vector3 axis = a.cross(b);
   const double sine = axis.norm();
-  const vector3 turn =
+  const vector3 rotation_vector =
       sine > 0 ? vector3(axis * (std::atan2(sine, a.dot(b)) / sine)) : vector3(vector3::Zero());
-  to << normalized(duet::from_rotation_vector(turn) * from);
+  to << normalized(duet::from_rotation_vector(rotation_vector) * from);
 }
 
-/// The rotation q turned by an angle about its mark.
+/// The rotation q, rotated by an angle about its mark.
 /// \param out  a rotation
-DUET_LIVE void turned_about_mark(const double* q, double angle, double* out) {
+DUET_LIVE void rotated_about_mark(const double* q, double angle, double* out) {
   live::writer to(out);
   to << normalized(rotation_from(q) * duet::from_rotation_vector(vector3(angle * mark)));
 }

@@ -114,11 +114,11 @@ duetLive.start("rotations", (host, call) => {
     turn_to(i, right.map((_, k) => x * right[k] + y * up[k] + z * towards[k]));
   };
   const turn_to = (i, direction) => {
-    set_row(i, call("turned_to", [row(i), direction], 4).numbers);
+    set_row(i, call("rotated_to", [row(i), direction], 4).numbers);
     redraw();
   };
   const spin = (angle) => {
-    set_row(state.chosen, call("turned_about_mark", [row(state.chosen), angle], 4).numbers);
+    set_row(state.chosen, call("rotated_about_mark", [row(state.chosen), angle], 4).numbers);
     redraw();
   };
   const step = (i, x, y) => {

@@ -26,7 +26,7 @@ using rotation_vector_quintic = duet::rotation_vector_spline<double, 6>;
 enum spline_kind { cumulative, cubic, quintic, hermite };
 enum end_condition_kind { natural, not_a_knot, clamped, acceleration, both };
 
-/// The mechanism at as many heights as the page of documents has, solved once.
+/// The mechanism at the heights of docs/wheel_carrier.md, solved once.
 class reference {
 public:
   static constexpr int count = 2001;
@@ -54,7 +54,7 @@ const reference& solved() {
   return result;
 }
 
-/// The last one is kept, as readers move one slider at a time.
+/// The last table is cached, since readers move one slider at a time.
 const table& table_of(int rows) {
   static table result;
   if (int(result.u.size()) != rows) {
@@ -112,7 +112,7 @@ rates true_rates(const Spline& s, double u) {
   return {m.velocity, m.acceleration};
 }
 
-/// Median, maximum, and the lowest height where it is, but for rounding.
+/// Median, maximum, and the lowest height at which the maximum is attained, except for round-off.
 void summary_of(const std::vector<double>& values, live::writer& out) {
   const summary s = summarise(values);
   const auto top = std::find_if(values.begin(), values.end(),
@@ -124,17 +124,17 @@ void summary_of(const std::vector<double>& values, live::writer& out) {
 std::vector<double> largest_between(const std::vector<double>& rows,
                                     const std::vector<double>& values) {
   std::vector<double> result(rows.size() - 1);
-  std::size_t piece = 0;
+  std::size_t interval = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    while (piece + 2 < rows.size() && solved().states()[i].u > rows[piece + 1]) {
-      ++piece;
+    while (interval + 2 < rows.size() && solved().states()[i].u > rows[interval + 1]) {
+      ++interval;
     }
-    result[piece] = std::max(result[piece], values[i]);
+    result[interval] = std::max(result[interval], values[i]);
   }
   return result;
 }
 
-/// δ_E and dδ_E of rates by u at all heights, in percent.
+/// δ_E and dδ_E of rates with respect to u at all heights, in percent.
 template <class Rates>
 error_curve errors_of(const Rates& at) {
   error_curve result;
@@ -194,27 +194,26 @@ DUET_LIVE void rates_at(int rows, int kind, int ends, double u, double* out) {
   });
 }
 
-/// Errors of a spline against the mechanism, percent (P6), at 2001 heights.
-/// \param rows  of the table, from 6
+/// Errors of a spline relative to the mechanism, percent (P6), at 2001 heights.
+/// \param rows  number of rows of the table, at least 6
 /// \param kind  0 cumulative, 1 rotation-vector cubic, 2 quintic, 3 Hermite
-/// \param ends  0 natural, 1 not-a-knot, 2 clamped, 3 acceleration, 4 both, which is for the
-/// quintic;
-///              Hermite has none
-/// \param out  δ_E: median, maximum, height of the maximum; dδ_E: likewise; both as printed (0
-/// where
-///             the spline is not cumulative); the heights of the rows; then the largest between any
-///             two rows: δ_E, dδ_E, δ_E printed, dδ_E printed: 12 + rows + 4 (rows − 1) numbers
+/// \param ends  0 natural, 1 not-a-knot, 2 clamped, 3 acceleration, 4 both, for the quintic only;
+///              ignored for Hermite
+/// \param out   median, maximum and height of the maximum of δ_E, then of dδ_E, then of both as
+///              printed (0 unless the spline is cumulative); the heights of the rows; the largest
+///              error between any two rows: δ_E, dδ_E, δ_E printed, dδ_E printed:
+///              12 + rows + 4 (rows − 1) numbers
 DUET_LIVE void errors_of_spline(int rows, int kind, int ends, double* out) {
   live::writer to(out);
   const table& t = table_of(rows);
   with_spline(t, kind, ends, [&](const auto& s) {
-    const error_curve truth = errors_of([&](double u) { return true_rates(s, u); });
-    std::vector<double> none(truth.delta.size());
+    const error_curve correct = errors_of([&](double u) { return true_rates(s, u); });
+    std::vector<double> none(correct.delta.size());
     error_curve printed{none, none};
     if constexpr (requires { duet::printed_derivative(s, 0.); }) {
       printed = errors_of([&](double u) { return as_printed_from_zero(s, u); });
     }
-    const std::vector<double>* curves[] = {&truth.delta, &truth.delta_first, &printed.delta,
+    const std::vector<double>* curves[] = {&correct.delta, &correct.delta_first, &printed.delta,
                                            &printed.delta_first};
     for (const auto* values : curves) {
       summary_of(*values, to);
