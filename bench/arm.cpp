@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// The same seven-joint arm as a chain of duet: known to the compiler, and as a table in memory;
-/// beside it, as one read from a robot description would be, that of Orocos KDL.
+/// A seven-joint arm as a chain of duet, static and as a table in memory, compared with Orocos KDL,
+/// whose chain is in memory as if read from a robot description.
 
 #include "support/contest.hpp"
 #include "workloads.hpp"
@@ -42,7 +42,7 @@ std::array<double, 7> numbers(const pose<double>& a) {
 
 constexpr auto known = duet::robots::panda();
 
-/// The three rows of a Jacobian that tell how the position moves, in a row.
+/// The three rows of a Jacobian that belong to the position, concatenated.
 template <class J>
 std::array<double, 3 * joints> upper_rows(const J& j) {
   std::array<double, 3 * joints> result;
@@ -53,7 +53,7 @@ std::array<double, 3 * joints> upper_rows(const J& j) {
 }
 
 #if DUET_BENCH_KDL
-/// Its solvers keep their work space to themselves.
+/// The arm in KDL, with its solvers and their workspace.
 struct kdl_arm {
   KDL::Chain chain = [] {
     KDL::Chain result;
@@ -107,9 +107,9 @@ void register_kdl([[maybe_unused]] const joint_angles& angles) {
   expect_agreement("arm_rate_of_table", "kdl",
                    upper_rows(duet::jacobian_rate(table, angles, angles, duet::frame::hybrid)),
                    upper_rows(rate_of(angles)->data));
-  comparison_table("arm_pose_of_table", "kdl", angles, pose_of);
-  comparison_table("arm_jacobian_of_table", "kdl", angles, jacobian_of);
-  comparison_table("arm_rate_of_table", "kdl", angles, rate_of);
+  register_benchmark("arm_pose_of_table", "kdl", angles, pose_of);
+  register_benchmark("arm_jacobian_of_table", "kdl", angles, jacobian_of);
+  register_benchmark("arm_rate_of_table", "kdl", angles, rate_of);
 #endif
 }
 
@@ -124,12 +124,13 @@ const bool registered = [] {
 
   expect_agreement("arm_pose", "duet", numbers(fk7(angles)), numbers(known.pose(angles)));
   expect_agreement("arm_pose_of_table", "duet", numbers(fk7(angles)), numbers(table.pose(angles)));
-  comparison_table("arm_pose", "duet", angles, [](const joint_angles& x) { return known.pose(x); });
-  comparison_table("arm_pose", "hand", angles, [](const joint_angles& x) { return fk7(x); });
-  comparison_table("arm_pose_of_table", "duet", angles,
-                   [table](const joint_angles& x) { return table.pose(x); });
-  comparison_table("arm_pose_of_table", "hand", angles,
-                   [](const joint_angles& x) { return fk7(x); });
+  register_benchmark("arm_pose", "duet", angles,
+                     [](const joint_angles& x) { return known.pose(x); });
+  register_benchmark("arm_pose", "hand", angles, [](const joint_angles& x) { return fk7(x); });
+  register_benchmark("arm_pose_of_table", "duet", angles,
+                     [table](const joint_angles& x) { return table.pose(x); });
+  register_benchmark("arm_pose_of_table", "hand", angles,
+                     [](const joint_angles& x) { return fk7(x); });
 
   const auto [a, jacobian] = by_hand(angles);
   const auto j = duet::pose_and_jacobian(known, angles, duet::frame::hybrid).jacobian;
@@ -138,27 +139,27 @@ const bool registered = [] {
     rows[k] = jacobian[k / joints][k % joints];
   }
   expect_agreement("arm_jacobian", "duet", rows, upper_rows(j));
-  comparison_table("arm_jacobian", "duet", angles, [](const joint_angles& x) {
+  register_benchmark("arm_jacobian", "duet", angles, [](const joint_angles& x) {
     return duet::pose_and_jacobian(known, x, duet::frame::hybrid);
   });
-  comparison_table("arm_jacobian", "hand", angles, by_hand);
-  comparison_table("arm_jacobian_of_table", "duet", angles, [table](const joint_angles& x) {
+  register_benchmark("arm_jacobian", "hand", angles, by_hand);
+  register_benchmark("arm_jacobian_of_table", "duet", angles, [table](const joint_angles& x) {
     return duet::pose_and_jacobian(table, x, duet::frame::hybrid);
   });
-  comparison_table("arm_jacobian_of_table", "hand", angles, by_hand);
-  comparison_table("arm_spatial_jacobian", "duet", angles, [](const joint_angles& x) {
+  register_benchmark("arm_jacobian_of_table", "hand", angles, by_hand);
+  register_benchmark("arm_spatial_jacobian", "duet", angles, [](const joint_angles& x) {
     return duet::jacobian(known, x, duet::frame::spatial);
   });
-  comparison_table("arm_spatial_jacobian", "hand", angles, by_hand);
-  comparison_table("arm_rate_of_table", "duet", angles, [table](const joint_angles& x) {
+  register_benchmark("arm_spatial_jacobian", "hand", angles, by_hand);
+  register_benchmark("arm_rate_of_table", "duet", angles, [table](const joint_angles& x) {
     return duet::jacobian_rate(table, x, x, duet::frame::hybrid);
   });
   const auto by_duals = [](const joint_angles& x) {
     return duet::jacobian([](const auto& y) { return known.pose(y); }, x, duet::frame::hybrid);
   };
   expect_agreement("arm_by_duals", "duet", upper_rows(j), upper_rows(by_duals(angles).jacobian));
-  comparison_table("arm_by_duals", "duet", angles, by_duals);
-  comparison_table("arm_by_duals", "closed_form", angles, [](const joint_angles& x) {
+  register_benchmark("arm_by_duals", "duet", angles, by_duals);
+  register_benchmark("arm_by_duals", "closed_form", angles, [](const joint_angles& x) {
     return duet::pose_and_jacobian(known, x, duet::frame::hybrid);
   });
   register_kdl(angles);

@@ -17,7 +17,7 @@
 
 // Assembly configurations of planar four-bars, one, two or four of them on one crank, by
 // `find_assembly_configurations`, compared with Freudenstein's equation in long double: random
-// lengths, and structured ones (parallelograms, kites, rhombi, whole numbers, cranks at multiples
+// lengths, and structured ones (parallelograms, kites, rhombi, integers, cranks at multiples
 // of 15°).
 
 namespace {
@@ -58,7 +58,8 @@ duet::closed_chain_mechanism mechanism_of(const std::vector<four_bar>& bars) {
   return duet::closed_chain_mechanism(duet::kinematic_tree(robot), {loops});
 }
 
-/// How many positions a four-bar has, and whether it is regular: not flat, and not a whole circle.
+/// Number of assembly configurations of a four-bar, and whether it is regular: neither flat nor
+/// with a continuum of solutions.
 struct expected {
   int count;
   bool is_regular;
@@ -83,22 +84,22 @@ int main(int argc, char** argv) {
   const auto pick = [&](const auto& values) {
     return values[std::size_t(random.unit() * double(values.size()))];
   };
-  const std::array<double, 5> whole{1, 1, 2, 3, 4};
+  const std::array<double, 5> integers{1, 1, 2, 3, 4};
   for (const bool is_structured : {false, true}) {
     for (const int loops : {1, 2, 4}) {
       int regular = 0, exist = 0, missing = 0, unflagged = 0, spurious = 0, singular = 0;
       for (int n = 0; n < count; ++n) {
         std::vector<four_bar> bars;
-        const double shared = is_structured ? pick(whole) : .2 + random.unit();
+        const double shared = is_structured ? pick(integers) : .2 + random.unit();
         for (int i = 0; i < loops; ++i) {
           four_bar bar{shared, .2 + random.unit(), .2 + random.unit(), .2 + random.unit()};
           if (is_structured) {
-            const double other = pick(whole);
+            const double other = pick(integers);
             const int kind = int(4 * random.unit());
             bar = kind == 0   ? four_bar{shared, other, shared, other} // a parallelogram
                   : kind == 1 ? four_bar{shared, shared, other, other} // a kite
                   : kind == 2 ? four_bar{shared, shared, shared, shared}
-                              : four_bar{shared, other, pick(whole), pick(whole)};
+                              : four_bar{shared, other, pick(integers), pick(integers)};
           }
           bars.push_back(bar);
         }
@@ -115,14 +116,14 @@ int main(int argc, char** argv) {
           ++singular;
           continue;
         }
-        const auto found = find_assembly_configurations(mechanism_of(bars), {0},
-                                                        Eigen::VectorXd::Constant(1, theta));
+        const auto result = find_assembly_configurations(mechanism_of(bars), {0},
+                                                         Eigen::VectorXd::Constant(1, theta));
         ++regular;
         exist += expects;
-        const int lost = std::max(0, expects - int(found.positions.size()));
-        missing += lost;
-        unflagged += found.missing_probability() == 0 ? lost : 0;
-        spurious += std::max(0, int(found.positions.size()) - expects);
+        const int missed = std::max(0, expects - int(result.positions.size()));
+        missing += missed;
+        unflagged += result.missing_probability() == 0 ? missed : 0;
+        spurious += std::max(0, int(result.positions.size()) - expects);
       }
       std::printf(
           "%s, %d loop(s): %d regular, %d positions, %d missing (%d of them with a chance of "

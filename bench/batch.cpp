@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Many at once: the arm of `fk7` in 64 configurations, into an array of poses and Jacobians and
+/// SIMD batches: the arm of `fk7` in 64 configurations, into an array of poses and Jacobians and
 /// into batches; the spline of `spline` at 64 parameters. By hand: the scalar kernels in a loop.
 
 #include "spline_workload.hpp"
@@ -35,7 +35,7 @@ constexpr auto known = duet::robots::panda();
 
 double uniform(std::mt19937_64& engine) { return double(engine() >> 11) * 0x1p-53; }
 
-/// What the contenders read and write.
+/// Data that the contenders read and write.
 struct arm_work {
   std::array<angles, count> theta;
   std::array<std::array<lanes, joints>, batches> theta_in_lanes;
@@ -70,10 +70,10 @@ struct spline_work {
   }
 };
 
-/// Contenders work where the work is, and return no copies of it.
+/// Contenders work in place and return no copies.
 template <class Work, class F>
 void add(std::string_view workload, std::string_view contender, const F& work_on) {
-  comparison_table(workload, contender, Work(), [=](Work& work) {
+  register_benchmark(workload, contender, Work(), [=](Work& work) {
     work_on(work);
     benchmark::ClobberMemory();
     return 0;
@@ -142,11 +142,11 @@ const bool registered = [] {
   spline_sweep(s);
   for (std::size_t i = 0; i < count; ++i) {
     const auto& m = s.results[i];
-    const numbers_with_jerk found = {
+    const numbers_with_jerk actual = {
         m.value.w(),   m.value.x(),   m.value.y(),       m.value.z(),       m.velocity[0],
         m.velocity[1], m.velocity[2], m.acceleration[0], m.acceleration[1], m.acceleration[2],
         m.jerk[0],     m.jerk[1],     m.jerk[2]};
-    expect_agreement("spline_sweep", "duet", s.results_by_hand[i], found);
+    expect_agreement("spline_sweep", "duet", s.results_by_hand[i], actual);
   }
   add<spline_work>("spline_sweep", "duet", spline_sweep);
   add<spline_work>("spline_sweep", "hand", spline_by_hand);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// On all cores: the manipulability of a Panda in many configurations, a table of its poses and
+/// Multithreading: the manipulability of a Panda in many configurations, a table of its poses and
 /// Jacobians, a spline with its rates, inverse kinematics of many goals. Each iteration computes
 /// one on one core and on all; `times` is how many times faster all cores are, by the shortest
 /// times of both.
@@ -76,7 +76,7 @@ void manipulabilities(benchmark::State& state) {
   constexpr auto width = std::size_t(lanes::lanes);
   const auto configurations = random_configurations(16000);
   std::vector<double> out(configurations.size());
-  compare(state, [&](duet::execution how) {
+  compare(state, [&](duet::execution execution) {
     duet::parallel_for(
         out.size() / width,
         [&](std::size_t i) {
@@ -87,7 +87,7 @@ void manipulabilities(benchmark::State& state) {
           }
           duet::manipulability(arm, theta).store(&out[i * width]);
         },
-        how);
+        execution);
   });
 }
 
@@ -96,8 +96,8 @@ void poses_and_jacobians(benchmark::State& state) {
   using result =
       duet::value_and_jacobian<duet::dual_quaternion<double>, Eigen::Matrix<double, 6, 7>>;
   std::vector<result> out(configurations.size());
-  compare(state, [&](duet::execution how) {
-    duet::poses_and_jacobians(arm, configurations, duet::frame::hybrid, out, how);
+  compare(state, [&](duet::execution execution) {
+    duet::poses_and_jacobians(arm, configurations, duet::frame::hybrid, out, execution);
   });
 }
 
@@ -116,8 +116,8 @@ void motion_of_spline(benchmark::State& state) {
     parameters[i] = u.back() * double(i) / double(parameters.size());
   }
   std::vector<duet::motion<double>> out(parameters.size());
-  compare(state, [&](duet::execution how) {
-    duet::evaluate_motion(spline, parameters, duet::frame::body, std::span(out), how);
+  compare(state, [&](duet::execution execution) {
+    duet::evaluate_motion(spline, parameters, duet::frame::body, std::span(out), execution);
   });
 }
 
@@ -127,9 +127,9 @@ void inverse_kinematics(benchmark::State& state) {
   std::generate(goals.begin(), goals.end(), [&] { return arm.pose(random_joints(random)); });
   std::vector<duet::inverse_kinematics_result<7>> out(goals.size());
   const vector start{0, -.5, 0, -2, 0, 1.5, .8};
-  compare(state, [&](duet::execution how) {
+  compare(state, [&](duet::execution execution) {
     duet::inverse_kinematics(arm, std::span<const duet::dual_quaternion<double>>(goals), start,
-                             std::span(out), {}, how);
+                             std::span(out), {}, execution);
   });
 }
 

@@ -69,9 +69,9 @@ private:
 template <class Spline>
 void add(std::string_view value, std::string_view motion, std::string_view contender,
          const Spline& s) {
-  comparison_table(value, contender, parameter_sequence(),
+  register_benchmark(value, contender, parameter_sequence(),
                    [=](parameter_sequence& u) { return s(u.next()); });
-  comparison_table(motion, contender, parameter_sequence(),
+  register_benchmark(motion, contender, parameter_sequence(),
                    [=](parameter_sequence& u) { return s.motion(u.next(), duet::frame::body); });
 }
 
@@ -94,12 +94,12 @@ const bool registered = [] {
   add("quintic", "quintic_motion", "duet", duet::interpolate<quintic>(u, rotations, ends));
   add("quintic", "quintic_motion", "cumulative", of_rotations);
 
-  comparison_table("fit_1000", "duet", 0,
-                   [=](int) { return duet::interpolate<cubic>(u, rotations, ends); });
-  comparison_table("fit_1000", "cumulative", 0,
-                   [=](int) { return duet::interpolate<cumulative>(u, rotations, ends); });
-  comparison_table("fit_1000", "quintic", 0,
-                   [=](int) { return duet::interpolate<quintic>(u, rotations, ends); });
+  register_benchmark("fit_1000", "duet", 0,
+                     [=](int) { return duet::interpolate<cubic>(u, rotations, ends); });
+  register_benchmark("fit_1000", "cumulative", 0,
+                     [=](int) { return duet::interpolate<cumulative>(u, rotations, ends); });
+  register_benchmark("fit_1000", "quintic", 0,
+                     [=](int) { return duet::interpolate<quintic>(u, rotations, ends); });
   return true;
 }();
 

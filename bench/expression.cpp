@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Formulas as types beside the same by hand, at changing inputs: arms of seven and twenty
-/// joints with their spatial Jacobians, and a gradient. "library" is the formula with the sines of
-/// the C library, which those by hand have.
+/// Expressions compared with the same formulas by hand, at changing inputs: arms of seven and
+/// twenty joints with their spatial Jacobians, and a gradient. "library" is the expression with the
+/// sine and cosine of the C library, as used by hand.
 
 #include "support/contest.hpp"
 #include "workloads.hpp"
@@ -24,7 +24,7 @@ namespace {
 
 using namespace duet::expression;
 
-/// Random numbers, one array after the other.
+/// Arrays of random numbers.
 template <std::size_t N>
 class random_inputs {
 public:
@@ -46,8 +46,8 @@ private:
 template <std::size_t N, class F>
 void add(std::string_view workload, std::string_view contender, double lower, double upper,
          F evaluate) {
-  comparison_table(workload, contender, random_inputs<N>(lower, upper),
-                   [=](random_inputs<N>& inputs) { return evaluate(inputs.next()); });
+  register_benchmark(workload, contender, random_inputs<N>(lower, upper),
+                     [=](random_inputs<N>& inputs) { return evaluate(inputs.next()); });
 }
 
 // The arms.

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// The pose of a seven-joint arm and its derivatives by the joint angles.
+/// The pose of a seven-joint arm and its derivatives with respect to the joint angles.
 
 #include "support/contenders.hpp"
 #include "support/contest.hpp"
@@ -57,12 +57,12 @@ pose_and_jacobian by_differentiation(const joint_angles& angles) {
 const bool registered = [] {
   const joint_angles angles = {0.3, -0.7, 1.1, -1.9, 0.4, 1.6, -0.8};
   const auto expected = by_hand(angles);
-  comparison_table("fk7", "value", angles, [](const joint_angles& x) { return fk7(x); });
-  comparison_table("fk7", "hand", angles, by_hand);
+  register_benchmark("fk7", "value", angles, [](const joint_angles& x) { return fk7(x); });
+  register_benchmark("fk7", "hand", angles, by_hand);
   for_each_contender([&](auto contender) {
     using library = decltype(contender);
     expect_agreement("fk7", library::name, expected, by_differentiation<library>(angles));
-    comparison_table("fk7", library::name, angles, by_differentiation<library>);
+    register_benchmark("fk7", library::name, angles, by_differentiation<library>);
   });
   return true;
 }();

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Gradients of f_grad by 1 to 32 variables in one pass, and by 100 and 1000.
+/// Gradients of f_grad with respect to 1 to 32 variables in one pass, and to 100 and 1000.
 
 #include "gradient_by_hand.hpp"
 #include "support/contenders.hpp"
@@ -65,7 +65,7 @@ void add_reverse_mode(const std::string& workload, const std::array<double, N + 
   auto actual = reverse(at);
   actual[0] = value;
   expect_agreement(workload, "adolc_reverse", expected, actual);
-  comparison_table(workload, "adolc_reverse", at, reverse);
+  register_benchmark(workload, "adolc_reverse", at, reverse);
 }
 #endif
 
@@ -74,14 +74,14 @@ void add() {
   const inputs<double, N> at = point<N>();
   const std::string workload = "gradient_" + std::to_string(N);
   const auto expected = gradient_by<duet_contender>(at);
-  comparison_table(workload, "value", at, [](const auto& x) { return f_grad(x); });
+  register_benchmark(workload, "value", at, [](const auto& x) { return f_grad(x); });
   expect_agreement(workload, "hand", expected, gradient_by_hand(at));
-  comparison_table(workload, "hand", at, [](const auto& x) { return gradient_by_hand(x); });
+  register_benchmark(workload, "hand", at, [](const auto& x) { return gradient_by_hand(x); });
   for_each_contender([&](auto contender) {
     using library = decltype(contender);
     expect_agreement(workload, library::name, expected, gradient_by<library>(at));
-    comparison_table(workload, library::name, at,
-                     [](const auto& x) { return gradient_by<library>(x); });
+    register_benchmark(workload, library::name, at,
+                       [](const auto& x) { return gradient_by<library>(x); });
   });
 #if DUET_BENCH_ADOLC
   add_reverse_mode<N>(workload, expected);
@@ -115,14 +115,14 @@ void add_wide() {
     return result;
   };
   const auto expected = in_passes(at);
-  comparison_table(workload, "value", at, [](const auto& x) { return f_grad(x); });
-  comparison_table(workload, "duet", at, in_passes);
+  register_benchmark(workload, "value", at, [](const auto& x) { return f_grad(x); });
+  register_benchmark(workload, "duet", at, in_passes);
   for_each_contender([&](auto contender) {
     using library = decltype(contender);
     if constexpr (!std::is_same_v<library, duet_contender>) {
       expect_agreement(workload, library::name, expected, wide_gradient_by<library, N>(at));
-      comparison_table(workload, library::name, at,
-                       [](const auto& x) { return wide_gradient_by<library, N>(x); });
+      register_benchmark(workload, library::name, at,
+                         [](const auto& x) { return wide_gradient_by<library, N>(x); });
     }
   });
 #if DUET_BENCH_ADOLC

@@ -12,9 +12,9 @@
 #include <utility>
 
 /// \file
-/// The gradient of f_grad as one writes it by hand for speed: every statement differentiated with
-/// pencil and paper, its rows of partials combined in one pass of compiler vectors, without a
-/// question about finite slopes.
+/// The gradient of f_grad written by hand for speed: every statement differentiated on paper, its
+/// rows of partial derivatives combined in one pass of compiler vectors, without checks for finite
+/// derivatives.
 
 namespace duet_bench {
 
@@ -28,7 +28,7 @@ struct row {
   double value;
   packet partials[count];
 
-  /// Makes it the i-th variable; whole packets are stored.
+  /// Makes it the i-th variable; complete packets are stored.
   void set_variable(double x, std::size_t i) {
     const packet lanes = []<std::size_t... Lane>(std::index_sequence<Lane...>) {
       return packet{double(Lane)...};
@@ -52,10 +52,10 @@ std::array<double, N + 1> gradient_by_hand(const inputs<double, N>& at) {
   numbers sum = x[0];
   numbers carry = x[N - 1];
   numbers u;
-  const auto chained = [&](double value, double slope) {
+  const auto chained = [&](double value, double outer_derivative) {
     carry.value = value;
     for (std::size_t p = 0; p < numbers::count; ++p) {
-      carry.partials[p] = u.partials[p] * slope;
+      carry.partials[p] = u.partials[p] * outer_derivative;
     }
   };
   for (std::size_t i = 0; i < N; ++i) {

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Hessians of f_grad by 3, 6 and 12 variables, beside duals over duals. (Ceres' Jet does not take
-/// a double where it is nested.)
+/// Hessians of f_grad with respect to 3, 6 and 12 variables, compared with nested dual numbers. (A
+/// nested Jet of Ceres does not accept a double.)
 
 #include "support/contest.hpp"
 #include "workloads.hpp"
@@ -66,9 +66,9 @@ void add() {
   }
   const std::string workload = "hessian_" + std::to_string(N);
   const auto expected = by_second_dual(at);
-  comparison_table(workload, "duet", at, by_second_dual<N>);
+  register_benchmark(workload, "duet", at, by_second_dual<N>);
   expect_agreement(workload, "nested", expected, by_nested_duals(at));
-  comparison_table(workload, "nested", at, by_nested_duals<N>);
+  register_benchmark(workload, "nested", at, by_nested_duals<N>);
 }
 
 const bool registered = [] {

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Splines through a thousand to a million orientations, 0.003 rad apart: the time per row, which
-/// should stay what it is. A program of its own: build/bench/bench/duet_interpolation_bench
+/// Splines through a thousand to a million orientations, 0.003 rad apart: the time per row,
+/// which should be constant. A separate program: build/bench/bench/duet_interpolation_bench
 
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/interpolate.hpp>
@@ -16,9 +16,9 @@
 
 namespace {
 
-constexpr double step = 0.01; // of the parameter; the turn is 0.3 of it
+constexpr double step = 0.01; // step of the parameter; the rotation angle is 0.3 of it
 
-/// Turning by 0.3 rad per unit about an axis that moves.
+/// A rotation by 0.3 rad per unit about a moving axis.
 duet::quaternion<double> orientation(double u) {
   return duet::from_rotation_vector(
       duet::vector3<double>(0.15 * std::sin(u), 0.15 * std::cos(u), 0.26 * u));
@@ -40,13 +40,13 @@ void interpolate(benchmark::State& state) {
       double(rows), benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
-double least(const std::vector<double>& times) {
+double minimum(const std::vector<double>& times) {
   return *std::min_element(times.begin(), times.end());
 }
 
 void rows(benchmark::internal::Benchmark* benchmark) {
   benchmark->RangeMultiplier(10)->Range(1000, 1000000)->Unit(benchmark::kMillisecond);
-  benchmark->Repetitions(9)->ReportAggregatesOnly()->ComputeStatistics("min", least);
+  benchmark->Repetitions(9)->ReportAggregatesOnly()->ComputeStatistics("min", minimum);
 }
 
 BENCHMARK_TEMPLATE(interpolate, duet::cumulative_bspline<double>)->Apply(rows);

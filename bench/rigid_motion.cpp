@@ -2,8 +2,8 @@
 
 /// \file
 /// Unit dual quaternions: product, exponential, logarithm, ScLERP, a point transformed. By hand:
-/// the same in eight plain doubles, with one branch for small angles. Eigen's Isometry where it
-/// does the same job.
+/// the same in eight plain doubles, with one branch for small angles. Eigen's Isometry if it
+/// has the same operation.
 
 #include "support/contest.hpp"
 
@@ -84,7 +84,7 @@ inline eight exponential(const six& x) {
 inline six logarithm(const eight& a) {
   const double s = a[1] * a[1] + a[2] * a[2] + a[3] * a[3];
   const double d = a[1] * a[5] + a[2] * a[6] + a[3] * a[7];
-  double f, e; // θ/sin θ, and what it changes by
+  double f, e; // θ/sin θ, and its dual part
   if (s < 1e-4 && a[0] > 0) {
     f = 1 + s / 6 + s * s * 3 / 40;
     e = (1.0 / 3 + s * 3 / 10) * d;
@@ -102,7 +102,7 @@ inline eight general_logarithm(const eight& a) {
   const double s = a[1] * a[1] + a[2] * a[2] + a[3] * a[3];
   const double d = a[1] * a[5] + a[2] * a[6] + a[3] * a[7];
   const double square = s + a[0] * a[0];
-  double f, e; // θ/(|A| sin θ), and what it changes by
+  double f, e; // θ/(|A| sin θ), and its dual part
   if (s < 1e-4 * square && a[0] > 0) {
     const double w = 1 / a[0];
     const double x = s * w * w;
@@ -175,48 +175,48 @@ const bool registered = [] {
   const auto product = [](const two<pose_type>& p) { return p.a * p.b; };
   const auto product_by_hand = [](const two<eight>& p) { return by_hand::product(p.a, p.b); };
   expect_agreement("pose_product", "hand", numbers_of(a * b), by_hand::product(a8, b8));
-  comparison_table("pose_product", "duet", two<pose_type>{a, b}, product);
-  comparison_table("pose_product", "hand", two<eight>{a8, b8}, product_by_hand);
-  comparison_table("pose_product", "Eigen Isometry3d",
-                   two<Eigen::Isometry3d>{isometry(a), isometry(b)},
-                   [](const two<Eigen::Isometry3d>& p) { return Eigen::Isometry3d(p.a * p.b); });
+  register_benchmark("pose_product", "duet", two<pose_type>{a, b}, product);
+  register_benchmark("pose_product", "hand", two<eight>{a8, b8}, product_by_hand);
+  register_benchmark("pose_product", "Eigen Isometry3d",
+                     two<Eigen::Isometry3d>{isometry(a), isometry(b)},
+                     [](const two<Eigen::Isometry3d>& p) { return Eigen::Isometry3d(p.a * p.b); });
 
   const duet::dual_vector<double> v = log(a).vec();
   const six v6 = by_hand::logarithm(a8);
   const auto exponential = [](const duet::dual_vector<double>& x) { return duet::exp(x); };
   expect_agreement("pose_exp", "hand", a8, by_hand::exponential(v6));
-  comparison_table("pose_exp", "duet", v, exponential);
-  comparison_table("pose_exp", "hand", v6, by_hand::exponential);
+  register_benchmark("pose_exp", "duet", v, exponential);
+  register_benchmark("pose_exp", "hand", v6, by_hand::exponential);
 
   const auto logarithm = [](const pose_type& p) { return log(p); };
   expect_agreement(
       "pose_log", "hand",
       six{v[0].value(), v[1].value(), v[2].value(), v[0].epsilon(), v[1].epsilon(), v[2].epsilon()},
       v6);
-  comparison_table("pose_log", "duet", a, logarithm);
-  comparison_table("pose_log", "hand", a8, by_hand::general_logarithm);
+  register_benchmark("pose_log", "duet", a, logarithm);
+  register_benchmark("pose_log", "hand", a8, by_hand::general_logarithm);
 
   const auto interpolation = [](const two<pose_type>& p) { return sclerp(p.a, p.b, 0.3); };
   expect_agreement("sclerp", "hand", numbers_of(sclerp(a, b, 0.3)),
                    by_hand::interpolation(a8, b8, 0.3));
-  comparison_table("sclerp", "duet", two<pose_type>{a, b}, interpolation);
-  comparison_table("sclerp", "hand", two<eight>{a8, b8},
-                   [](const two<eight>& p) { return by_hand::interpolation(p.a, p.b, 0.3); });
+  register_benchmark("sclerp", "duet", two<pose_type>{a, b}, interpolation);
+  register_benchmark("sclerp", "hand", two<eight>{a8, b8},
+                     [](const two<eight>& p) { return by_hand::interpolation(p.a, p.b, 0.3); });
 
   using point = duet::vector3<double>;
   const point x(0.1, 0.2, -0.4);
   const point moved = duet::transform_point(a, x);
   expect_agreement("transform_point", "hand", three{moved[0], moved[1], moved[2]},
                    by_hand::transformed(a8, {x[0], x[1], x[2]}));
-  comparison_table(
+  register_benchmark(
       "transform_point", "duet", with_point<pose_type, point>{a, x},
       [](const with_point<pose_type, point>& p) { return duet::transform_point(p.a, p.x); });
-  comparison_table(
+  register_benchmark(
       "transform_point", "hand", with_point<eight, three>{a8, {x[0], x[1], x[2]}},
       [](const with_point<eight, three>& p) { return by_hand::transformed(p.a, p.x); });
-  comparison_table("transform_point", "Eigen Isometry3d",
-                   with_point<Eigen::Isometry3d, point>{isometry(a), x},
-                   [](const with_point<Eigen::Isometry3d, point>& p) { return point(p.a * p.x); });
+  register_benchmark(
+      "transform_point", "Eigen Isometry3d", with_point<Eigen::Isometry3d, point>{isometry(a), x},
+      [](const with_point<Eigen::Isometry3d, point>& p) { return point(p.a * p.x); });
   return true;
 }();
 

@@ -24,7 +24,7 @@
 namespace duet_bench {
 namespace {
 
-/// Parameters in random order, one after the other.
+/// Parameters in random order.
 class random_parameters {
 public:
   random_parameters() {
@@ -42,8 +42,8 @@ private:
 
 template <class F>
 void add(std::string_view workload, std::string_view contender, F evaluate) {
-  comparison_table(workload, contender, random_parameters(),
-                   [=](random_parameters& u) { return evaluate(u.next()); });
+  register_benchmark(workload, contender, random_parameters(),
+                     [=](random_parameters& u) { return evaluate(u.next()); });
 }
 
 template <class Expected, class Actual>
@@ -153,7 +153,7 @@ const bool registered = [] {
     parameters.push_back(i * knot_distance);
     orientations.push_back(orientation(i * knot_distance));
   }
-  comparison_table("interpolation", "duet", 0, [=](int) {
+  register_benchmark("interpolation", "duet", 0, [=](int) {
     return duet::interpolate<duet::cumulative_bspline<double>>(parameters, orientations,
                                                                duet::natural{});
   });

@@ -109,7 +109,7 @@ private:
     const node* n = &nodes_[at.segment];
     const double x = at.x;
     const auto b = weights(x);
-    const auto first = slopes(x), second = curvatures(x);
+    const auto first = first_derivatives(x), second = second_derivatives(x);
     std::array<double, 4> q = n->q;
     std::array<double, 3> w{}, a{}, j{};
     for (int i = 0; i < 3; ++i) {
@@ -152,10 +152,10 @@ private:
     const double x2 = x * x, x3 = x2 * x;
     return {(5 + 3 * x - 3 * x2 + x3) / 6, (1 + 3 * x + 3 * x2 - 2 * x3) / 6, x3 / 6};
   }
-  static std::array<double, 3> slopes(double x) {
+  static std::array<double, 3> first_derivatives(double x) {
     return {r * (1 - x) * (1 - x) / 2, r * (0.5 + x - x * x), r * x * x / 2};
   }
-  static std::array<double, 3> curvatures(double x) {
+  static std::array<double, 3> second_derivatives(double x) {
     return {r * r * (x - 1), r * r * (1 - 2 * x), r * r * x};
   }
   static std::array<double, 3> multiple(const std::array<double, 3>& v, double factor) {

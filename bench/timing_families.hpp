@@ -17,7 +17,7 @@
 #include <vector>
 
 /// \file
-/// Families of paths, each with seeds, that plans over time are compared on.
+/// Families of random paths for the comparison of time parametrisations.
 
 namespace timing_bench {
 
@@ -38,7 +38,8 @@ inline vector normal(random_source& random, int n = 7) {
   return result;
 }
 
-/// To goals whose joints are within 0.5 rad of those of starts in the middle of the ranges.
+/// Waypoints of plans from starts near the centre of the joint ranges to goals within 0.5 rad of
+/// them.
 template <class C>
 std::vector<vector> plan(const C& arm, random_source& random) {
   for (;;) {
@@ -49,9 +50,9 @@ std::vector<vector> plan(const C& arm, random_source& random) {
       start[i] = (limits.lower + limits.upper) / 2 + half * random.uniform(-1, 1);
       end[i] = start[i] + random.uniform(-.5, .5);
     }
-    const auto found = duet::plan_screw_motion(arm, start, arm.pose(end));
-    if (found.reason == duet::stop_reason::reached) {
-      return {found.joints.begin(), found.joints.end()};
+    const auto result = duet::plan_screw_motion(arm, start, arm.pose(end));
+    if (result.reason == duet::stop_reason::reached) {
+      return {result.joints.begin(), result.joints.end()};
     }
   }
 }
@@ -79,9 +80,9 @@ inline const std::array families{
            [](random_source& r) { return walk(r.integer(2, 20), [&](int) { return normal(r); }); }},
     family{"all joints turn back",
            [](random_source& r) {
-             const vector way = normal(r);
+             const vector direction = normal(r);
              return walk(r.integer(3, 12), [&](int k) {
-               return vector((k % 2 == 0 ? -1 : 1) * r.uniform(.3, 1) * way);
+               return vector((k % 2 == 0 ? -1 : 1) * r.uniform(.3, 1) * direction);
              });
            }},
     family{"one joint after another",
@@ -92,10 +93,11 @@ inline const std::array families{
            }},
     family{"nearly straight",
            [](random_source& r) {
-             const vector way = normal(r);
+             const vector direction = normal(r);
              const double off = r.log_uniform(1e-9, 1e-2);
-             return walk(r.integer(3, 20),
-                         [&](int) { return vector(r.uniform(.01, 1) * way + off * normal(r)); });
+             return walk(r.integer(3, 20), [&](int) {
+               return vector(r.uniform(.01, 1) * direction + off * normal(r));
+             });
            }},
     family{"unequal, 1e-5 to 1",
            [](random_source& r) {
@@ -119,10 +121,10 @@ inline const std::array families{
              return result;
            }},
     family{"small steps aside", [](random_source& r) {
-             const vector way = normal(r);
+             const vector direction = normal(r);
              return walk(r.integer(4, 15), [&](int k) {
                return k % 3 == 2 ? vector(r.log_uniform(1e-4, 1e-1) * normal(r))
-                                 : vector(r.uniform(.3, 1) * way);
+                                 : vector(r.uniform(.3, 1) * direction);
              });
            }}};
 

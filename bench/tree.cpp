@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// A robot of two arms on a torso, a head and two grippers, and an arm alone, as trees of duet and
-/// of Orocos KDL; and that arm as a serial chain.
+/// A robot with two arms on a torso, a head and two grippers, and a single arm, as trees of duet
+/// and of Orocos KDL, and the arm as a serial chain.
 
 #include "support/contest.hpp"
 #include "workloads.hpp"
@@ -31,41 +31,42 @@ namespace {
 
 using duet::joint_kind, duet::placement, duet::quaternion;
 
-const quaternion<double> still(1);
+const quaternion<double> identity(1);
 
 /// The link has the name of the joint.
 void add(duet::robot_description& robot, const std::string& name, const std::string& parent,
          joint_kind kind, const placement<double>& origin, const std::array<double, 3>& axis) {
-  robot.links.push_back({name, duet::link_inertia{.mass = 1, .frame = {still, {0, .01, .05}}}});
+  robot.links.push_back({name, duet::link_inertia{.mass = 1, .frame = {identity, {0, .01, .05}}}});
   robot.joints.push_back({name, parent, name, {kind, origin, axis}});
 }
 
-/// Seven joints and a hand. \param side  begins their names
+/// Adds an arm of seven joints and a hand.
+/// \param side  prefix of their names
 void add_arm(duet::robot_description& robot, const std::string& side, std::string parent,
              placement<double> origin) {
   for (std::size_t i = 0; i < arm.size(); ++i) {
-    const arm_row& row = arm[i]; // turn about x, move along it, then turn about z
+    const arm_row& row = arm[i]; // rotate about x, translate along x, then rotate about z
     const std::string name = side + std::to_string(i);
     origin = origin * placement<double>{quaternion<double>(row.half_cos, row.half_sin, 0, 0), {}} *
-             placement<double>{still, {row.a, 0, row.d}};
+             placement<double>{identity, {row.a, 0, row.d}};
     add(robot, name, parent, joint_kind::revolute, origin, {0, 0, 1});
     origin = {};
     parent = name;
   }
-  add(robot, side + "_hand", parent, joint_kind::fixed, {still, {0, 0, .1}}, {0, 0, 1});
+  add(robot, side + "_hand", parent, joint_kind::fixed, {identity, {0, 0, .1}}, {0, 0, 1});
 }
 
 [[nodiscard]] duet::robot_description two_arms() {
   duet::robot_description robot{.links = {{"base"}}};
-  add(robot, "waist", "base", joint_kind::revolute, {still, {0, 0, .6}}, {0, 0, 1});
-  add(robot, "pan", "waist", joint_kind::revolute, {still, {0, 0, .6}}, {0, 0, 1});
-  add(robot, "tilt", "pan", joint_kind::revolute, {still, {.05, 0, .1}}, {0, 1, 0});
+  add(robot, "waist", "base", joint_kind::revolute, {identity, {0, 0, .6}}, {0, 0, 1});
+  add(robot, "pan", "waist", joint_kind::revolute, {identity, {0, 0, .6}}, {0, 0, 1});
+  add(robot, "tilt", "pan", joint_kind::revolute, {identity, {.05, 0, .1}}, {0, 1, 0});
   for (const auto& [side, sign] : {std::pair<std::string, double>("left", 1), {"right", -1}}) {
     add_arm(robot, side, "waist",
             {quaternion<double>(std::cos(.4), -sign * std::sin(.4), 0, 0), {0, sign * .2, .4}});
-    add(robot, side + "_finger", side + "_hand", joint_kind::prismatic, {still, {0, 0, .05}},
+    add(robot, side + "_finger", side + "_hand", joint_kind::prismatic, {identity, {0, 0, .05}},
         {0, 1, 0});
-    add(robot, side + "_thumb", side + "_hand", joint_kind::prismatic, {still, {0, 0, .05}},
+    add(robot, side + "_thumb", side + "_hand", joint_kind::prismatic, {identity, {0, 0, .05}},
         {0, -1, 0});
   }
   return robot;
@@ -79,7 +80,7 @@ void add_arm(duet::robot_description& robot, const std::string& side, std::strin
 
 using coordinates = Eigen::VectorXd;
 
-/// One by one: those of KDL are not aligned for this machine.
+/// Copies elements one by one: those of KDL are not aligned for this machine.
 template <class M>
 [[nodiscard]] std::vector<double> numbers(const M& m) {
   std::vector<double> result;
@@ -115,7 +116,7 @@ struct kdl_tree {
     for (const duet::tree_link& link : robot.links()) {
       links.push_back(tree.getSegment(link.name));
     }
-    for (const auto& link : links) { // parents stand before their children
+    for (const auto& link : links) { // parents precede their children
       parents.push_back(0);
       if (link != links.front()) {
         const auto& above = GetTreeElementParent(link->second)->first;
@@ -135,8 +136,8 @@ struct kdl_tree {
     }
   }
 
-  /// In one pass, without the search by names of its solver.
-  void follow() {
+  /// Poses of all links in one pass, without the search by name of the solver of KDL.
+  void update_frames() {
     for (std::size_t i = 1; i < links.size(); ++i) {
       const auto& element = links[i]->second;
       frames[i] =
@@ -164,14 +165,14 @@ void register_kdl_jacobian(const std::string& workload, const duet::kinematic_tr
   expect_agreement(workload, "kdl",
                    numbers(jacobian(robot, q, duet::frame::hybrid, robot.link("left_hand"))),
                    numbers(jacobian_of(q)->data));
-  comparison_table(workload, "kdl", q, jacobian_of);
+  register_benchmark(workload, "kdl", q, jacobian_of);
 }
 
 void register_kdl_poses(const duet::kinematic_tree& robot, const coordinates& q) {
   const auto kdl = std::make_shared<kdl_tree>(robot);
   const auto poses_of = [kdl](const coordinates& x) {
     kdl->set(x);
-    kdl->follow();
+    kdl->update_frames();
     return kdl->frames.data();
   };
   std::vector<double> ours, theirs;
@@ -185,7 +186,7 @@ void register_kdl_poses(const duet::kinematic_tree& robot, const coordinates& q)
     }
   }
   expect_agreement("tree_poses", "kdl", ours, theirs);
-  comparison_table("tree_poses", "kdl", q, poses_of);
+  register_benchmark("tree_poses", "kdl", q, poses_of);
 }
 #endif
 
@@ -195,21 +196,21 @@ void register_jacobian(const std::string& workload, const duet::kinematic_tree& 
   const auto by_tree = [robot, hand](const coordinates& x) {
     return duet::jacobian(robot, x, duet::frame::hybrid, hand);
   };
-  comparison_table(workload, "duet", q, by_tree);
+  register_benchmark(workload, "duet", q, by_tree);
   const duet::bounded_chain<16> chain = robot.chain("base", "left_hand");
   const auto by_chain = [chain](const coordinates& x) {
     return duet::jacobian(chain, x, duet::frame::hybrid);
   };
   if (chain.size() == robot.size()) {
     expect_agreement(workload, "chain", numbers(by_tree(q)), numbers(by_chain(q)));
-    comparison_table(workload, "chain", q, by_chain);
+    register_benchmark(workload, "chain", q, by_chain);
   }
 #if DUET_BENCH_KDL
   register_kdl_jacobian(workload, robot, q);
 #endif
 }
 
-[[nodiscard]] coordinates somewhere(const duet::kinematic_tree& robot) {
+[[nodiscard]] coordinates test_configuration(const duet::kinematic_tree& robot) {
   coordinates q(robot.size());
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     q[i] = std::sin(1. + double(i));
@@ -219,14 +220,14 @@ void register_jacobian(const std::string& workload, const duet::kinematic_tree& 
 
 const bool registered = [] {
   const duet::kinematic_tree robot(two_arms()), alone(one_arm());
-  const coordinates q = somewhere(robot);
-  comparison_table("tree_poses", "duet", q,
-                   [robot](const coordinates& x) { return robot.poses(x); });
+  const coordinates q = test_configuration(robot);
+  register_benchmark("tree_poses", "duet", q,
+                     [robot](const coordinates& x) { return robot.poses(x); });
 #if DUET_BENCH_KDL
   register_kdl_poses(robot, q);
 #endif
   register_jacobian("tree_jacobian", robot, q);
-  register_jacobian("tree_of_arm_jacobian", alone, somewhere(alone));
+  register_jacobian("tree_of_arm_jacobian", alone, test_configuration(alone));
   return true;
 }();
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 
 /// \file
-/// What is differentiated: plain generic code without a word of any library, so that every
-/// contender runs the same.
+/// Functions to be differentiated: plain generic code independent of any library, so that all
+/// contenders run the same code.
 
 namespace duet_bench {
 
@@ -30,7 +30,7 @@ struct value_and_slope {
   double slope;
 };
 
-/// f_scalar and its derivative as one writes them by hand, every common part evaluated once.
+/// f_scalar and its derivative written by hand, with common subexpressions evaluated once.
 inline value_and_slope f_scalar_by_hand(double x) {
   const double square = x * x;
   const double s = std::sin(x);
@@ -81,7 +81,8 @@ auto f_grad(const X& x) {
 }
 
 /// The seven-joint arm of the benches: Denavit–Hartenberg rows in Craig's convention, those of a
-/// Panda. Row i: turn by α about x, move a along x, turn by θᵢ about z, move d along z.
+/// Panda. Row i: rotate by α about x, translate by a along x, rotate by θᵢ about z, translate by d
+/// along z.
 struct arm_row {
   double a;
   double d;
@@ -119,7 +120,7 @@ pose<S> fk7(const inputs<S, joints>& angles) {
     const S half = 0.5 * angles[i];
     const S c = cos(half);
     const S s = sin(half);
-    // the first column of the rotation matrix, before the turn about x leaves it as it is
+    // First column of the rotation matrix, which the rotation about x does not change.
     const S x_axis_x = 1.0 - 2.0 * (y * y + z * z);
     const S x_axis_y = 2.0 * (x * y + w * z);
     const S x_axis_z = 2.0 * (x * z - w * y);
@@ -141,7 +142,7 @@ pose<S> fk7(const inputs<S, joints>& angles) {
   return {{px, py, pz}, {w, x, y, z}};
 }
 
-/// The arm of N joints whose rows are those of the arm, again and again.
+/// An arm of N joints that repeats the rows of the arm.
 template <std::size_t N>
 inline constexpr std::array<arm_row, N> long_arm = [] {
   std::array<arm_row, N> rows{};
@@ -156,8 +157,8 @@ template <std::size_t N>
 using long_pose_jacobian = std::array<std::array<double, N>, 7>;
 using pose_jacobian = long_pose_jacobian<joints>;
 
-/// The pose and its derivatives in closed form: joint i turns the flange about its axis zᵢ through
-/// its origin oᵢ, so ∂p/∂θᵢ = zᵢ × (p − oᵢ) and ∂q/∂θᵢ = ½ zᵢ q.
+/// The pose and its derivatives in closed form: joint i rotates the flange about its axis zᵢ
+/// through its origin oᵢ, so ∂p/∂θᵢ = zᵢ × (p − oᵢ) and ∂q/∂θᵢ = ½ zᵢ q.
 template <std::size_t N>
 pose<double> long_arm_by_hand(const inputs<double, N>& angles, long_pose_jacobian<N>& jacobian) {
   std::array<std::array<double, 3>, N> axes;

@@ -17,7 +17,7 @@
 #include <utility>
 
 /// \file
-/// How to seed and to read the numbers of each library. A contender has a `name` and, for N
+/// Seeding and reading of the numbers of each library. A contender has a `name` and, for N
 /// partials, `number<N>`, `variable<N>(value, i)`, `value(x)` and `write_partials<N>(x, out)`.
 
 namespace duet_bench {
@@ -91,7 +91,7 @@ std::array<Number, N> seeded(const std::array<double, N>& at) {
   (std::make_index_sequence<N>{});
 }
 
-/// Calls f(contender) for every contender that differentiates by many variables.
+/// Calls f(contender) for every contender that differentiates with respect to many variables.
 template <class F>
 void for_each_contender(F&& f) {
   f(duet_contender{});

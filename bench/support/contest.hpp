@@ -12,30 +12,30 @@
 #include <vector>
 
 /// \file
-/// Registering one workload of one contender, named "workload/contender". The table of ratios
-/// compares what shares a workload: "duet", the hand-written code "hand" and, all else, peers.
+/// Registration of benchmarks, named "workload/contender". The table of ratios compares the
+/// contenders of a workload: "duet", the hand-written code "hand", and other libraries.
 
 namespace duet_bench {
 
 /// Calls of operator new so far, in the whole program.
 [[nodiscard]] std::size_t allocations();
 
-/// Names of the registered contests, in that order.
-[[nodiscard]] std::vector<std::string>& contests();
+/// Names of the registered benchmarks, in order of registration.
+[[nodiscard]] std::vector<std::string>& benchmark_names();
 
-/// A function call, so that all contenders hand their results over in the same way.
+/// Calls a function without inlining, so that all contenders return their results in the same way.
 template <class F, class Input>
 [[gnu::noinline]] auto called(F& evaluate, Input& input) {
   return evaluate(input);
 }
 
-/// Times `evaluate(input)`. The input is hidden from the optimiser in every turn, and the result
-/// counts as used.
+/// Registers the timing of `evaluate(input)`. The input is hidden from the optimiser in every
+/// iteration, and the result counts as used.
 template <class Input, class F>
-void comparison_table(std::string_view workload, std::string_view contender, Input input,
-                      F evaluate) {
+void register_benchmark(std::string_view workload, std::string_view contender, Input input,
+                        F evaluate) {
   const std::string name = std::string(workload) + '/' + std::string(contender);
-  contests().push_back(name);
+  benchmark_names().push_back(name);
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) mutable {
     benchmark::DoNotOptimize(called(evaluate, input));
     const std::size_t before = allocations();
@@ -48,7 +48,7 @@ void comparison_table(std::string_view workload, std::string_view contender, Inp
   });
 }
 
-/// Contenders that do not agree are not worth timing.
+/// Ends the program with a message if two contenders disagree.
 template <class Numbers>
 void expect_agreement(std::string_view workload, std::string_view contender,
                       const Numbers& expected, const Numbers& actual) {

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Runs all contests, repeated and shuffled, and prints the table of ratios.
+/// Runs all benchmarks, repeated and shuffled, and prints the table of ratios.
 
 #include "contest.hpp"
 #include "ratio_table.hpp"
@@ -41,15 +41,15 @@ void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std:
 namespace duet_bench {
 std::size_t allocations() { return allocation_count; }
 
-std::vector<std::string>& contests() {
+std::vector<std::string>& benchmark_names() {
   static std::vector<std::string> names;
   return names;
 }
 } // namespace duet_bench
 
 int main(int argc, char** argv) {
-  // Shuffled repetitions, so that a disturbance of the machine hits every contender. Arguments of
-  // the command line come later and win.
+  // Shuffled repetitions, so that a disturbance of the machine affects all contenders. Arguments of
+  // the command line come later and take precedence.
   char repetitions[] = "--benchmark_repetitions=30";
   char shuffled[] = "--benchmark_enable_random_interleaving=true";
   char time[] = "--benchmark_min_time=0.005";
@@ -60,7 +60,7 @@ int main(int argc, char** argv) {
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) {
     return 1;
   }
-  duet_bench::ratio_table table(duet_bench::contests());
+  duet_bench::ratio_table table(duet_bench::benchmark_names());
   benchmark::RunSpecifiedBenchmarks(&table);
   table.print();
 }

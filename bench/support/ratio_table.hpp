@@ -12,7 +12,7 @@
 #include <vector>
 
 /// \file
-/// A reporter that sets duet beside the best peer of each workload.
+/// A reporter that compares duet with the fastest other library of each workload.
 
 namespace duet_bench {
 
@@ -21,8 +21,8 @@ namespace duet_bench {
 class ratio_table : public benchmark::BenchmarkReporter {
 public:
   /// Rows and columns keep the order of these names; runs come shuffled.
-  explicit ratio_table(const std::vector<std::string>& contests) {
-    for (const std::string& name : contests) {
+  explicit ratio_table(const std::vector<std::string>& names) {
+    for (const std::string& name : names) {
       (void)find(name);
     }
   }
@@ -74,10 +74,9 @@ private:
     return at != entries.end() ? at->second : entries.emplace_back(name, Value{}).second;
   }
 
-  contender& find(const std::string& comparison_table) {
-    const std::size_t slash = comparison_table.find('/');
-    return find(find(workloads_, comparison_table.substr(0, slash)),
-                comparison_table.substr(slash + 1));
+  contender& find(const std::string& full_name) {
+    const std::size_t slash = full_name.find('/');
+    return find(find(workloads_, full_name.substr(0, slash)), full_name.substr(slash + 1));
   }
 
   static void print_row(const std::string& workload, const named<contender>& competitors) {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-/// What calls take, one by one.
+/// Durations of single calls.
 class stopwatch {
 public:
   template <class F>
