@@ -8,7 +8,7 @@ include(CMakeFindDependencyMacro)
 # and so refuses Eigen 5.
 find_dependency(Eigen3 NO_MODULE)
 if(Eigen3_VERSION VERSION_LESS 3.4)
-  message(FATAL_ERROR "duet: needs Eigen 3.4 or later, found ${Eigen3_VERSION}")
+  message(FATAL_ERROR "duet: Eigen ${Eigen3_VERSION} is too old (expected 3.4 or later)")
 endif()
 find_dependency(Boost 1.74)
 find_dependency(Threads)

@@ -72,7 +72,7 @@ expect_refusal() {
 }
 
 : >here/new_file
-expect_refusal "duet: release: not committed:"
+expect_refusal "duet: release: there are uncommitted changes:"
 rm here/new_file
 echo >>here/README.md
 expect_refusal " M README.md"
@@ -82,12 +82,12 @@ for file in CHANGELOG.md CITATION.cff packaging/vcpkg/duet/vcpkg.json packaging/
   sed "s/$version/9.8.7/" "here/$file" >changed
   cp changed "here/$file"
   git -C here -c user.name=duet -c user.email=duet@placeholder.invalid commit -qam "Another version"
-  expect_refusal "$file is of version '9.8.7', include/duet/core/version.hpp of '$version'"
+  expect_refusal "$file has version '9.8.7', include/duet/core/version.hpp has '$version'"
   git -C here reset -q --hard HEAD~1
 done
 sed "s/^\(## \[$version\]\).*/\1/" here/CHANGELOG.md >changed
 cp changed here/CHANGELOG.md
 git -C here -c user.name=duet -c user.email=duet@placeholder.invalid commit -qam "No day"
-expect_refusal "CHANGELOG.md does not say on which day"
+expect_refusal "CHANGELOG.md has no release date for version"
 rm -rf here/.git
-expect_refusal "here is no git repository"
+expect_refusal "is not the top of a git repository"

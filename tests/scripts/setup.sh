@@ -45,7 +45,7 @@ expect() {
   fi
 }
 
-please="duet: not all that is needed is here. Please install it:"
+please="duet: packages are missing. Please install it:"
 
 # Nothing there: all of it, each package once.
 system fedora 1000 dnf
@@ -57,7 +57,7 @@ expect arch 1 "$please sudo pacman -S --needed gcc cmake ninja gnuplot python ei
 system mac 501 brew "[ \"\$*\" = --prefix ] && echo /opt/homebrew"
 expect mac 1 "$please brew install gcc cmake ninja gnuplot python eigen boost doctest" demo
 system none 1000 true
-expect none 1 "duet: not all that is needed is here. There is no apt-get, dnf, pacman or brew here; Debian calls it: g++ cmake ninja-build gnuplot-nox python3 libeigen3-dev libboost-dev libexpat1-dev libboost-program-options-dev doctest-dev" demo
+expect none 1 "duet: packages are missing. There is no apt-get, dnf, pacman or brew here; Debian calls it: g++ cmake ninja-build gnuplot-nox python3 libeigen3-dev libboost-dev libexpat1-dev libboost-program-options-dev doctest-dev" demo
 
 # Commands there, headers in part; root needs no sudo.
 system container 0 dnf
