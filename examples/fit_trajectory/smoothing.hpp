@@ -116,7 +116,8 @@ inline std::string picture_data(const std::string& name, std::size_t lines,
 }
 
 /// The time at which the three coordinates are best separated, and their values: the position of
-/// their names. \param group  0 position, 1 velocity, 2 angular velocity
+/// their names.
+/// \param group  0 position, 1 velocity, 2 angular velocity
 inline std::pair<double, vector3<double>> best_separated(const curve& s, std::size_t group) {
   std::pair<double, vector3<double>> result{};
   double widest = -1;

@@ -71,7 +71,8 @@ inline std::string joints_script(const problem& p, const plan_type& plan,
 }
 
 /// The largest velocity, acceleration and jerk relative to their limits: top without jerk limits,
-/// where the jerk exceeds the frame, bottom with them. \param duration  duration with jerk limits
+/// where the jerk exceeds the frame, bottom with them.
+/// \param duration  duration with jerk limits
 /// \param rows  of both tables
 inline std::string jerk_script(double duration, std::size_t rows) {
   using enum example::label_position;

@@ -46,9 +46,9 @@ inline int run_command(const std::string& command) {
 }
 
 /// Draws folder/name.svg and folder/name.png, both or neither; false if gnuplot is not installed.
-/// The script remains in folder/name.gnuplot, where it can be changed and run. \param height  in
-/// pixels of a page, on which the picture is `picture_width` wide \throws std::runtime_error if
-/// gnuplot fails, duet::file_error
+/// The script remains in folder/name.gnuplot, where it can be changed and run.
+/// \param height  height of the picture in pixels, at a width of `picture_width`
+/// \throws std::runtime_error if gnuplot fails, duet::file_error
 inline bool draw(const std::string& folder, const std::string& name, int height,
                  const std::string& script) {
   // Run by hand, the script writes to these names; here they are replaced by temporary files.

@@ -33,7 +33,8 @@ inline void require_order(const csv_file& file, const std::string& path) {
 }
 
 /// Reads five rows `name, ax, ay, az, px, py, pz` (chassis, carrier) and one `wheel centre, x, y,
-/// z`. \throws file_error
+/// z`.
+/// \throws file_error
 inline hardpoints read_hardpoints(const std::string& path) {
   const csv_file file(path);
   require_order(file, path);

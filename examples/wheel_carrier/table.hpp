@@ -19,7 +19,8 @@ namespace wheel_carrier {
 using duet::file_error;
 
 /// Reads u, qw, qx, qy, qz, in the order of the header. Rows that cannot be interpolated are
-/// reported here, since the path of the file is known. \throws file_error
+/// reported here, since the path of the file is known.
+/// \throws file_error
 inline table read_table(const std::string& path) {
   auto [u, q] = duet::load_table<double>(path);
   if (u.size() < 2) {
