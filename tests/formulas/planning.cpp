@@ -203,7 +203,7 @@ formula planning_step() {
         const screw_displacement<T> c(a.alpha, a.t, unit<T>(part<3>(x, 7), none).q, part<3>(x, 10),
                                       x[13], d[13]);
         const auto [y, dy] = resolved(a, plus(c.position, times(minus, a.t)),
-                                      plus(c.alpha, times(minus, a.alpha)), c.dplace, c.dalpha);
+                                      plus(c.alpha, times(minus, a.alpha)), c.dposition, c.dalpha);
         return row<T>(plus(part<7>(x, 0), y), dy);
       },
       of_least_rates,
