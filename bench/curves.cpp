@@ -70,9 +70,9 @@ template <class Spline>
 void add(std::string_view value, std::string_view motion, std::string_view contender,
          const Spline& s) {
   register_benchmark(value, contender, parameter_sequence(),
-                   [=](parameter_sequence& u) { return s(u.next()); });
+                     [=](parameter_sequence& u) { return s(u.next()); });
   register_benchmark(motion, contender, parameter_sequence(),
-                   [=](parameter_sequence& u) { return s.motion(u.next(), duet::frame::body); });
+                     [=](parameter_sequence& u) { return s.motion(u.next(), duet::frame::body); });
 }
 
 const bool registered = [] {
