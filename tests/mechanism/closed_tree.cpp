@@ -196,7 +196,7 @@ TEST_CASE("find_assembly_configurations: a four-bar has the solutions of Freuden
           .positions.empty());
   CHECK(
       duet_test::message_of<loop_closure_failure>([] {
-        (void)four_bar(.2, .5, .4, 3).closed(vector({0, 0, 0}));
+        (void)four_bar(.2, .5, .4, 3).assemble(vector({0, 0, 0}));
       })
           .starts_with(
               "duet: closed_chain_mechanism: no configuration near the initial guess, residual "));
