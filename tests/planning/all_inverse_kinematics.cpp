@@ -669,8 +669,8 @@ TEST_CASE("what is no goal, and no arm of six joints") {
       static_cast<void>(all_inverse_kinematics(chain(robots::panda().table()), goal)),
       "duet: all_inverse_kinematics: the chain has 7 moving joints, not 6", invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(puma(), 2 * goal)),
-                       "duet: all_inverse_kinematics: the goal is no unit dual quaternion: "
-                       "|p|^2 = 4, p.q = 0",
+                       "duet: all_inverse_kinematics: the goal is not a unit dual quaternion: "
+                       "|p|^2 = 4, p.q = 0 (expected 1 and 0)",
                        invalid_input);
   duet_test::random_source random(1);
   CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(

@@ -169,7 +169,7 @@ TEST_CASE("few points, in line, in a plane, one again and again, none") {
       bounding_capsule(std::vector<point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 0}});
   CHECK(volume_of(square) < 1.001 * volume_of(bounding_capsule(collision_box{{1, 1, 0}})));
   CHECK_THROWS_WITH_AS((void)bounding_capsule(std::vector<point>{}),
-                       "duet: bounding_capsule: no points", invalid_input);
+                       "duet: bounding_capsule: the list of points is empty", invalid_input);
   CHECK_THROWS_WITH_AS((void)bounding_capsule(std::vector<point>{x, point(0, NAN, 0)}),
                        "duet: bounding_capsule: point 1 is not finite", invalid_input);
 }

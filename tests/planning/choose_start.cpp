@@ -133,8 +133,8 @@ TEST_CASE("no start is chosen where the objective is nan, and that it is so at a
   const auto nowhere = [](const auto& x) { return 0 * x[0] + std::nan(""); };
   CHECK(duet_test::message_of<invalid_input>(
             [&] { static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, nowhere)); })
-            .starts_with("duet: find_start_configuration: the objective is nan at all starts, as "
-                         "at the joints ("));
+            .starts_with("duet: find_start_configuration: the objective is nan at all starts, for "
+                         "example at the joints ("));
 }
 
 TEST_CASE("the first pose without a solution, and why") {
@@ -280,16 +280,18 @@ TEST_CASE("what is refused") {
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto path = [&](double) { return arm.pose(theta); };
   CHECK_THROWS_WITH_AS(static_cast<void>(find_start_configuration(arm, path, 1, 1)),
-                       "duet: find_start_configuration: the path's parameter goes from 1 to 1",
+                       "duet: find_start_configuration: the parameter of the path goes from 1 to 1 "
+                       "(expected an increasing, finite interval)",
                        invalid_input);
   CHECK_THROWS_WITH_AS(
       static_cast<void>(find_start_configuration(arm, path, 0, 1, {.max_starts = 0})),
-      "duet: find_start_configuration: starts is 0, not a number above 0", invalid_input);
+      "duet: find_start_configuration: max_starts is 0 (expected a positive number)",
+      invalid_input);
   CHECK_THROWS_WITH_AS(
       static_cast<void>(find_start_configuration(arm, path, 0, 1, {.sampling = 2})),
-      "duet: find_start_configuration: sampling is 2, not within (0, 1]", invalid_input);
+      "duet: find_start_configuration: sampling is 2 (expected within (0, 1])", invalid_input);
   const preferred_posture few{vector(vector::Zero(5))};
-  const char* const what = "duet: preferred_posture: 5 coordinates for 6 joints";
+  const char* const what = "duet: preferred_posture: 5 coordinates (expected 6, one per joint)";
   CHECK_THROWS_WITH_AS(static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, few)), what,
                        invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(follow_path(arm, theta, path, 0, 1, {}, few)), what,

@@ -81,15 +81,15 @@ TEST_CASE("nothing to touch; what is no scene") {
   CHECK(clearance(arm, theta, scene{{}, s.obstacles}).distance == INFINITY);
   std::get<sphere<>>(s.obstacles[0]).radius = std::nan("");
   CHECK_THROWS_WITH_AS(require_scene(arm, s),
-                       "duet: the radius of obstacle 0 is nan, not a number from 0 up",
+                       "duet: the radius of obstacle 0 is nan (expected a non-negative number)",
                        invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(clearance(arm, theta, s)),
-                       "duet: the radius of obstacle 0 is nan, not a number from 0 up",
+                       "duet: the radius of obstacle 0 is nan (expected a non-negative number)",
                        invalid_input);
   scene slanted = cage();
   slanted.obstacles.push_back(half_space<>{{0, 0, 2}, -1});
   CHECK_THROWS_WITH_AS(static_cast<void>(clearance(arm, theta, slanted)),
-                       "duet: the normal of obstacle 3 is no unit vector", invalid_input);
+                       "duet: the normal of obstacle 3 is not a unit vector", invalid_input);
   s.bodies[4].link = 8;
   CHECK_THROWS_WITH_AS(require_scene(arm, s),
                        "duet: serial_chain: link 8 does not exist, the chain has 7 joints",

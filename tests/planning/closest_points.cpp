@@ -339,7 +339,7 @@ TEST_CASE("what is no shape") {
   const auto here = pose(quaternion<double>(1), vector(0, 0, 0));
   require_shape(sphere<>{vector::Zero(), 0}, "it");
   CHECK_THROWS_WITH_AS(require_shape(sphere<>{vector::Zero(), -1}, "obstacle 2"),
-                       "duet: the radius of obstacle 2 is -1, not a number from 0 up",
+                       "duet: the radius of obstacle 2 is -1 (expected a non-negative number)",
                        invalid_input);
   CHECK_THROWS_WITH_AS(require_shape(sphere<>{vector(0, nan, 0), 1}, "obstacle 2"),
                        "duet: the centre of obstacle 2 is not finite", invalid_input);
@@ -348,7 +348,8 @@ TEST_CASE("what is no shape") {
   CHECK_THROWS_AS(require_shape(capsule<>(vector::Zero(), vector::Zero(), nan), "it"),
                   invalid_input);
   CHECK_THROWS_WITH_AS(require_shape(box<>{here, vector(1, -.5, 1)}, "it"),
-                       "duet: half size 1 of it is -0.5, not a number from 0 up", invalid_input);
+                       "duet: half extent 1 of it is -0.5 (expected a non-negative number)",
+                       invalid_input);
   CHECK_THROWS_AS(require_shape(box<>{here * 2.0, vector(1, 1, 1)}, "it"), invalid_input);
   CHECK_THROWS_AS(require_shape(half_space<>{vector(0, 0, 2), 1}, "it"), invalid_input);
   CHECK_THROWS_AS(require_shape(half_space<>{vector(0, 0, 1), nan}, "it"), invalid_input);

@@ -88,7 +88,7 @@ TEST_CASE("where branches meet there is none") {
                   no_convergence);
   CHECK_THROWS_WITH_AS(static_cast<void>(differentiable_branch(
                            arm, Eigen::VectorXd(Eigen::VectorXd::Zero(7)), arm.pose(theta))),
-                       "duet: differentiable_branch: 7 coordinates, not 6", invalid_input);
+                       "duet: differentiable_branch: 7 coordinates (expected 6)", invalid_input);
 }
 
 } // namespace

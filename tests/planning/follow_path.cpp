@@ -148,7 +148,8 @@ TEST_CASE("bad paths") {
                        "duet: follow_path: the list of poses is empty", invalid_input);
   CHECK_THROWS_WITH_AS(
       (void)follow_path(arm, start, poses{first, first * 2.0}),
-      doctest::Contains("duet: follow_path: pose 1 is no unit dual quaternion: |p|^2 = 4, p.q = "),
+      doctest::Contains(
+          "duet: follow_path: pose 1 is not a unit dual quaternion: |p|^2 = 4, p.q = "),
       invalid_input);
   CHECK_THROWS_WITH_AS(
       (void)follow_path(arm, start,
@@ -156,17 +157,19 @@ TEST_CASE("bad paths") {
       doctest::Contains("duet: follow_path: the path begins 0.5 units of length and "),
       invalid_input);
   CHECK_THROWS_WITH_AS((void)follow_path(arm, start, still, 1, 1),
-                       "duet: follow_path: the path's parameter goes from 1 to 1", invalid_input);
+                       "duet: follow_path: the parameter of the path goes from 1 to 1 "
+                       "(expected an increasing, finite interval)",
+                       invalid_input);
   CHECK_THROWS_AS((void)follow_path(arm, start, still, 0, INFINITY), invalid_input);
   CHECK_THROWS_WITH_AS(
       (void)follow_path(
           arm, start, [&](double u) { return u > .5 ? first * std::nan("") : first; }, 0, 1),
-      doctest::Contains("its rotation is not finite: (nan, nan, nan, nan)"), invalid_input);
+      doctest::Contains("is not finite: (nan, nan, nan, nan)"), invalid_input);
   vector outside = start;
   outside[5] = 4;
   CHECK_THROWS_WITH_AS(
       (void)follow_path(arm, outside, poses{first}),
-      "duet: plan: the start has 4 for joint 5, whose limits are -0.0175 and 3.7525",
+      "duet: plan: joint 5 of the start is 4 (expected a finite number from -0.0175 to 3.7525)",
       invalid_input);
   CHECK_THROWS_AS((void)follow_path(arm, Eigen::VectorXd(Eigen::VectorXd::Zero(6)), poses{first}),
                   invalid_input);

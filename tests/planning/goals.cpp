@@ -339,32 +339,37 @@ TEST_CASE("regions that hold no pose") {
   CHECK(text(good) == "");
   task_space_region bad = good;
   bad.upper[1] = -1;
-  CHECK(text(bad) ==
-        "duet: inverse_kinematics: the region goes from 0 to -1 along axis 1 of its frame");
+  CHECK(text(bad) == "duet: inverse_kinematics: the region goes from 0 to -1 along axis 1 of its "
+                     "frame (expected lower <= upper)");
   bad = good;
   bad.axis = {0, 1, 1};
   CHECK(text(bad) ==
-        "duet: inverse_kinematics: the axis of the region (0, 1, 1) is no unit vector");
+        "duet: inverse_kinematics: the axis of the region (0, 1, 1) is not a unit vector");
   bad = good;
   bad.max_tilt = -.1;
-  CHECK(text(bad) == "duet: inverse_kinematics: the tilt of the region is -0.1");
+  CHECK(
+      text(bad) ==
+      "duet: inverse_kinematics: max_tilt of the region is -0.1 (expected a non-negative number)");
   bad = good;
   bad.rotation_lower = 4;
-  CHECK(text(bad).find("the turns of the region go from 4 to 3.14") != std::string::npos);
+  CHECK(text(bad).find("the rotation angle of the region goes from 4 to 3.14") !=
+        std::string::npos);
   bad = good;
   bad.frame = 2 * bad.frame;
-  CHECK(text(bad).find("the frame of the region is no unit dual quaternion") != std::string::npos);
+  CHECK(text(bad).find("the frame of the region is not a unit dual quaternion") !=
+        std::string::npos);
   bad = good;
   bad.lower[2] = std::nan("");
   CHECK(text(bad).find("the region goes from nan") != std::string::npos);
   const double infinity = std::numeric_limits<double>::infinity();
   bad = good;
   bad.lower[0] = bad.upper[0] = infinity;
-  CHECK(text(bad) ==
-        "duet: inverse_kinematics: the region goes from inf to inf along axis 0 of its frame");
+  CHECK(text(bad) == "duet: inverse_kinematics: the region goes from inf to inf along axis 0 of "
+                     "its frame (expected lower <= upper)");
   bad = good;
   bad.rotation_lower = bad.rotation_upper = -infinity;
-  CHECK(text(bad) == "duet: inverse_kinematics: the turns of the region go from -inf to -inf");
+  CHECK(text(bad) == "duet: inverse_kinematics: the rotation angle of the region goes from -inf to "
+                     "-inf (expected lower <= upper)");
   bad.rotation_upper = infinity; // that is any
   CHECK(text(bad) == "");
 }
@@ -380,10 +385,10 @@ TEST_CASE("directions that are none") {
     CHECK_THROWS_AS(static_cast<void>(position_and_pointing_goal(p, none, z)), invalid_input);
   }
   CHECK_THROWS_WITH_AS(static_cast<void>(pointing_goal(z, {0, .3, .4})),
-                       "duet: pointing_goal: the direction (0, 0.3, 0.4) is no unit vector",
+                       "duet: pointing_goal: the direction (0, 0.3, 0.4) is not a unit vector",
                        invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(position_and_pointing_goal(p, {0, 0, 2}, z)),
-                       "duet: position_and_pointing_goal: the axis (0, 0, 2) is no unit vector",
+                       "duet: position_and_pointing_goal: the axis (0, 0, 2) is not a unit vector",
                        invalid_input);
 }
 

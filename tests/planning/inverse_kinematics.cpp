@@ -364,8 +364,8 @@ TEST_CASE("how far a pose is from a goal, to second order") {
       const auto goal = at(t[1], 2 * t[2], t[0], {0, 0, 0}) * arm.pose(theta) *
                         at(0, 0, 0, Eigen::Vector3d(turn * t[0], turn * t[1], turn * t[2]));
       const auto state = model.at(model.joints(theta));
-      const auto twist = detail::error_twist(state.tip, model.place(goal));
-      const auto way = model.place(goal).translation - state.tip.translation;
+      const auto twist = detail::error_twist(state.tip, model.scaled_pose(goal));
+      const auto way = model.scaled_pose(goal).translation - state.tip.translation;
       const auto found = detail::squared_error_of(
           state.jacobian, detail::small_twist{{way.x, way.y, way.z, twist[3], twist[4], twist[5]}});
       const auto half_square = [&](const auto& x) {
@@ -376,7 +376,7 @@ TEST_CASE("how far a pose is from a goal, to second order") {
       };
       const auto expected = hessian(half_square, theta);
       for (int i = 0; i < arm.size(); ++i) {
-        CHECK(std::abs(found.slope[i] - model.unit[i] * expected.gradient[i]) <
+        CHECK(std::abs(found.gradient[i] - model.unit[i] * expected.gradient[i]) <
               2e-14 * (1 + 4 * turn));
         for (int j = 0; j <= i; ++j) {
           CHECK(std::abs(found.curvature(i, j) -
@@ -428,10 +428,11 @@ TEST_CASE("many goals: as one by one, on any number of cores") {
   goals[17] = at(0, 0, 0) * 2.0;
   goals[18] = goals[18] * std::nan("");
   out[0].iterations = -1;
-  CHECK_THROWS_WITH_AS(inverse_kinematics(arm, goals, start, out, {}, all_cores),
-                       "duet: inverse_kinematics: goal 17 is no unit dual quaternion: |p|^2 = 4, "
-                       "p.q = 0",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      inverse_kinematics(arm, goals, start, out, {}, all_cores),
+      "duet: inverse_kinematics: goal 17 is not a unit dual quaternion: |p|^2 = 4, "
+      "p.q = 0 (expected 1 and 0)",
+      invalid_input);
   CHECK(out[0].iterations == -1); // nothing was begun
 }
 
@@ -440,17 +441,18 @@ TEST_CASE("bad problems") {
   const vector start = (lower_limits(arm) + upper_limits(arm)) / 2;
   const auto goal = arm.pose(start);
   const auto half = make_dual_quaternion(quaternion<double>(1), quaternion<double>(.5));
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, half, start),
-                       "duet: inverse_kinematics: the goal is no unit dual quaternion: |p|^2 = 1, "
-                       "p.q = 0.5",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)inverse_kinematics(arm, half, start),
+      "duet: inverse_kinematics: the goal is not a unit dual quaternion: |p|^2 = 1, "
+      "p.q = 0.5 (expected 1 and 0)",
+      invalid_input);
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, at(.1, std::nan(""), .3), start),
-                       "duet: inverse_kinematics: the goal: its translation is not finite: (nan, "
+                       "duet: inverse_kinematics: the translation of the goal is not finite: (nan, "
                        "nan, nan)",
                        invalid_input);
   const auto not_turned = pose(quaternion<double>(1, 0, std::nan(""), 0), vector3<double>(1, 2, 3));
   CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, not_turned, start),
-                       "duet: inverse_kinematics: the goal: its rotation is not finite: (1, 0, "
+                       "duet: inverse_kinematics: the rotation of the goal is not finite: (1, 0, "
                        "nan, 0)",
                        invalid_input);
   CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
@@ -458,14 +460,18 @@ TEST_CASE("bad problems") {
                        "duet: serial_chain: 6 coordinates (expected 7)", invalid_input);
   vector broken = start;
   broken[4] = INFINITY;
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, broken),
-                       "duet: inverse_kinematics: the start has inf for joint 4", invalid_input);
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
-                       "duet: inverse_kinematics: tolerance.translation is 0, not a number above 0",
-                       invalid_input);
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = {1e-6, -1}}),
-                       "duet: inverse_kinematics: tolerance.rotation is -1, not a number above 0",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)inverse_kinematics(arm, goal, broken),
+      "duet: inverse_kinematics: joint 4 of the start is inf (expected a finite number)",
+      invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
+      "duet: inverse_kinematics: tolerance.translation is 0 (expected a positive number)",
+      invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)inverse_kinematics(arm, goal, start, {.tolerance = {1e-6, -1}}),
+      "duet: inverse_kinematics: tolerance.rotation is -1 (expected a positive number)",
+      invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = std::nan("")}),
                   invalid_input);
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.max_restarts = -1}), invalid_input);

@@ -145,17 +145,17 @@ TEST_CASE("what is refused, before anything is begun") {
   CHECK(text_of(regions, 7, wish) == "duet: inverse_kinematics: 20 goals, but room for 7 results");
   CHECK(text_of(poses, 7, wish) == "duet: inverse_kinematics: 20 goals, but room for 7 results");
   CHECK(text_of(regions, 20, preferred_posture{vector(vector::Zero(3))}) ==
-        "duet: preferred_posture: 3 coordinates for 7 joints");
+        "duet: preferred_posture: 3 coordinates (expected 7, one per joint)");
   regions[17].max_tilt = -1;
   regions[18].axis = {0, 0, 2};
   poses[17] = 2 * poses[17];
   CHECK(text_of(regions, 20, no_objective{}) ==
-        "duet: inverse_kinematics: the tilt of goal 17 is -1");
-  CHECK(text_of(poses, 20, wish) ==
-        "duet: inverse_kinematics: goal 17 is no unit dual quaternion: |p|^2 = 4, p.q = 0");
+        "duet: inverse_kinematics: max_tilt of goal 17 is -1 (expected a non-negative number)");
+  CHECK(text_of(poses, 20, wish) == "duet: inverse_kinematics: goal 17 is not a unit dual "
+                                    "quaternion: |p|^2 = 4, p.q = 0 (expected 1 and 0)");
   regions[17].max_tilt = 1;
   CHECK(text_of(regions, 20, no_objective{}) ==
-        "duet: inverse_kinematics: the axis of goal 18 (0, 0, 2) is no unit vector");
+        "duet: inverse_kinematics: the axis of goal 18 (0, 0, 2) is not a unit vector");
   CHECK(out[0].iterations == -1);
 }
 

@@ -117,10 +117,11 @@ TEST_CASE("limits are no obstacles; bad scenes") {
   scene bad = wall;
   bad.margin = -1;
   CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, far, {}, {}, bad),
-                       "duet: the margin of a scene is -1, not a number from 0 up", invalid_input);
+                       "duet: the margin of a scene is -1 (expected a non-negative number)",
+                       invalid_input);
   bad = arm_among({half_space<>{{0, 0, 2}, 0}});
   CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, far, {}, {}, bad),
-                       "duet: the normal of obstacle 0 is no unit vector", invalid_input);
+                       "duet: the normal of obstacle 0 is not a unit vector", invalid_input);
 }
 
 } // namespace test_planning_obstacles

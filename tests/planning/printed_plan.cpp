@@ -149,10 +149,10 @@ TEST_CASE("N25: paths that cannot be followed") {
   CHECK(printed_path_plan(arm, gripper_down(), path, {.max_iterations = 4}).reason ==
         stop_reason::iteration_limit);
   path[3] = dual_quaternion<double>(2);
-  CHECK_THROWS_WITH_AS(
-      (void)printed_path_plan(arm, gripper_down(), path),
-      "duet: plan: pose 3 of the path is no unit dual quaternion: |p|^2 = 4, p.q = 0",
-      invalid_input);
+  CHECK_THROWS_WITH_AS((void)printed_path_plan(arm, gripper_down(), path),
+                       "duet: plan: pose 3 of the path is not a unit dual quaternion: |p|^2 = 4, "
+                       "p.q = 0 (expected 1 and 0)",
+                       invalid_input);
   vector outside = gripper_down();
   outside[3] = 1;
   CHECK_THROWS_AS((void)printed_path_plan(arm, outside, circle(10)), invalid_input);

@@ -208,9 +208,9 @@ TEST_CASE("a start that is folded too far; pairs that are none") {
   fails(" from body " + std::to_string(c.other) + " (" + s.bodies[c.other].name +
         "), closer than the margin of 0.02");
   s.pairs.push_back({2, 4});
-  fails("duet: pair 5 of a scene is of bodies 2 and 4, not of two of 4");
+  fails("duet: scene: pair 5 consists of bodies 2 and 4 (expected two different indices below 4)");
   s.pairs.back() = {1, 1};
-  fails("duet: pair 5 of a scene is of bodies 1 and 1, not of two of 4");
+  fails("duet: scene: pair 5 consists of bodies 1 and 1 (expected two different indices below 4)");
 }
 
 } // namespace test_planning_self_collision

@@ -179,7 +179,7 @@ TEST_CASE("what is refused") {
                        "duet: self_motion_curves: the chain has 6 moving joints, not 7",
                        invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(self_motion_curves(arm, goal, {.resolution = 0})),
-                       "duet: self_motion_curves: resolution is 0, not within (0, 1]",
+                       "duet: self_motion_curves: resolution is 0 (expected within (0, 1])",
                        invalid_input);
 }
 

@@ -425,7 +425,7 @@ TEST_CASE("what is refused") {
   CHECK_THROWS_WITH_AS(
       static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start,
                                            {.candidates = 0}, preferred_posture{start})),
-      "duet: inverse_kinematics: candidates is 0, not a number above 0", invalid_input);
+      "duet: inverse_kinematics: candidates is 0 (expected a positive number)", invalid_input);
   scene none;
   none.margin = -1;
   CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {},
@@ -457,11 +457,14 @@ TEST_CASE("what is refused") {
         static_cast<void>(inverse_kinematics(arm, arm.pose(start), start, {}, wish)), what,
         invalid_input);
   };
-  says(preferred_posture{few}, "duet: preferred_posture: 3 coordinates for 7 joints");
+  says(preferred_posture{few},
+       "duet: preferred_posture: 3 coordinates (expected 7, one per joint)");
   says(preferred_posture{vector(vector::Zero(8))},
-       "duet: preferred_posture: 8 coordinates for 7 joints");
-  says(preferred_posture{unknown}, "duet: preferred_posture: joint 2 is nan");
-  says(preferred_posture{start, unknown[2]}, "duet: preferred_posture: its weight is nan");
+       "duet: preferred_posture: 8 coordinates (expected 7, one per joint)");
+  says(preferred_posture{unknown},
+       "duet: preferred_posture: joint 2 is nan (expected a finite number)");
+  says(preferred_posture{start, unknown[2]},
+       "duet: preferred_posture: weight is nan (expected a finite number)");
 }
 
 TEST_CASE("what is nan is told where it is so everywhere, and else is no solution") {
@@ -473,9 +476,8 @@ TEST_CASE("what is nan is told where it is so everywhere, and else is no solutio
     });
   };
   const std::string at_start = " joints (0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
-  const std::string all =
-      "duet: inverse_kinematics: the objective is nan at all solutions that were "
-      "found, as at the";
+  const std::string all = "duet: inverse_kinematics: the objective is nan at all solutions found, "
+                          "for example at the";
   // A value that is nan with a slope that is 0, and one of which all is nan.
   const auto constant = [](const auto& x) { return 0 * x[0] + std::nan(""); };
   const auto root = [](const auto& x) {
@@ -493,7 +495,8 @@ TEST_CASE("what is nan is told where it is so everywhere, and else is no solutio
   const equation_goal nowhere{[]<class S>(const dual_quaternion<S>& a) {
     return std::array<S, 6>{translation(a).norm() * std::nan("")};
   }};
-  const std::string goal = " is nan wherever it was looked at, as at the" + at_start;
+  const std::string goal =
+      " is nan at every configuration evaluated, for example at the" + at_start;
   CHECK(message(nowhere, no_objective{}) == "duet: inverse_kinematics: the goal" + goal);
   CHECK(message(nowhere, preferred_posture{start}) == "duet: inverse_kinematics: the goal" + goal);
   std::vector<inverse_kinematics_result<chain::joints>> out(2);

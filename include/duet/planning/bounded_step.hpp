@@ -15,9 +15,10 @@ namespace duet::detail {
 
 /// Singular value below which steps are damped.
 inline constexpr double damping_threshold = 1e-3;
-/// Singular value below which they are in vain, except those of joints that swing at a singularity.
+/// Singular value below which steps fail, except those that reorient joints rapidly at a
+/// singularity.
 inline constexpr double undamped_threshold = 1e-6;
-/// Singular value below which round-off of J Jᵀ would determine them.
+/// Singular value below which round-off of J Jᵀ would determine the steps.
 inline constexpr double undamped_threshold_near_singularity = 1e-7;
 
 /// Twist [v; ω].
@@ -75,9 +76,10 @@ struct damping {
 /// J Jᵀ with the damping that a small singular value of J requires (damped least squares).
 class damped_gram {
 public:
-  explicit damped_gram(const gram_matrix& gram, const damping& how = {})
-      : factors_(how.lambda > 0 ? damped(gram, how.lambda) : cholesky<gram_matrix>(gram)) {
-    if (how.threshold == 0) {
+  explicit damped_gram(const gram_matrix& gram, const damping& settings = {})
+      : factors_(settings.lambda > 0 ? damped(gram, settings.lambda)
+                                     : cholesky<gram_matrix>(gram)) {
+    if (settings.threshold == 0) {
       return;
     }
     // Smallest eigenvalue, from above: Rayleigh quotient after two inverse iterations.
@@ -86,9 +88,9 @@ public:
       const auto twice = factors_.solve(once);
       smallest_ = std::sqrt(std::max(0.0, dot(once, twice) / dot(twice, twice)));
     }
-    if (smallest_ < how.threshold) {
-      const double missing = how.threshold - smallest_;
-      factors_ = damped(gram, missing * missing);
+    if (smallest_ < settings.threshold) {
+      const double shift = settings.threshold - smallest_;
+      factors_ = damped(gram, shift * shift);
     }
   }
 
@@ -115,7 +117,7 @@ template <class V>
 struct bounded_step_result {
   V step;
   double smallest_singular_value; ///< that of the Jacobian of all joints, 0 without a threshold
-  bool is_bounded;                ///< true if a limit held a joint back
+  bool is_bounded;                ///< true if a limit was active
 };
 
 /// Least-norm Δ with J Δ = e and lower ≤ Δ ≤ upper, by damped least squares Jᵀ(J Jᵀ + λ)⁻¹ e.
@@ -124,7 +126,7 @@ struct bounded_step_result {
 template <int N>
 [[nodiscard]] bounded_step_result<small_vector<N>>
 bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const small_vector<N>& lower,
-             const small_vector<N>& upper, const damping& how = {}) {
+             const small_vector<N>& upper, const damping& settings = {}) {
   const std::ptrdiff_t n = jacobian.cols();
   std::array<bool, std::size_t(N)> is_fixed{};
   bounded_step_result<small_vector<N>> result{{}, 0, false};
@@ -138,20 +140,20 @@ bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const sma
         add_square(gram, jacobian, i);
       }
     }
-    const damped_gram factors(gram, how);
+    const damped_gram factors(gram, settings);
     if (round == 0) {
       result.smallest_singular_value = factors.smallest();
     }
     const small_twist force = factors.solve(rest);
     std::ptrdiff_t worst = -1;
-    double excess = 0;
+    double max_violation = 0;
     for (std::ptrdiff_t i = 0; i < n; ++i) {
       if (!is_fixed[std::size_t(i)]) {
         double& step = result.step[i];
         step = column_dot(jacobian, i, force);
-        const double beyond = std::max(step - upper[i], lower[i] - step);
-        if (beyond > excess) {
-          excess = beyond;
+        const double violation = std::max(step - upper[i], lower[i] - step);
+        if (violation > max_violation) {
+          max_violation = violation;
           worst = i;
         }
       }

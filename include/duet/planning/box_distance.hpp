@@ -84,16 +84,16 @@ struct face_crossings {
     }
     std::sort(t.begin(), t.begin() + std::ptrdiff_t(count));
   }
-  [[nodiscard]] R middle(std::size_t k) const { return (t[k] + t[k + 1]) / 2; }
+  [[nodiscard]] R midpoint(std::size_t k) const { return (t[k] + t[k + 1]) / 2; }
 };
 
-/// Deepest point of a segment that passes through a box: where max(|x_i| − half_i) is least, at an
-/// end or where a face that comes nearer takes over from one that recedes.
+/// Deepest point of a segment that passes through a box: the minimum of max(|x_i| − half_i), at
+/// an end or where the nearest face changes from a receding to an approaching one.
 template <class T, class R>
 [[nodiscard]] T deepest_in_box(const segment_and_box<R>& s, const vector3<T>& from,
                                const vector3<T>& along, const vector3<T>& half) {
   T best(s.excess(R(0)) <= s.excess(R(1)) ? 0 : 1);
-  R least = s.excess(innermost(best));
+  R min_excess = s.excess(innermost(best));
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       for (const int a : {-1, 1}) {
@@ -105,9 +105,9 @@ template <class T, class R>
           const auto p = Eigen::Index(i), q = Eigen::Index(j);
           const T t =
               (b * from[q] - half[q] - a * from[p] + half[p]) / (a * along[p] - b * along[q]);
-          const R here = innermost(t);
-          if (here > 0 && here < 1 && s.excess(here) < least) {
-            least = s.excess(here);
+          const R t_real = innermost(t);
+          if (t_real > 0 && t_real < 1 && s.excess(t_real) < min_excess) {
+            min_excess = s.excess(t_real);
             best = t;
           }
         }
@@ -135,7 +135,7 @@ template <class T>
   }
   const face_crossings<R> crossings(s);
   for (std::size_t k = 0; k + 1 < crossings.count; ++k) {
-    if (s.contains(crossings.middle(k))) {
+    if (s.contains(crossings.midpoint(k))) {
       return deepest_in_box(s, from, along, b.half_extents);
     }
   }
@@ -143,7 +143,7 @@ template <class T>
     T slope(0),
         growth(0); // of half the squared distance at t = 0, if it were that of this interval
     for (std::size_t i = 0; i < 3; ++i) {
-      const int side = s.side(i, crossings.middle(k));
+      const int side = s.side(i, crossings.midpoint(k));
       if (side != 0) {
         const auto j = Eigen::Index(i);
         slope += (from[j] - side * b.half_extents[j]) * along[j];
@@ -151,7 +151,7 @@ template <class T>
       }
     }
     if (innermost(growth) == 0) {
-      return T(crossings.middle(k));
+      return T(crossings.midpoint(k));
     }
     const T t = -slope / growth;
     if (innermost(t) <= crossings.t[k + 1]) {

@@ -84,12 +84,12 @@ namespace duet {
 /// Smallest bounding capsule of a box along one of its edges.
 [[nodiscard]] inline capsule<double> bounding_capsule(const collision_box& b) {
   capsule<double> best(sphere<double>{vector3<double>::Zero(), 0});
-  double least = std::numeric_limits<double>::infinity();
+  double min_volume = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < 3; ++i) {
     const double across = std::hypot(b.size[(i + 1) % 3], b.size[(i + 2) % 3]) / 2;
     const capsule<double> along = bounding_capsule(collision_cylinder{across, b.size[i]});
-    if (volume_of(along) < least) {
-      least = volume_of(along);
+    if (volume_of(along) < min_volume) {
+      min_volume = volume_of(along);
       const vector3<double> end = along.to[2] * vector3<double>::Unit(Eigen::Index(i));
       best = {vector3<double>(-end), end, along.radius};
     }
@@ -173,11 +173,12 @@ template <class Robot>
       on = link.frame.link;
     }
     for (const collision_shape& each : link.collision) {
-      const placement<double> placed = offset * each.frame;
+      const placement<double> shape_pose = offset * each.frame;
       const auto add = [&](const auto& shape) {
         const capsule<double> fitted = bounding_capsule(shape);
-        const vector3<double> shift(placed.translation.data());
-        result.bodies.push_back({on, transformed(pose(placed.rotation, shift), fitted), link.name});
+        const vector3<double> shift(shape_pose.translation.data());
+        result.bodies.push_back(
+            {on, transformed(pose(shape_pose.rotation, shift), fitted), link.name});
         result.volume_ratios.push_back(volume_of(fitted) / volume_of(shape));
       };
       std::visit(

@@ -30,7 +30,7 @@ namespace detail {
 
 /// \throws invalid_input
 inline void require_options(const start_options& o) {
-  require_positive("find_start_configuration", "starts", o.max_starts);
+  require_positive("find_start_configuration", "max_starts", o.max_starts);
   const auto require_part = [](const char* name, double value) {
     require_option("find_start_configuration", name, value, value > 0 && value <= 1,
                    "within (0, 1]");
@@ -80,9 +80,9 @@ find_start(const C& chain, const path_function& path, double first, double last,
       return double(objective(to_chain_joints(chain, x)));
     };
   }
-  auto found = find_start(problem);
-  return {with_vectors_of<C::joints>(std::move(found.plan)), found.starts, found.unsolved,
-          found.reason, found.is_certain};
+  auto result = find_start(problem);
+  return {with_vectors_of<C::joints>(std::move(result.plan)), result.starts, result.unsolved,
+          result.reason, result.is_certain};
 }
 
 } // namespace detail
@@ -112,8 +112,8 @@ find_start_configuration(const C& chain, const Path& path, double first, double 
                          const start_options& options = {}, const Objective& objective = {},
                          const Scene& around = {}) {
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
-                  "duet: find_start_configuration: the path's parameter goes from ", first, " to ",
-                  last);
+                  "duet: find_start_configuration: the parameter of the path goes from ", first,
+                  " to ", last, " (expected an increasing, finite interval)");
   return detail::find_start(chain, detail::checked(path), first, last, options, objective, around,
                             [&](const auto& start, const plan_options& how) {
                               return follow_path(chain, start, path, first, last, how, objective,
@@ -137,7 +137,7 @@ find_start_configuration(const C& chain, const Spline& spline, const start_optio
 
 template <SerialChain C, VectorLike Start, PosePath Path, class... More>
 DUET_REFUSED(
-    "find_start_configuration finds the start: find_start_configuration(chain, path, first, last)")
+    "find_start_configuration takes no start: find_start_configuration(chain, path, first, last)")
 start_search_result<C::joints> find_start_configuration(const C&, const Start&, const Path&,
                                                         const More&...);
 

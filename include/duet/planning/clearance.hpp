@@ -66,7 +66,8 @@ concept LinkedMechanism = requires(const M& mechanism) {
 /// Checks whether a scene is valid for a chain. For those who extend duet.
 ///
 /// \throws invalid_input for invalid shapes (`require_shape`), links that `chain` lacks, pairs that
-/// are not two bodies of the scene, and a margin or horizon that is negative or not finite
+/// are not two bodies of the scene, and a margin or influence distance that is negative or not
+/// finite
 template <LinkedMechanism C>
 void require_scene(const C& chain, const scene& s) {
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
@@ -78,12 +79,12 @@ void require_scene(const C& chain, const scene& s) {
   }
   for (std::size_t i = 0; i < s.pairs.size(); ++i) {
     const auto [first, second] = s.pairs[i];
-    detail::require(first != second && std::max(first, second) < s.bodies.size(), "duet: pair ", i,
-                    " of a scene is of bodies ", first, " and ", second, ", not of two of ",
-                    s.bodies.size());
+    detail::require(first != second && std::max(first, second) < s.bodies.size(),
+                    "duet: scene: pair ", i, " consists of bodies ", first, " and ", second,
+                    " (expected two different indices below ", s.bodies.size(), ")");
   }
   detail::require_extent(s.margin, "the margin of a scene");
-  detail::require_extent(s.influence_distance_offset, "the horizon of a scene");
+  detail::require_extent(s.influence_distance_offset, "the influence distance of a scene");
 }
 
 /// Closest points of a body of a chain and an obstacle, over the scalar of the coordinates θ.
@@ -93,8 +94,8 @@ void require_scene(const C& chain, const scene& s) {
 template <LinkedMechanism C, VectorLike X>
 [[nodiscard]] auto closest_points(const C& chain, const X& theta, const collision_body& body,
                                   const obstacle& from) {
-  const auto here = transformed(chain.pose(theta, body.link), body.shape);
-  return std::visit([&](const auto& o) { return closest_points(here, o); }, from);
+  const auto moved = transformed(chain.pose(theta, body.link), body.shape);
+  return std::visit([&](const auto& o) { return closest_points(moved, o); }, from);
 }
 
 /// Closest points of a body of a chain and another one, which takes the role of the obstacle.
@@ -149,13 +150,13 @@ namespace detail {
 template <class C, class X, class Visit>
 void for_each_proximity(const C& chain, const X& theta, const scene& s, const Visit& visit) {
   using S = std::decay_t<decltype(translation(chain.pose(theta, 0))[0])>;
-  std::vector<capsule<S>> placed;
-  placed.reserve(s.bodies.size());
+  std::vector<capsule<S>> moved_capsules;
+  moved_capsules.reserve(s.bodies.size());
   for (const collision_body& each : s.bodies) {
-    placed.push_back(transformed(chain.pose(theta, each.link), each.shape));
+    moved_capsules.push_back(transformed(chain.pose(theta, each.link), each.shape));
   }
   const auto visit_pair = [&](std::size_t i, std::size_t k, bool is_self, const auto& other) {
-    const proximity<S> points = closest_points(placed[i], other);
+    const proximity<S> points = closest_points(moved_capsules[i], other);
     visit(chain_clearance<S>{points.distance, i, k, is_self, points});
   };
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
@@ -164,18 +165,19 @@ void for_each_proximity(const C& chain, const X& theta, const scene& s, const Vi
     }
   }
   for (const auto [first, second] : s.pairs) {
-    visit_pair(first, second, true, placed[second]);
+    visit_pair(first, second, true, moved_capsules[second]);
   }
 }
 
 /// `duet::clearance` of a validated scene.
 template <class C, class X>
-[[nodiscard]] auto least_clearance(const C& chain, const X& theta, const scene& s) {
+[[nodiscard]] auto min_clearance(const C& chain, const X& theta, const scene& s) {
   using S = std::decay_t<decltype(translation(chain.pose(theta, 0))[0])>;
   chain_clearance<S> result;
   for_each_proximity(chain, theta, s, [&](const chain_clearance<S>& each) {
-    const auto least = innermost(result.distance);
-    if (least == least && !(innermost(each.distance) >= least)) { // a distance that is nan stays
+    const auto smallest = innermost(result.distance);
+    if (smallest == smallest &&
+        !(innermost(each.distance) >= smallest)) { // a distance that is nan is kept
       result = each;
     }
   });
@@ -193,7 +195,7 @@ template <class C, class X>
 template <LinkedMechanism C, VectorLike X>
 [[nodiscard]] auto clearance(const C& chain, const X& theta, const scene& s) {
   require_scene(chain, s);
-  return detail::least_clearance(chain, theta, s);
+  return detail::min_clearance(chain, theta, s);
 }
 
 } // namespace duet

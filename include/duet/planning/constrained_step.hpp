@@ -26,7 +26,7 @@ struct inequality {
   double bound;
 };
 
-/// Least squares: f − Σ z_i column_i and the z for which its norm is least. The second pass removes
+/// Least squares: the residual f − Σ z_i column_i of minimum norm, and z. The second pass removes
 /// round-off of the first: a Gram matrix has the squared condition number.
 template <class V>
 [[nodiscard]] std::pair<V, V> least_squares_on(const std::vector<V>& columns, const V& f) {
@@ -40,12 +40,12 @@ template <class V>
     }
   }
   const cholesky factors(gram);
-  V z = V::Zero(count), left(count), residual = f;
+  V z = V::Zero(count), right_side(count), residual = f;
   for (int twice = 0; twice < 2; ++twice) {
     for (Eigen::Index i = 0; i < count; ++i) {
-      left[i] = columns[std::size_t(i)].dot(residual);
+      right_side[i] = columns[std::size_t(i)].dot(residual);
     }
-    z += factors.solve(left);
+    z += factors.solve(right_side);
     residual = f;
     for (Eigen::Index i = 0; i < count; ++i) {
       residual -= z[i] * columns[std::size_t(i)];
@@ -54,8 +54,8 @@ template <class V>
   return {residual, z};
 }
 
-/// Nonnegative least squares: the least f − Σ u_i column_i with all u_i ≥ 0, by Lawson and Hanson's
-/// active-set method.
+/// Nonnegative least squares: the residual f − Σ u_i column_i of minimum norm with all u_i ≥ 0, by
+/// Lawson and Hanson's active-set method.
 template <class V>
 [[nodiscard]] V nonnegative_residual(const std::vector<V>& columns, const V& f) {
   struct share {
@@ -80,17 +80,17 @@ template <class V>
       const auto [rest, z] = least_squares_on(chosen, f);
       // Step towards z as far as all stay nonnegative; the first that becomes zero leaves the
       // active set.
-      double way = 1;
+      double fraction = 1;
       std::size_t first = active.size();
       for (std::size_t i = 0; i < active.size(); ++i) {
         const double u = active[i].u, goal = z[Eigen::Index(i)];
-        if (goal <= 0 && u <= way * (u - goal)) {
-          way = u / (u - goal);
+        if (goal <= 0 && u <= fraction * (u - goal)) {
+          fraction = u / (u - goal);
           first = i;
         }
       }
       for (std::size_t i = 0; i < active.size(); ++i) {
-        active[i].u += way * (z[Eigen::Index(i)] - active[i].u);
+        active[i].u += fraction * (z[Eigen::Index(i)] - active[i].u);
       }
       is_settled = first == active.size();
       if (is_settled) {
@@ -103,9 +103,10 @@ template <class V>
   return residual;
 }
 
-/// Least-norm x that satisfies all inequalities; nothing if there is none. With normals and bounds
-/// below each other as columns, and f = (0, …, 0, 1), x is a multiple of the residual of the
-/// nonnegative least squares (Lawson and Hanson, Solving Least Squares Problems, chapter 23).
+/// Least-norm x that satisfies all inequalities (least distance programming); nothing if no x does.
+/// With normals and bounds below each other as columns, and f = (0, …, 0, 1), x is a multiple of
+/// the residual of the nonnegative least squares (Lawson and Hanson, Solving Least Squares
+/// Problems, chapter 23).
 template <class V>
 [[nodiscard]] std::optional<V> least_distance(const std::vector<inequality<V>>& inequalities,
                                               Eigen::Index n) {
@@ -170,7 +171,7 @@ private:
 
 template <class V>
 struct constrained_step_result {
-  std::optional<V> step;          ///< empty if there is none
+  std::optional<V> step;          ///< empty if no step satisfies the constraints
   double smallest_singular_value; ///< that of the Jacobian, from above
 };
 
@@ -183,23 +184,24 @@ constrained_step(const J& jacobian, const E& e, const V& preferred, const V& low
   const Eigen::Index n = jacobian.cols();
   const damped_gram gram(gram_of(jacobian));
   const E force = gram.solve(e);
-  const self_motion<V> without_tip(jacobian);
-  V wanted = without_tip(preferred);
+  const self_motion<V> null_space(jacobian);
+  V unconstrained = null_space(preferred);
   for (Eigen::Index i = 0; i < n; ++i) {
-    wanted[i] += column_dot(jacobian, i, force);
+    unconstrained[i] += column_dot(jacobian, i, force);
   }
-  std::vector<inequality<V>> left;
-  left.reserve(inequalities.size() + 2 * std::size_t(n));
-  for (const inequality<V>& given : inequalities) {
-    left.push_back({without_tip(given.normal), given.bound - given.normal.dot(wanted)});
+  std::vector<inequality<V>> reduced; // in the null space
+  reduced.reserve(inequalities.size() + 2 * std::size_t(n));
+  for (const inequality<V>& each : inequalities) {
+    reduced.push_back({null_space(each.normal), each.bound - each.normal.dot(unconstrained)});
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    const V normal = without_tip(V::Unit(n, i));
-    left.push_back({normal, lower[i] - wanted[i]});
-    left.push_back({-normal, wanted[i] - upper[i]});
+    const V normal = null_space(V::Unit(n, i));
+    reduced.push_back({normal, lower[i] - unconstrained[i]});
+    reduced.push_back({-normal, unconstrained[i] - upper[i]});
   }
-  const std::optional<V> correction = least_distance(left, n);
-  return {correction ? std::optional<V>(wanted + *correction) : std::nullopt, gram.smallest()};
+  const std::optional<V> correction = least_distance(reduced, n);
+  return {correction ? std::optional<V>(unconstrained + *correction) : std::nullopt,
+          gram.smallest()};
 }
 
 } // namespace duet::detail

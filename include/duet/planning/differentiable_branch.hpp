@@ -31,37 +31,40 @@ namespace duet {
 /// \param joints   joint coordinates of a branch, in double
 /// \param goal     a pose, of any scalar of duet
 /// \return an Eigen vector of six coordinates
-/// \throws no_convergence where branches meet: the Jacobian is singular there
+/// \throws no_convergence if branches meet at `joints`: the Jacobian is singular there
 /// \throws invalid_input for a number of coordinates other than six
 template <class Forward, VectorLike X, class S>
 [[nodiscard]] auto differentiable_branch(const Forward& forward, const X& joints,
                                          const dual_quaternion<S>& goal) {
   using argument = detail::vector_argument<X>;
   detail::require(argument::size(joints) == 6,
-                  "duet: differentiable_branch: ", argument::size(joints), " coordinates, not 6");
+                  "duet: differentiable_branch: ", argument::size(joints),
+                  " coordinates (expected 6)");
   Eigen::Matrix<double, 6, 1> start;
   for (int i = 0; i < 6; ++i) {
     start[i] = argument::get(joints, i);
   }
-  // The goal as numbers, as the dual unit of rigid motions is not differentiated by.
+  // The goal as eight numbers: derivatives are not taken with respect to the dual unit of rigid
+  // motions.
   const auto p = real_part(goal), q = dual_part(goal);
   const std::array<S, 8> numbers{p.w(), p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
-  // Components of the tip's pose in the frame of the goal that vanish where the two agree (±1).
-  const auto gap = [&](const auto& theta, const auto& to) {
+  // Components of the tip's pose in the frame of the goal that are zero if the two poses agree
+  // (±1).
+  const auto residual = [&](const auto& theta, const auto& to) {
     using T = std::decay_t<decltype(to[0])>;
     const auto opposite = conj(make_dual_quaternion(quaternion<T>(to[0], to[1], to[2], to[3]),
                                                     quaternion<T>(to[4], to[5], to[6], to[7])));
-    const auto left = opposite * [&] {
+    const auto difference = opposite * [&] {
       if constexpr (SerialChain<Forward>) {
         return forward.pose(theta);
       } else {
         return forward(theta);
       }
     }();
-    const auto turn = real_part(left), move = dual_part(left);
-    return std::array{move.x(), move.y(), move.z(), turn.x(), turn.y(), turn.z()};
+    const auto r = real_part(difference), d = dual_part(difference);
+    return std::array{d.x(), d.y(), d.z(), r.x(), r.y(), r.z()};
   };
-  return implicit_solution(gap, start, numbers);
+  return implicit_solution(residual, start, numbers);
 }
 
 } // namespace duet

@@ -34,17 +34,18 @@ namespace detail {
 using points_in_space = std::vector<vector3<double>>;
 
 /// Distance of a point from a segment, the parameter t of the nearest point, and the direction from
-/// there.
-struct point_beside_segment {
+/// that point.
+struct segment_proximity {
   double distance, t;
   vector3<double> normal;
 };
-[[nodiscard]] inline point_beside_segment
-beside(const vector3<double>& x, const vector3<double>& from, const vector3<double>& to) {
+[[nodiscard]] inline segment_proximity proximity_to_segment(const vector3<double>& x,
+                                                            const vector3<double>& from,
+                                                            const vector3<double>& to) {
   const double t = nearest_to_point(x, from, vector3<double>(to - from));
-  const vector3<double> apart = x - (1 - t) * from - t * to;
-  const double length = apart.norm();
-  return {length, t, length > 0 ? vector3<double>(apart / length) : vector3<double>::Zero()};
+  const vector3<double> difference = x - (1 - t) * from - t * to;
+  const double length = difference.norm();
+  return {length, t, length > 0 ? vector3<double>(difference / length) : vector3<double>::Zero()};
 }
 
 /// Thinnest capsule around points with given ends of its axis.
@@ -52,7 +53,7 @@ beside(const vector3<double>& x, const vector3<double>& from, const vector3<doub
 around(const points_in_space& points, const vector3<double>& from, const vector3<double>& to) {
   double radius = 0;
   for (const auto& x : points) {
-    radius = std::max(radius, beside(x, from, to).distance);
+    radius = std::max(radius, proximity_to_segment(x, from, to).distance);
   }
   return {from, to, radius};
 }
@@ -63,19 +64,19 @@ around(const points_in_space& points, const vector3<double>& from, const vector3
   const vector3<double> d = direction.normalized();
   const vector3<double> e = across(d, vector3<double>(vector3<double>::Zero()));
   const std::array<vector3<double>, 3> axes = {d, e, cross_product(d, e)};
-  vector3<double> middle = vector3<double>::Zero();
+  vector3<double> centre = vector3<double>::Zero();
   double half = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto [least, most] = std::minmax_element(
+    const auto [lowest, highest] = std::minmax_element(
         points.begin(), points.end(), [&](const vector3<double>& a, const vector3<double>& b) {
           return axes[k].dot(a) < axes[k].dot(b);
         });
-    const double low = axes[k].dot(*least), high = axes[k].dot(*most);
-    middle += (low + high) / 2 * axes[k];
+    const double low = axes[k].dot(*lowest), high = axes[k].dot(*highest);
+    centre += (low + high) / 2 * axes[k];
     half = k == 0 ? (high - low) / 2 : half;
   }
   const vector3<double> end = part * half * d;
-  return around(points, middle - end, middle + end);
+  return around(points, centre - end, centre + end);
 }
 
 /// Capsule around points of smaller volume. Each step moves ends and radius to minimise the volume,
@@ -87,7 +88,7 @@ template <class Points>
 [[nodiscard]] capsule<double> shrunk(const Points& points, capsule<double> c, int rounds) {
   using step = Eigen::Matrix<double, 7, 1>; // changes of `from`, `to` and the radius
   double reach = .1;                        // factor of the first-order change of the volume
-  double least = volume_of(c);
+  double min_volume = volume_of(c);
   for (int round = 0; round < rounds && reach > 1e-10; ++round) {
     const vector3<double> along = c.to - c.from;
     const double length = along.norm(), r = c.radius;
@@ -97,21 +98,21 @@ template <class Points>
     descent_step *= reach;
     std::vector<inequality<step>> within;
     for (const auto& x : points) {
-      const auto [distance, t, n] = beside(x, c.from, c.to);
-      step slope;
-      slope << (1 - t) * n, t * n, 1;
-      within.push_back({slope, distance - r - slope.dot(descent_step)});
+      const auto [distance, t, n] = proximity_to_segment(x, c.from, c.to);
+      step gradient;
+      gradient << (1 - t) * n, t * n, 1;
+      within.push_back({gradient, distance - r - gradient.dot(descent_step)});
     }
     const auto correction = least_distance(within, 7);
     if (correction) {
-      const step whole = descent_step + *correction;
-      const capsule<double> next = around(points, vector3<double>(c.from + whole.head<3>()),
-                                          vector3<double>(c.to + whole.segment<3>(3)));
+      const step total = descent_step + *correction;
+      const capsule<double> next = around(points, vector3<double>(c.from + total.head<3>()),
+                                          vector3<double>(c.to + total.segment<3>(3)));
       const double size = volume_of(next);
-      if (size < least) {
-        const bool is_done = least - size < 1e-9 * least;
+      if (size < min_volume) {
+        const bool is_done = min_volume - size < 1e-9 * min_volume;
         c = next;
-        least = size;
+        min_volume = size;
         reach *= 2;
         if (is_done) {
           break;
@@ -144,18 +145,18 @@ DUET_COMPILED_TEMPLATE capsule<double> shrunk(const points_in_space&, capsule<do
 }
 
 /// Adds, in each octant about a capsule's centre, the point that is farthest outside its surface.
-inline void add_what_is_outside(const points_in_space& all, const capsule<double>& c,
-                                points_in_space& chosen) {
-  const vector3<double> middle = (c.from + c.to) / 2;
+inline void add_outermost(const points_in_space& all, const capsule<double>& c,
+                          points_in_space& chosen) {
+  const vector3<double> centre = (c.from + c.to) / 2;
   std::array<const vector3<double>*, 8> farthest{};
-  std::array<double, 8> most;
-  most.fill(c.radius * (1 + 1e-9));
+  std::array<double, 8> max_distance;
+  max_distance.fill(c.radius * (1 + 1e-9));
   for (const auto& x : all) {
-    const double distance = beside(x, c.from, c.to).distance;
-    const std::size_t octant = std::size_t(x[0] > middle[0]) + 2U * std::size_t(x[1] > middle[1]) +
-                               4U * std::size_t(x[2] > middle[2]);
-    if (distance > most[octant]) {
-      most[octant] = distance;
+    const double distance = proximity_to_segment(x, c.from, c.to).distance;
+    const std::size_t octant = std::size_t(x[0] > centre[0]) + 2U * std::size_t(x[1] > centre[1]) +
+                               4U * std::size_t(x[2] > centre[2]);
+    if (distance > max_distance[octant]) {
+      max_distance[octant] = distance;
       farthest[octant] = &x;
     }
   }
@@ -171,12 +172,12 @@ inline void add_what_is_outside(const points_in_space& all, const capsule<double
 /// Small bounding capsule of points: all of them are inside, to round-off.
 ///
 /// Its volume is a local minimum, sought from 13 directions; the global minimum is not guaranteed.
-/// Only a few points matter: those outermost in a few directions to begin with, and then those that
-/// the capsule around these leaves outside, until there are none.
+/// Only a few points are used: first the outermost in a few directions, then those outside the
+/// capsule around these, until there are none.
 ///
 /// \throws invalid_input for no points and for points that are not finite
 [[nodiscard]] inline capsule<double> bounding_capsule(const std::vector<vector3<double>>& points) {
-  detail::require(!points.empty(), "duet: bounding_capsule: no points");
+  detail::require(!points.empty(), "duet: bounding_capsule: the list of points is empty");
   vector3<double> low = points[0], high = points[0];
   for (const auto& x : points) {
     detail::require(detail::all_finite(x), "duet: bounding_capsule: point ", &x - points.data(),
@@ -185,7 +186,7 @@ inline void add_what_is_outside(const points_in_space& all, const capsule<double
     high = high.cwiseMax(x);
   }
   // Units in which the longest edge of the bounding box is 2.
-  const vector3<double> middle = low / 2 + high / 2;
+  const vector3<double> centre = low / 2 + high / 2;
   const double unit = (high - low).maxCoeff() / 2;
   if (!(unit > 0)) {
     return sphere<double>{points[0], 0};
@@ -193,15 +194,15 @@ inline void add_what_is_outside(const points_in_space& all, const capsule<double
   detail::points_in_space all;
   all.reserve(points.size());
   for (const auto& x : points) {
-    all.emplace_back((x - middle) / unit);
+    all.emplace_back((x - centre) / unit);
   }
   const auto directions = detail::directions_around();
   detail::points_in_space chosen;
   for (const auto& d : directions) {
-    const auto [least, most] = std::minmax_element(
+    const auto [lowest, highest] = std::minmax_element(
         all.begin(), all.end(), [&](const auto& a, const auto& b) { return d.dot(a) < d.dot(b); });
-    chosen.push_back(*least);
-    chosen.push_back(*most);
+    chosen.push_back(*lowest);
+    chosen.push_back(*highest);
   }
   std::vector<capsule<double>> candidates;
   for (const auto& d : directions) {
@@ -220,14 +221,14 @@ inline void add_what_is_outside(const points_in_space& all, const capsule<double
   capsule<double> best = *std::min_element(candidates.begin(), candidates.end(), is_smaller);
   for (int round = 0; round < 100; ++round) {
     const std::size_t before = chosen.size();
-    detail::add_what_is_outside(all, best, chosen);
+    detail::add_outermost(all, best, chosen);
     if (chosen.size() == before) {
       break;
     }
     best = detail::shrunk(chosen, detail::around(chosen, best.from, best.to), 200);
   }
-  return detail::around(points, vector3<double>(middle + unit * best.from),
-                        vector3<double>(middle + unit * best.to));
+  return detail::around(points, vector3<double>(centre + unit * best.from),
+                        vector3<double>(centre + unit * best.to));
 }
 
 } // namespace duet

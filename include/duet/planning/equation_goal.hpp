@@ -39,11 +39,11 @@ struct equation_goal {
       const vector3<S> at(t[0] + twist[0], t[1] + twist[1], t[2] + twist[2]);
       return equations(pose(exp(half) * r, at));
     };
-    const auto found = jacobian(moved, vector6<double>(vector6<double>::Zero()));
+    const auto linearised = jacobian(moved, vector6<double>(vector6<double>::Zero()));
     twist_constraint result;
-    result.matrix = found.jacobian;
+    result.matrix = linearised.jacobian;
     for (int i = 0; i < 6; ++i) {
-      result.lower[i] = result.upper[i] = -found.value[i];
+      result.lower[i] = result.upper[i] = -linearised.value[i];
     }
     return result;
   }

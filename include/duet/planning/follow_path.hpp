@@ -29,7 +29,7 @@
 
 namespace duet {
 
-/// Function of a parameter that is to return poses.
+/// Function of a parameter that returns poses.
 template <class P>
 concept PosePath = std::invocable<const P&, double>;
 
@@ -42,10 +42,10 @@ inline void require_options(const plan_options& o) {
   require_positive("plan", "largest_step", o.largest_step);
   require_positive("plan", "smallest_step", o.smallest_step);
   require_positive("plan", "self_motion_step", o.self_motion_step);
-  require_option("plan", "centring", o.centring, o.centring >= 0, "a number from 0 up");
+  require_option("plan", "centring", o.centring, o.centring >= 0, "a non-negative number");
   require_option("plan", "search_step", o.search_step,
                  o.search_step == 0 || (o.search_step >= 1e-6 && o.search_step <= 1),
-                 "0 or from 1e-6 to 1");
+                 "0 or a number from 1e-6 to 1");
 }
 
 /// Plan along a path whose poses have been validated; the start alone if its end is certainly out
@@ -63,51 +63,54 @@ template <class C, class Start, class Objective, class Scene>
   const std::conditional_t<std::same_as<Scene, scene>, chain_with_obstacles<C>, chain_model<C>>
       model(chain, around);
   const vector theta = model.joints(start);
-  const tip_path places = [&](double u) { return model.place(target(u)); };
-  const auto gap =
-      model.unscaled_error(pose_error_between(model.at(theta).tip, places(stops.front())));
-  require(options.tolerance.ratio(gap) <= 1, "duet: follow_path: the path begins ", gap.translation,
-          " units of length and ", gap.rotation, " rad away from the tip at the start");
+  const tip_path scaled_path = [&](double u) { return model.scaled_pose(target(u)); };
+  const auto start_error =
+      model.unscaled_error(pose_error_between(model.at(theta).tip, scaled_path(stops.front())));
+  require(options.tolerance.ratio(start_error) <= 1, "duet: follow_path: the path begins ",
+          start_error.translation, " units of length and ", start_error.rotation,
+          " rad away from the tip at the start");
   model.require_clearance(theta, options.tolerance.translation);
   if (const auto joints = to_chain_joints(chain, scaled_joints<room>(start, chain.size()));
       is_nan_at(objective, joints)) {
     fail_not_a_number("duet: follow_path: the objective is nan at the start,", joints);
   }
-  std::function<vector(const vector&)> slope;
+  std::function<vector(const vector&)> objective_gradient;
   if constexpr (!std::same_as<Objective, no_objective>) {
-    slope = [&](const vector& x) {
+    objective_gradient = [&](const vector& x) {
       const auto joints = to_chain_joints(chain, model.unscaled_joints(x));
       // Gradient with respect to coordinates in the planner's units.
-      return model.unscaled_joints(scaled_joints<room>(slope_of(objective, joints), chain.size()));
+      return model.unscaled_joints(
+          scaled_joints<room>(gradient_of(objective, joints), chain.size()));
     };
   }
   const bool is_out_of_reach =
       may_be_out_of_reach &&
-      model.reach.is_beyond(places(stops.back()), model.tolerance(options.tolerance));
-  path_planner<room> follower(model, places, std::move(stops), options, slope);
-  const auto route = is_out_of_reach ? follower.stay(theta) : follower.plan(theta);
+      model.reach.is_beyond(scaled_path(stops.back()), model.tolerance(options.tolerance));
+  path_planner<room> planner(model, scaled_path, std::move(stops), options, objective_gradient);
+  const auto joint_path = is_out_of_reach ? planner.stay(theta) : planner.plan(theta);
   motion_plan<C::joints> plan;
-  for (const auto& w : route.waypoints) {
+  for (const auto& w : joint_path.waypoints) {
     const vector joints = plan.joints.empty() ? scaled_joints<room>(start, chain.size())
-                                              : model.given_joints_within_limits(w.state.theta);
+                                              : model.unscaled_joints_within_limits(w.state.theta);
     add_waypoint(plan, chain, to_chain_joints(chain, joints), model.unscaled_pose(w.state.tip), w.u,
-                 model.unscaled_error(w.left));
+                 model.unscaled_error(w.residual));
     plan.smallest_clearance =
         std::min(plan.smallest_clearance, model.length * model.clearance(w.state.theta));
   }
-  // The steps have recorded where it is smallest, except for units: at one end of a step.
+  // The steps recorded, in the planner's units, where the singular value is smallest: at one end of
+  // a step.
   const auto most_singular = std::min_element(
-      route.waypoints.begin(), route.waypoints.end(), [](const auto& a, const auto& b) {
+      joint_path.waypoints.begin(), joint_path.waypoints.end(), [](const auto& a, const auto& b) {
         return a.smallest_singular_value < b.smallest_singular_value;
       });
-  for (auto w = most_singular - (most_singular != route.waypoints.begin()); w <= most_singular;
+  for (auto w = most_singular - (most_singular != joint_path.waypoints.begin()); w <= most_singular;
        ++w) {
     plan.smallest_singular_value =
         std::min(plan.smallest_singular_value,
-                 smallest_singular_value_of(model.given_jacobian(w->state.jacobian)));
+                 smallest_singular_value_of(model.unscaled_jacobian(w->state.jacobian)));
   }
-  plan.iterations = follower.iterations();
-  plan.reason = is_out_of_reach ? stop_reason::out_of_reach : follower.reason(route);
+  plan.iterations = planner.iterations();
+  plan.reason = is_out_of_reach ? stop_reason::out_of_reach : planner.reason(joint_path);
   return plan;
 }
 
@@ -139,17 +142,17 @@ template <PosePath Path>
 ///
 /// Waypoints are within `tolerance` of the path, the straight joint paths between them within about
 /// `deviation`, each in length and angle, at the same parameter. Each waypoint is met by Newton's
-/// method on the exact twist 2 log(A_target A*), with steps of least norm that keep the limits and
+/// method on the exact twist 2 log(A_target A*), with least-norm steps that respect the limits and
 /// are damped (damped least squares) if the smallest singular value is small. The null space of the
 /// Jacobian serves joint-limit avoidance and lowers the objective. If the joints get stuck and the
 /// arm is redundant, configurations that a self-motion can reach are searched, too.
 ///
 /// \param path         poses as a function of a parameter, which increases from `first` to `last`
 /// \param objective    null-space (secondary) objective: a function of θ, generic over scalars,
-/// which the joints lower where that leaves the tip in place; or an object with a member
+/// which is minimised in the null space, with the tip on the path; or an object with a member
 /// `gradient(theta)` too
 /// \param around       `scene`: bodies of the chain keep its margin from obstacles, at waypoints to
-/// `tolerance`, half way between them to `deviation`
+/// `tolerance`, halfway between them to `deviation`
 /// \return the plan, its `tau` the parameter; unless `reason` is `reached`, the part up to there
 /// \throws invalid_input for a start outside the limits or of another size, a path that does not
 /// begin at the tip or whose parameter does not increase, values that are not poses, options out of
@@ -166,7 +169,8 @@ follow_path(const C& chain, const Start& start, const Path& path, double first, 
                 "from_eigen(...) of an Eigen::Isometry3d");
   detail::require_start(chain, start);
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
-                  "duet: follow_path: the path's parameter goes from ", first, " to ", last);
+                  "duet: follow_path: the parameter of the path goes from ", first, " to ", last,
+                  " (expected an increasing, finite interval)");
   return detail::follow(chain, start, detail::checked(path), {first, last}, options, objective,
                         around);
 }

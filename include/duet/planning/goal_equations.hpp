@@ -18,7 +18,7 @@ template <int Room>
 struct goal_equations {
   chain_state<Room> at;
   small_twist e;
-  pose_error left;
+  pose_error residual;
   std::array<bool, 6> is_free{}; ///< true for each of the six rows without an equation
 };
 
@@ -26,7 +26,7 @@ struct goal_equations {
 template <int Room>
 void set_equations(goal_equations<Room>& x, const tip_pose& goal) {
   x.e = error_twist(x.at.tip, goal);
-  x.left = {length_of(goal.translation - x.at.tip.translation), deviation_of(x.e).rotation};
+  x.residual = {length_of(goal.translation - x.at.tip.translation), deviation_of(x.e).rotation};
 }
 /// True if a pose is certainly out of reach.
 [[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_pose& goal,

@@ -55,14 +55,14 @@ public:
     if constexpr (std::same_as<Objective, no_objective>) {
       return 0;
     } else {
-      return objective_(given(theta));
+      return objective_(chain_joints(theta));
     }
   }
-  [[nodiscard]] vector slope(const small_vector<room>& theta) const override {
+  [[nodiscard]] vector gradient(const small_vector<room>& theta) const override {
     if constexpr (std::same_as<Objective, no_objective>) {
       return vector::Zero(model_.size);
     } else {
-      vector result = slope_of(objective_, given(theta));
+      vector result = gradient_of(objective_, chain_joints(theta));
       for (int i = 0; i < model_.size; ++i) {
         result[i] *= model_.unit[i];
       }
@@ -81,7 +81,7 @@ public:
   }
 
 private:
-  [[nodiscard]] auto given(const small_vector<room>& theta) const {
+  [[nodiscard]] auto chain_joints(const small_vector<room>& theta) const {
     return to_chain_joints(model_.chain(), model_.unscaled_joints(theta));
   }
 
@@ -91,7 +91,7 @@ private:
 
 /// Search for the preferred solutions of one goal after the other.
 template <class C, class Start, class Objective, class Scene>
-class wanted_solutions {
+class preferred_solutions {
   static_assert(planning_types<Objective, Scene>::are_good);
   static constexpr int room = joint_room(C::joints);
   static constexpr bool is_among_obstacles = std::same_as<Scene, scene>;
@@ -102,13 +102,13 @@ class wanted_solutions {
 
 public:
   /// \throws invalid_input for a start or a preferred posture of another size, and an invalid scene
-  wanted_solutions(const C& chain, const Start& start, const inverse_kinematics_options& options,
-                   const Objective& objective, const Scene& around)
+  preferred_solutions(const C& chain, const Start& start, const inverse_kinematics_options& options,
+                      const Objective& objective, const Scene& around)
       : start_(start), options_(options), model_((require_size(chain, start), chain), around),
         preferences_(model_, objective), search_(model_, model_.joints(start), options) {
     require_objective(objective, chain.size());
   }
-  wanted_solutions(const wanted_solutions&) = delete;
+  preferred_solutions(const preferred_solutions&) = delete;
 
   /// \param name  callable that returns the name of the goal for messages
   /// \throws invalid_input if the goal or the objective is nan at every configuration evaluated
@@ -119,12 +119,12 @@ public:
     const auto x = search_(tip_goal_of<G>(goal, model_.length),
                            has_preferences ? &preferences_ : nullptr, known);
     require_numbers(x, name);
-    return {to_chain_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
-            model_.unscaled_error(x.left), x.iterations, x.restarts, x.reason};
+    return {to_chain_joints(model_.chain(), model_.unscaled_joints_within_limits(x.joints)),
+            model_.unscaled_error(x.residual), x.iterations, x.restarts, x.reason};
   }
   template <class Name>
   [[nodiscard]] result operator()(const dual_quaternion<double>& goal, const Name& name) const {
-    if (model_.reach.is_beyond(model_.place(goal), model_.tolerance(options_.tolerance))) {
+    if (model_.reach.is_beyond(model_.scaled_pose(goal), model_.tolerance(options_.tolerance))) {
       return inverse_kinematics(model_.chain(), goal, start_, options_);
     }
     return (*this)(full_pose_goal{to_tip_pose(normalized(goal))}, name, all_solutions(goal));
@@ -153,12 +153,12 @@ private:
       fail_not_a_number("duet: inverse_kinematics: " + what,
                         to_chain_joints(model_.chain(), model_.unscaled_joints(x.joints)));
     };
-    if ((std::isnan(x.left.translation) || std::isnan(x.left.rotation)) &&
+    if ((std::isnan(x.residual.translation) || std::isnan(x.residual.rotation)) &&
         std::isfinite(length_of(model_.at(x.joints).tip.translation))) { // not by overflow
-      fail(name() + " is nan wherever it was looked at, as at the");
+      fail(name() + " is nan at every configuration evaluated, for example at the");
     }
     if (x.reason == stop_reason::reached && std::isnan(preferences_.objective(x.joints))) {
-      fail("the objective is nan at all solutions that were found, as at the");
+      fail("the objective is nan at all solutions found, for example at the");
     }
   }
 
@@ -181,14 +181,14 @@ void check_goal(const G& goal, const std::string& name) {
 
 /// Preferred solutions of many goals: out[i] for goals[i].
 template <class G, class C, class Start, class Objective, class Scene>
-void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start& start,
-                           std::span<inverse_kinematics_result<C::joints>> out,
-                           const inverse_kinematics_options& options, const execution& how,
-                           const Objective& objective, const Scene& around) {
+void find_preferred_solutions(const C& chain, std::span<const G> goals, const Start& start,
+                              std::span<inverse_kinematics_result<C::joints>> out,
+                              const inverse_kinematics_options& options, const execution& how,
+                              const Objective& objective, const Scene& around) {
   require(goals.size() == out.size(), "duet: inverse_kinematics: ", goals.size(),
           " goals, but room for ", out.size(), " results");
-  const wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
-                                                           around);
+  const preferred_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
+                                                              around);
   for (std::size_t i = 0; i < goals.size(); ++i) {
     check_goal(goals[i], "goal " + std::to_string(i));
   }
@@ -206,8 +206,8 @@ void find_wanted_solutions(const C& chain, std::span<const G> goals, const Start
 ///
 /// Damped least squares (Levenberg–Marquardt) as for poses, with the rows M of the constraint:
 /// M J Δ = e. An objective (null-space or secondary objective) is minimised within all solutions
-/// near each of the first `options.candidates` solutions found, and the joints with the least value
-/// are returned: it acts on the freedom of a redundant arm or a partial goal. With a `scene`,
+/// near each of the first `options.candidates` solutions found, and the joints with the smallest
+/// value are returned: it acts on the freedom of a redundant arm or a partial goal. With a `scene`,
 /// solutions nearby are sought that keep its margin, to `options.tolerance.translation`.
 ///
 /// \param objective  function of θ, generic over scalars, or an object with a member
@@ -225,8 +225,8 @@ template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objec
 inverse_kinematics(const C& chain, const G& goal, const Start& start,
                    const inverse_kinematics_options& options = {}, const Objective& objective = {},
                    const Scene& around = {}) {
-  const detail::wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
-                                                                   around);
+  const detail::preferred_solutions<C, Start, Objective, Scene> solve(chain, start, options,
+                                                                      objective, around);
   detail::check_goal(goal, "the region");
   return solve(goal, [] { return std::string("the goal"); });
 }
@@ -243,8 +243,8 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options, const Objective& objective,
                    const Scene& around = {}) {
-  const detail::wanted_solutions<C, Start, Objective, Scene> solve(chain, start, options, objective,
-                                                                   around);
+  const detail::preferred_solutions<C, Start, Objective, Scene> solve(chain, start, options,
+                                                                      objective, around);
   detail::check_goal(goal, "the goal");
   return solve(goal, [] { return std::string("the goal"); });
 }
@@ -253,8 +253,8 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
 /// options, objective, around), with identical results for any number of threads.
 ///
 /// \param goals      all of one type, in a vector, an array or a span
-/// \param objective  as for one goal; with several threads it, and `wanted` of a user-defined goal,
-/// is called concurrently
+/// \param objective  as for one goal; with several threads it, and `constraint` of a user-defined
+/// goal, is called concurrently
 /// \throws invalid_input if the sizes differ, for the first goal that contains no pose, and as
 /// above
 /// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
@@ -266,7 +266,7 @@ void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
                         const inverse_kinematics_options& options = {}, execution how = one_core,
                         const Objective& objective = {}, const Scene& around = {}) {
   using goal = std::ranges::range_value_t<Goals>;
-  detail::find_wanted_solutions<goal>(chain, goals, start, out, options, how, objective, around);
+  detail::find_preferred_solutions<goal>(chain, goals, start, out, options, how, objective, around);
 }
 
 /// Inverse kinematics of many poses: out[i] = inverse_kinematics(chain, goals[i], start, options,
@@ -278,11 +278,11 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
                         const Start& start, std::span<inverse_kinematics_result<C::joints>> out,
                         const inverse_kinematics_options& options, execution how,
                         const Objective& objective, const Scene& around = {}) {
-  detail::find_wanted_solutions(chain, goals, start, out, options, how, objective, around);
+  detail::find_preferred_solutions(chain, goals, start, out, options, how, objective, around);
 }
 
 template <SerialChain C, TipGoal G>
-DUET_REFUSED("from which joints on? inverse_kinematics(chain, goal, start)")
+DUET_REFUSED("the start is missing: inverse_kinematics(chain, goal, start)")
 inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const G&);
 
 } // namespace duet

@@ -38,9 +38,9 @@ public:
   /// \param goal  a pose
   [[nodiscard]] inverse_kinematics_result<C::joints>
   operator()(const dual_quaternion<double>& goal) const {
-    const auto x = search_(model_.place(normalized(goal)));
-    return {to_chain_joints(model_.chain(), model_.given_joints_within_limits(x.joints)),
-            model_.unscaled_error(x.left), x.iterations, x.restarts, x.reason};
+    const auto x = search_(model_.scaled_pose(normalized(goal)));
+    return {to_chain_joints(model_.chain(), model_.unscaled_joints_within_limits(x.joints)),
+            model_.unscaled_error(x.residual), x.iterations, x.restarts, x.reason};
   }
 
 private:
@@ -55,7 +55,7 @@ private:
 ///
 /// Damped least squares (Levenberg–Marquardt) on the exact twist e = 2 log(A_goal A*) in
 /// `frame::hybrid`: Δ = Jᵀ(J Jᵀ + λ)⁻¹ e, with λ growing with |e|² after Sugihara. Joints that
-/// would leave their limits are held there. The search starts from the initial guess `start` and,
+/// would leave their limits are fixed there. The search starts from the initial guess `start` and,
 /// once the error stops falling, from random configurations, which are identical in every call with
 /// the same seed.
 ///
@@ -100,19 +100,19 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
 DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result<C::joints>)
 
 template <SerialChain C>
-DUET_REFUSED("from which joints on? inverse_kinematics(chain, goal, start)")
+DUET_REFUSED("the start is missing: inverse_kinematics(chain, goal, start)")
 inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const dual_quaternion<double>&);
 template <SerialChain C, VectorLike Start, class... More>
-DUET_REFUSED("first the goal: inverse_kinematics(chain, goal, start)")
+DUET_REFUSED("the goal precedes the start: inverse_kinematics(chain, goal, start)")
 inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const Start&,
                                                         const dual_quaternion<double>&,
                                                         const More&...);
 template <SerialChain C, VectorLike Position, VectorLike Start, class... More>
-DUET_REFUSED("a position as a goal is position_goal(p), in duet/planning/goals.hpp")
+DUET_REFUSED("for a position as the goal, pass position_goal(p) of duet/planning/goals.hpp")
 inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const Position&, const Start&,
                                                         const More&...);
 template <SerialChain C, Real T, VectorLike Start, class... More>
-DUET_REFUSED("the goal is a rotation, which says nothing of where: pose(q, t)")
+DUET_REFUSED("the goal is a rotation without a position: pass pose(q, t)")
 inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const quaternion<T>&,
                                                         const Start&, const More&...);
 

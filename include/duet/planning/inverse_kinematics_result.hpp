@@ -59,7 +59,7 @@ inline void require_options(const inverse_kinematics_options& options) {
   require_positive(caller, "tolerance", options.tolerance);
   require_positive(caller, "max_iterations", options.max_iterations);
   require_option(caller, "max_restarts", options.max_restarts, options.max_restarts >= 0,
-                 "a number from 0 up");
+                 "a non-negative number");
   require_positive(caller, "candidates", options.candidates);
 }
 

@@ -44,7 +44,7 @@ class inverse_kinematics_search {
 public:
   struct attempt {
     vector joints;
-    pose_error left;
+    pose_error residual;
     double error; ///< |e|²
     int iterations = 0;
     int restarts = 0;
@@ -57,15 +57,15 @@ public:
         start_(start) {
     require_options(options);
     for (int i = 0; i < model.size; ++i) {
-      require(start[i] - start[i] == 0, "duet: inverse_kinematics: the start has ",
-              model.unit[i] * start[i], " for joint ", i);
-      const bool turns = model.turns[std::size_t(i)];
-      constexpr double turn = 2 * std::numbers::pi;
-      const bool has_turn =
-          turns && !model.slides[std::size_t(i)] && model.upper[i] - model.lower[i] >= turn;
-      turn_[i] = has_turn ? turn : 0;
-      beyond_[i] = has_turn ? std::numeric_limits<double>::infinity() : 0;
-      spread_[i] = turns ? std::numbers::pi : 1;
+      require(start[i] - start[i] == 0, "duet: inverse_kinematics: joint ", i, " of the start is ",
+              model.unit[i] * start[i], " (expected a finite number)");
+      const bool is_rotational = model.is_rotational[std::size_t(i)];
+      constexpr double full_turn = 2 * std::numbers::pi;
+      const bool has_full_turn = is_rotational && !model.is_translational[std::size_t(i)] &&
+                                 model.upper[i] - model.lower[i] >= full_turn;
+      period_[i] = has_full_turn ? full_turn : 0;
+      beyond_[i] = has_full_turn ? std::numeric_limits<double>::infinity() : 0;
+      spread_[i] = is_rotational ? std::numbers::pi : 1;
     }
     start_ = within_limits(start_);
   }
@@ -78,11 +78,11 @@ public:
     double before = best.error;
     int since = 0; // iterations since the error last fell by a tenth
     for (int iteration = 0;; ++iteration) {
-      const equations now = equations_at(theta, goal);
-      const double error = dot(now.e, now.e);
-      const bool is_reached = tolerance_.ratio(now.left) <= 1;
+      const equations current = equations_at(theta, goal);
+      const double error = dot(current.e, current.e);
+      const bool is_reached = tolerance_.ratio(current.residual) <= 1;
       if (iteration == 0 || error < best.error || is_reached) {
-        best = {theta, now.left, error};
+        best = {theta, current.residual, error};
       }
       if (error < .9 * before) {
         before = error;
@@ -96,20 +96,20 @@ public:
         return best;
       }
       ++since;
-      theta = within_limits(theta + step(now, damping(now)).step);
+      theta = within_limits(theta + step(current, damping(current)).step);
     }
   }
 
   /// Reason why the search cannot continue from a configuration.
   [[nodiscard]] stop_reason obstacle(const vector& theta, const Goal& goal) const {
-    const equations here = equations_at(theta, goal);
-    if (step(here, damping(here)).is_bounded) {
+    const equations current = equations_at(theta, goal);
+    if (step(current, damping(current)).is_bounded) {
       return stop_reason::joint_limit;
     }
-    gram_matrix gram = gram_of(here.at.jacobian);
+    gram_matrix gram = gram_of(current.at.jacobian);
     int count = 6;
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      if (here.is_free[std::size_t(i)]) {
+      if (current.is_free[std::size_t(i)]) {
         gram(i, i) = 1;
         --count;
       }
@@ -135,7 +135,7 @@ public:
 
   [[nodiscard]] const vector& start() const { return start_; }
   /// Changes of the coordinates that leave the pose unchanged: 0 or a full turn.
-  [[nodiscard]] const vector& turn() const { return turn_; }
+  [[nodiscard]] const vector& period() const { return period_; }
 
 private:
   using equations = goal_equations<Room>;
@@ -155,62 +155,63 @@ private:
     return std::min(.02 * dot(x.e, x.e), .08) + 1e-9;
   }
 
-  /// Nearest pose from a start on, by the least squared distance of the origins plus |ω|²: Newton's
-  /// method with a damping that lets no step increase it. Joints at limits that block them are held
-  /// there.
+  /// Nearest pose from a start on: minimum of the squared distance of the origins plus |ω|², by
+  /// Newton's method with a damping that lets no step increase it. Joints at limits that block them
+  /// are fixed there.
   template <std::same_as<tip_pose> Pose>
   [[nodiscard]] attempt nearest(const vector& start, const Pose& goal) const {
-    point here = point_at(start, goal);
+    point current = point_at(start, goal);
     double lambda = 0;
     int iterations = 0;
     for (bool is_lower = true; is_lower && iterations < options_.max_iterations &&
-                               here.steepest > 1e-12 * (1 + here.error);
+                               current.max_gradient > 1e-12 * (1 + current.error);
          ++iterations) {
       is_lower = false;
-      for (; !is_lower && lambda < 1e6 * (1 + here.error); lambda = std::max(4 * lambda, 1e-3)) {
-        const auto step = newton_step(here.to_second_order, here.is_held, lambda);
+      for (; !is_lower && lambda < 1e6 * (1 + current.error); lambda = std::max(4 * lambda, 1e-3)) {
+        const auto step = newton_step(current.to_second_order, current.is_fixed, lambda);
         if (!step) {
           continue;
         }
-        vector theta = here.theta;
+        vector theta = current.theta;
         for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
           theta[i] += (*step)[i];
         }
-        const point there = point_at(within_limits(theta), goal);
-        // Near the end round-off hides what is lower in the error, but not in its gradient.
-        const bool is_even = there.error <= here.error * (1 + 1e-14);
-        is_lower =
-            there.error < here.error * (1 - 1e-14) || (is_even && there.steepest < here.steepest);
+        const point next = point_at(within_limits(theta), goal);
+        // Near the minimum round-off hides a decrease of the error, but not of its gradient.
+        const bool is_even = next.error <= current.error * (1 + 1e-14);
+        is_lower = next.error < current.error * (1 - 1e-14) ||
+                   (is_even && next.max_gradient < current.max_gradient);
         if (is_lower) {
-          here = there;
+          current = next;
         }
       }
       lambda = lambda < 1e-2 ? 0 : lambda / 16;
     }
-    return {here.theta, here.left, here.error, iterations, 0, stop_reason::out_of_reach};
+    return {
+        current.theta, current.residual, current.error, iterations, 0, stop_reason::out_of_reach};
   }
 
   struct point {
     vector theta;
-    pose_error left;
+    pose_error residual;
     double error; ///< squared distance of the origins plus |ω|²
     squared_error<Room> to_second_order;
-    std::array<bool, std::size_t(Room)> is_held{}; ///< true if held by a limit that blocks it
-    double steepest = 0; ///< largest entry of the gradient of joints that are not held
+    std::array<bool, std::size_t(Room)> is_fixed{}; ///< true if fixed at a limit that blocks it
+    double max_gradient = 0; ///< largest entry of the gradient of joints that are not fixed
   };
   template <std::same_as<tip_pose> Pose>
   [[nodiscard]] point point_at(const vector& theta, const Pose& goal) const {
     const equations x = equations_at(theta, goal);
-    const three_vector<double> way = goal.translation - x.at.tip.translation;
-    const small_twist e{{way.x, way.y, way.z, x.e[3], x.e[4], x.e[5]}};
-    point result{theta, x.left, dot(e, e), squared_error_of(x.at.jacobian, e)};
+    const three_vector<double> displacement = goal.translation - x.at.tip.translation;
+    const small_twist e{{displacement.x, displacement.y, displacement.z, x.e[3], x.e[4], x.e[5]}};
+    point result{theta, x.residual, dot(e, e), squared_error_of(x.at.jacobian, e)};
     for (std::ptrdiff_t i = 0; i < Room; ++i) {
-      const double slope = result.to_second_order.slope[i];
-      const bool is_at_limit =
-          turn_[i] == 0 && (slope > 0 ? theta[i] <= model_.lower[i] : theta[i] >= model_.upper[i]);
-      bool& is_held = result.is_held[std::size_t(i)];
-      is_held = i >= model_.size || is_at_limit;
-      result.steepest = std::max(result.steepest, is_held ? 0 : std::abs(slope));
+      const double gradient = result.to_second_order.gradient[i];
+      const bool is_at_limit = period_[i] == 0 && (gradient > 0 ? theta[i] <= model_.lower[i]
+                                                                : theta[i] >= model_.upper[i]);
+      bool& is_fixed = result.is_fixed[std::size_t(i)];
+      is_fixed = i >= model_.size || is_at_limit;
+      result.max_gradient = std::max(result.max_gradient, is_fixed ? 0 : std::abs(gradient));
     }
     return result;
   }
@@ -219,10 +220,10 @@ private:
   [[nodiscard]] vector within_limits(vector theta) const {
     for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
       const double lower = model_.lower[i], upper = model_.upper[i];
-      if (turn_[i] > 0 && theta[i] > upper) {
-        theta[i] -= turn_[i] * std::ceil((theta[i] - upper) / turn_[i]);
-      } else if (turn_[i] > 0 && theta[i] < lower) {
-        theta[i] += turn_[i] * std::ceil((lower - theta[i]) / turn_[i]);
+      if (period_[i] > 0 && theta[i] > upper) {
+        theta[i] -= period_[i] * std::ceil((theta[i] - upper) / period_[i]);
+      } else if (period_[i] > 0 && theta[i] < lower) {
+        theta[i] += period_[i] * std::ceil((lower - theta[i]) / period_[i]);
       }
       theta[i] = std::clamp(theta[i], lower, upper);
     }
@@ -232,7 +233,7 @@ private:
   const planning_model<Room>& model_;
   inverse_kinematics_options options_;
   pose_tolerance tolerance_;
-  vector turn_;
+  vector period_;
   vector beyond_; ///< admissible excess of steps beyond limits: infinite if joints are wrapped
   vector spread_; ///< distance from the start of random coordinates that have no limits
   vector start_;

@@ -175,8 +175,9 @@ void require_start(const C& chain, const Start& start) {
   for (int i = 0; i < chain.size(); ++i) {
     const double x = vector_argument<Start>::get(start, i);
     const auto& limits = chain.limits(i);
-    require(x >= limits.lower && x <= limits.upper && x - x == 0, "duet: plan: the start has ", x,
-            " for joint ", i, ", whose limits are ", limits.lower, " and ", limits.upper);
+    require(x >= limits.lower && x <= limits.upper && x - x == 0, "duet: plan: joint ", i,
+            " of the start is ", x, " (expected a finite number from ", limits.lower, " to ",
+            limits.upper, ")");
   }
 }
 
@@ -186,29 +187,31 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
   if (is_unit(a, 1e-6)) {
     return;
   }
-  // If one entry of a translation is not finite, none is: all are in every entry of p + εq.
-  const auto turn = rotation(a);
-  const auto move = translation(a);
-  const auto entry = [](double x) { return x == x ? to_text(x) : "nan"; }; // whatever its sign
-  require(is_all_finite(turn), "duet: ", caller, ": ", name, ": its rotation is not finite: (",
-          entry(turn.w()), ", ", entry(turn.x()), ", ", entry(turn.y()), ", ", entry(turn.z()),
-          ")");
-  require(is_all_finite(dual_part(a)), "duet: ", caller, ": ", name,
-          ": its translation is not finite: (", entry(move[0]), ", ", entry(move[1]), ", ",
-          entry(move[2]), ")");
+  // If one entry of a translation is not finite, no entry of q is: each depends on all of them.
+  const auto rotation_part = rotation(a);
+  const auto translation_part = translation(a);
+  const auto entry = [](double x) { return x == x ? to_text(x) : "nan"; }; // nan without a sign
+  require(is_all_finite(rotation_part), "duet: ", caller, ": the rotation of ", name,
+          " is not finite: (", entry(rotation_part.w()), ", ", entry(rotation_part.x()), ", ",
+          entry(rotation_part.y()), ", ", entry(rotation_part.z()), ")");
+  require(is_all_finite(dual_part(a)), "duet: ", caller, ": the translation of ", name,
+          " is not finite: (", entry(translation_part[0]), ", ", entry(translation_part[1]), ", ",
+          entry(translation_part[2]), ")");
   const auto square = squared_norm(a);
-  raise(invalid_input(message("duet: ", caller, ": ", name, " is no unit dual quaternion: |p|^2 = ",
-                              square.value(), ", p.q = ", square.epsilon() / 2)));
+  raise(invalid_input(message("duet: ", caller, ": ", name,
+                              " is not a unit dual quaternion: |p|^2 = ", square.value(),
+                              ", p.q = ", square.epsilon() / 2, " (expected 1 and 0)")));
 }
 
-/// \throws invalid_input unless the value is finite and `is_good`, that is, in the `range` named
+/// \throws invalid_input unless the value is finite and `is_good`: within the `range` of the
+/// message
 inline void require_option(const char* caller, const char* name, double value, bool is_good,
                            const char* range) {
-  require(is_good && value - value == 0, "duet: ", caller, ": ", name, " is ", value, ", not ",
-          range);
+  require(is_good && value - value == 0, "duet: ", caller, ": ", name, " is ", value, " (expected ",
+          range, ")");
 }
 inline void require_positive(const char* caller, const char* name, double value) {
-  require_option(caller, name, value, value > 0, "a number above 0");
+  require_option(caller, name, value, value > 0, "a positive number");
 }
 inline void require_positive(const char* caller, const char* name, const pose_tolerance& value) {
   const bool is_length = !(value.translation > 0);

@@ -21,7 +21,7 @@ namespace duet::detail {
 /// Squared error ½|e|², e = [displacement of the origin; 2 log r] from the tip to a goal.
 template <int Room>
 struct squared_error {
-  small_vector<Room> slope;           ///< gradient
+  small_vector<Room> gradient;        ///< gradient
   small_matrix<Room, Room> curvature; ///< second derivatives (Hessian), the lower half
 };
 
@@ -44,7 +44,7 @@ template <int Room>
     const auto& column = jacobian.columns[std::size_t(k)];
     const three_vector<double> v_k{column[0], column[1], column[2]};
     const three_vector<double> omega_k{column[3], column[4], column[5]};
-    result.slope[k] = -(dot(w, v_k) + dot(phi, omega_k));
+    result.gradient[k] = -(dot(w, v_k) + dot(phi, omega_k));
     for (std::ptrdiff_t j = 0; j <= k; ++j) {
       const auto& before = jacobian.columns[std::size_t(j)];
       const three_vector<double> v_j{before[0], before[1], before[2]};
@@ -57,23 +57,23 @@ template <int Room>
   return result;
 }
 
-/// Newton step to the minimum of ½|e|² in the coordinates that are not `held`; nothing if the
+/// Newton step to the minimum of ½|e|² in the coordinates that are not fixed; nothing if the
 /// curvature and λ together are not positive definite.
 template <int Room>
 [[nodiscard]] std::optional<small_vector<Room>>
-newton_step(const squared_error<Room>& error, const std::array<bool, std::size_t(Room)>& is_held,
+newton_step(const squared_error<Room>& error, const std::array<bool, std::size_t(Room)>& is_fixed,
             double lambda) {
   small_matrix<Room, Room> matrix;
   small_vector<Room> right;
   for (std::ptrdiff_t j = 0; j < Room; ++j) {
     matrix(j, j) = 1;
-    if (is_held[std::size_t(j)]) {
+    if (is_fixed[std::size_t(j)]) {
       continue;
     }
-    right[j] = -error.slope[j];
+    right[j] = -error.gradient[j];
     matrix(j, j) = error.curvature(j, j) + lambda;
     for (std::ptrdiff_t k = j + 1; k < Room; ++k) {
-      matrix(k, j) = is_held[std::size_t(k)] ? 0 : error.curvature(k, j);
+      matrix(k, j) = is_fixed[std::size_t(k)] ? 0 : error.curvature(k, j);
     }
   }
   const cholesky factors(matrix);

@@ -14,8 +14,8 @@
 #include <string>
 
 /// \file
-/// Null-space (secondary) objectives: functions of the joints that are minimised where the tip
-/// leaves the joints free.
+/// Null-space (secondary) objectives: functions of the joint coordinates that are minimised in the
+/// null space of the Jacobian.
 
 namespace duet {
 
@@ -56,10 +56,9 @@ namespace detail {
 template <class Objective, class Scene>
 struct planning_types {
   static_assert(!std::same_as<Objective, scene>,
-                "duet: a scene stands where the objective belongs: no_objective{} comes before it");
-  static_assert(
-      std::same_as<Scene, scene> || std::same_as<Scene, no_scene>,
-      "duet: what stands where the scene belongs is none: obstacles are given as a scene");
+                "duet: a scene is passed as the objective; pass no_objective{} before the scene");
+  static_assert(std::same_as<Scene, scene> || std::same_as<Scene, no_scene>,
+                "duet: the argument after the objective is not a scene; pass obstacles as a scene");
   static constexpr bool are_good = true;
 };
 
@@ -67,17 +66,18 @@ struct planning_types {
 template <class Objective>
 void require_objective(const Objective&, int) {}
 template <class V>
-void require_objective(const preferred_posture<V>& wish, int joints) {
-  require(wish.posture.size() == joints, "duet: preferred_posture: ", wish.posture.size(),
-          " coordinates for ", joints, " joints");
+void require_objective(const preferred_posture<V>& preferred, int joints) {
+  require(preferred.posture.size() == joints, "duet: preferred_posture: ", preferred.posture.size(),
+          " coordinates (expected ", joints, ", one per joint)");
   for (int i = 0; i < joints; ++i) {
-    require(std::isfinite(double(wish.posture[i])), "duet: preferred_posture: joint ", i, " is ",
-            wish.posture[i]);
+    require(std::isfinite(double(preferred.posture[i])), "duet: preferred_posture: joint ", i,
+            " is ", preferred.posture[i], " (expected a finite number)");
   }
-  require(std::isfinite(wish.weight), "duet: preferred_posture: its weight is ", wish.weight);
+  require(std::isfinite(preferred.weight), "duet: preferred_posture: weight is ", preferred.weight,
+          " (expected a finite number)");
 }
 
-/// Throws the error that an input is nan, with the joint coordinates at which it is.
+/// Throws an error for an input that is nan, with the joint coordinates at which it is.
 ///
 /// \param what  beginning of the message, as "duet: follow_path: the objective is nan at the
 /// start,"
@@ -103,7 +103,7 @@ template <class Objective, class X>
 
 /// Gradient of an objective: its own member, or automatic differentiation by dual numbers.
 template <class Objective, class X>
-[[nodiscard]] auto slope_of(const Objective& objective, const X& joints) {
+[[nodiscard]] auto gradient_of(const Objective& objective, const X& joints) {
   if constexpr (requires { objective.gradient(joints); }) {
     return result_of_call(objective.gradient(joints));
   } else {

@@ -24,8 +24,8 @@ namespace duet::detail {
 
 /// Constraints that keep a step from θ at the margin of a scene: ∇d·Δ ≥ margin − d for each
 /// distance d within the influence distance, with ∇d = Jᵀ [n; p × n] of the closest point p and the
-/// normal n there. Joints below both of two bodies move neither relative to the other, those
-/// between them one alone.
+/// normal n there. A joint below both of two bodies does not change
+/// their distance; one between them moves one body only.
 template <class C, class V>
 [[nodiscard]] std::vector<inequality<V>> margin_inequalities(const C& chain, const V& theta,
                                                              const scene& around) {
@@ -41,13 +41,13 @@ template <class C, class V>
       const vector3<double>& n = nearest.points.normal;
       const vector3<double>& p = link > other ? nearest.points.on_body : nearest.points.on_obstacle;
       const vector3<double> moment = cross(components(p), components(n));
-      V slope = V::Zero(theta.size());
+      V gradient = V::Zero(theta.size());
       for (int i = std::min(link, other); i < std::max(link, other); ++i) {
         const vector6<double> column = j->col(i);
         const double outwards = n.dot(column.head<3>()) + moment.dot(column.tail<3>());
-        slope[i] = link > other ? outwards : -outwards;
+        gradient[i] = link > other ? outwards : -outwards;
       }
-      result.push_back({slope, around.margin - nearest.distance});
+      result.push_back({gradient, around.margin - nearest.distance});
     }
   });
   return result;
@@ -90,16 +90,18 @@ public:
     return result;
   }
   [[nodiscard]] collision_free_step<int(vector::size())>
-  step_beside(const state& from, const small_twist& e, const vector& wish) const override {
+  find_collision_free_step(const state& from, const small_twist& e,
+                           const vector& desired_step) const override {
     using joints = joint_vector<double, C::joints>;
-    const auto own = [&](const vector& x) { return to_chain_joints(this->chain(), x); };
+    const auto chain_joints = [&](const vector& x) { return to_chain_joints(this->chain(), x); };
     const auto inequalities = margins(from.theta);
     if (inequalities.empty()) {
       return {};
     }
-    const joints down = own(this->lower - from.theta), up = own(this->upper - from.theta);
-    const auto step = [&](const std::vector<inequality<joints>>& kept) {
-      return constrained_step(from.jacobian, e, own(wish), down, up, kept);
+    const joints down = chain_joints(this->lower - from.theta),
+                 up = chain_joints(this->upper - from.theta);
+    const auto step = [&](const std::vector<inequality<joints>>& active) {
+      return constrained_step(from.jacobian, e, chain_joints(desired_step), down, up, active);
     };
     const auto result = step(inequalities);
     if (result.step) {
@@ -110,21 +112,21 @@ public:
     return {std::nullopt, result.smallest_singular_value, !step({}).step};
   }
   void require_clearance(const vector& theta, double tolerance) const override {
-    const auto least = nearest(theta);
-    if (!(least.distance >= around_.margin - tolerance)) {
+    const auto closest = nearest(theta);
+    if (!(closest.distance >= around_.margin - tolerance)) {
       raise(invalid_input(
-          printable(message("duet: plan: at the start ", name_of_body(around_, least.body), " is ",
-                            least.distance, " from ",
-                            least.is_self ? name_of_body(around_, least.other)
-                                          : "obstacle " + std::to_string(least.other),
+          printable(message("duet: plan: at the start ", name_of_body(around_, closest.body),
+                            " is ", closest.distance, " from ",
+                            closest.is_self ? name_of_body(around_, closest.other)
+                                            : "obstacle " + std::to_string(closest.other),
                             ", closer than the margin of ", around_.margin))));
     }
   }
 
 private:
   [[nodiscard]] chain_clearance<double> nearest(const vector& theta) const {
-    return least_clearance(this->chain(),
-                           to_chain_joints(this->chain(), this->unscaled_joints(theta)), around_);
+    return min_clearance(this->chain(),
+                         to_chain_joints(this->chain(), this->unscaled_joints(theta)), around_);
   }
 
   const scene& around_;

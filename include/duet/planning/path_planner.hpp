@@ -24,39 +24,40 @@ namespace duet::detail {
 template <int Room>
 class path_planner {
 public:
-  using traveller = path_tracker<Room>;
-  using vector = typename traveller::vector;
-  using waypoint = typename traveller::waypoint;
-  using route = typename traveller::route;
+  using tracker = path_tracker<Room>;
+  using vector = typename tracker::vector;
+  using waypoint = typename tracker::waypoint;
+  using partial_plan = typename tracker::partial_plan;
 
   /// Arguments as in `path_tracker`.
   path_planner(const planning_model<Room>& model, const tip_path& target, std::vector<double> stops,
-               const plan_options& options, const typename traveller::slope_function& slope)
-      : steps_(model, target, std::move(stops), options, slope) {}
+               const plan_options& options,
+               const typename tracker::gradient_function& objective_gradient)
+      : steps_(model, target, std::move(stops), options, objective_gradient) {}
 
-  [[nodiscard]] route plan(const vector& start);
-  /// Route that consists of the start alone.
-  [[nodiscard]] route stay(const vector& start) const { return steps_.stay(start); }
+  [[nodiscard]] partial_plan plan(const vector& start);
+  /// Partial plan that consists of the start alone.
+  [[nodiscard]] partial_plan stay(const vector& start) const { return steps_.stay(start); }
   [[nodiscard]] int iterations() const {
-    return steps_.options.max_iterations - steps_.iterations_left;
+    return steps_.options.max_iterations - steps_.remaining_iterations;
   }
 
-  /// Termination reason: what blocks the first step that fails, of some that grow.
-  [[nodiscard]] stop_reason reason(const route& x) const {
-    if (steps_.is_at_end(x) || steps_.iterations_left <= 0) {
+  /// Termination reason: the cause of failure of the first step that fails, of steps that grow.
+  [[nodiscard]] stop_reason reason(const partial_plan& x) const {
+    if (steps_.is_at_end(x) || steps_.remaining_iterations <= 0) {
       return steps_.is_at_end(x) ? stop_reason::reached : stop_reason::iteration_limit;
     }
-    const waypoint& here = x.back();
+    const waypoint& current = x.back();
     for (double step = steps_.options.smallest_step; step < 1; step *= 2) {
-      const double u = std::min(here.u + step * steps_.length, steps_.stops.back());
-      const auto there = steps_.solver.approach(here.state, steps_.target(u), {});
-      if (there.is_within(steps_.solver.tolerance)) {
+      const double u = std::min(current.u + step * steps_.length, steps_.stops.back());
+      const auto result = steps_.solver.approach(current.state, steps_.target(u), {});
+      if (result.is_within(steps_.solver.tolerance)) {
         continue;
       }
-      const bool is_near_singularity = there.smallest_singular_value < 10 * damping_threshold;
-      return there.is_blocked || there.shortfall > steps_.solver.tolerance.translation
+      const bool is_near_singularity = result.smallest_singular_value < 10 * damping_threshold;
+      return result.is_blocked || result.margin_violation > steps_.solver.tolerance.translation
                  ? stop_reason::obstacle
-             : (there.is_bounded || is_near_singularity) && is_stopped_by_limits(x, u)
+             : (result.is_bounded || is_near_singularity) && is_stopped_by_limits(x, u)
                  ? stop_reason::joint_limit
              : is_near_singularity ? stop_reason::singular
                                    : stop_reason::no_progress;
@@ -65,17 +66,17 @@ public:
   }
 
 private:
-  /// True if limits end the route: without them it leads beyond a parameter, from the end or from
-  /// before the singularity there, if need be by a self-motion; or it leaves them on its path
-  /// through that, if the arm is not redundant.
-  [[nodiscard]] bool is_stopped_by_limits(const route& x, double u) const {
-    constexpr int enough = 100000;
-    traveller free = steps_;
-    free.iterations_left = enough;
+  /// True if joint limits end the plan: without limits it continues beyond the parameter u, from
+  /// its end or from before the singularity there, if necessary by a self-motion; or, if the arm is
+  /// not redundant, its continuation through the singularity leaves the limits.
+  [[nodiscard]] bool is_stopped_by_limits(const partial_plan& x, double u) const {
+    constexpr int max_iterations = 100000;
+    tracker free = steps_;
+    free.remaining_iterations = max_iterations;
     free.solver.without_limits();
     const double beyond = std::min(u + 4 * (u - x.back().u), steps_.stops.back());
     free.stops = {steps_.stops.front(), beyond};
-    route end = free.undamped(route(x.back()));
+    partial_plan end = free.undamped(partial_plan(x.back()));
     if (!free.is_at_end(end) && x.back().smallest_singular_value < damping_threshold) {
       end = free.undamped(steps_.before_singularity(x));
     }
@@ -83,11 +84,11 @@ private:
            (steps_.solver.model.size <= 6 &&
             !steps_.solver.is_within_limits(end.back().state.theta));
   }
-  [[nodiscard]] static bool continues_after_self_motion(traveller free, const waypoint& from,
+  [[nodiscard]] static bool continues_after_self_motion(tracker free, const waypoint& from,
                                                         double to) {
     free.solver.without_damping();
     self_motion_search search(free.solver, free.target, free.options.self_motion_step,
-                              damping_threshold, to - from.u, free.iterations_left);
+                              damping_threshold, to - from.u, free.remaining_iterations);
     return free.options.search_step > 0 &&
            search.run(from.state, {from.u, to}).front().back().u == to;
   }
@@ -95,29 +96,31 @@ private:
     return smallest_singular_value_of(x.state.jacobian) < damping_threshold;
   }
 
-  /// Better route with self-motions, from a waypoint of one, or that one.
-  [[nodiscard]] route with_search(const route& before, std::size_t first) {
-    route begin(before.waypoints.front());
+  /// Better plan with self-motions from a waypoint of `before`, or `before` itself.
+  [[nodiscard]] partial_plan with_search(const partial_plan& before, std::size_t first) {
+    partial_plan begin(before.waypoints.front());
     begin.waypoints.assign(before.waypoints.begin(),
                            before.waypoints.begin() + std::ptrdiff_t(first) + 1);
-    route best = before;
-    const double whole = steps_.options.search_step, enough = end_resolution();
-    // Continuations near a singularity may lead across it where the tip cannot follow; then search
-    // for those that do not. Or they pass it so near that joints get to its other side; then search
-    // with shorter steps.
+    partial_plan best = before;
+    const double full_step = steps_.options.search_step, enough = end_resolution();
+    // A continuation near a singularity may cross it where the tip cannot follow; the second search
+    // therefore avoids such crossings. Or it passes so near that joints get to the other side; the
+    // further searches therefore use shorter steps.
     for (const auto& [singular, step] :
-         {std::pair(damping_threshold, whole), std::pair(singularity_threshold, whole),
-          std::pair(damping_threshold, whole / 4), std::pair(damping_threshold, whole / 16)}) {
+         {std::pair(damping_threshold, full_step), std::pair(singularity_threshold, full_step),
+          std::pair(damping_threshold, full_step / 4),
+          std::pair(damping_threshold, full_step / 16)}) {
       self_motion_search search(steps_.solver, steps_.target, steps_.options.self_motion_step,
-                                singular, enough, steps_.iterations_left);
-      const auto ways = search.run(begin.back().state, search_parameters(begin.back(), step));
-      steps_.iterations_left = search.iterations_left();
-      for (const auto& way : ways) {
+                                singular, enough, steps_.remaining_iterations);
+      const auto continuations =
+          search.run(begin.back().state, search_parameters(begin.back(), step));
+      steps_.remaining_iterations = search.remaining_iterations();
+      for (const auto& continuation : continuations) {
         if (!steps_.is_at_end(best)) {
-          steps_.keep_furthest(best, along(begin, way));
+          steps_.keep_furthest(best, along(begin, continuation));
         }
       }
-      if (best.back().u + enough >= ways.front().back().u) {
+      if (best.back().u + enough >= continuations.front().back().u) {
         break;
       }
     }
@@ -128,19 +131,20 @@ private:
     return 100 * steps_.options.smallest_step * steps_.length;
   }
 
-  /// Route along a continuation that a search has found, and beyond.
-  [[nodiscard]] route along(route x, const typename self_motion_search<Room>::configurations& way) {
-    for (std::size_t i = 1; i < way.size(); ++i) {
-      const std::size_t kept = x.waypoints.size();
-      const auto go = [&](bool is_back) {
+  /// Plan along a continuation from the search, and beyond.
+  [[nodiscard]] partial_plan
+  along(partial_plan x, const typename self_motion_search<Room>::configurations& continuation) {
+    for (std::size_t i = 1; i < continuation.size(); ++i) {
+      const std::size_t count = x.waypoints.size();
+      const auto track_to = [&](bool is_back) {
         x.step = steps_.options.search_step;
-        return is_back
-                   ? track_backwards(x, way[i])
-                   : steps_.track(x, way[i].u, steps_.options.search_step, {&way[i].state.theta});
+        return is_back ? track_backwards(x, continuation[i])
+                       : steps_.track(x, continuation[i].u, steps_.options.search_step,
+                                      {&continuation[i].state.theta});
       };
-      if (!go(way[i].escapes_singularity)) {
-        x.waypoints.erase(x.waypoints.begin() + std::ptrdiff_t(kept), x.waypoints.end());
-        if (!go(!way[i].escapes_singularity)) {
+      if (!track_to(continuation[i].escapes_singularity)) {
+        x.waypoints.erase(x.waypoints.begin() + std::ptrdiff_t(count), x.waypoints.end());
+        if (!track_to(!continuation[i].escapes_singularity)) {
           return x;
         }
       }
@@ -170,10 +174,10 @@ private:
     return result;
   }
 
-  /// Continues to a configuration from the singular one before it: the path back from there is
-  /// tracked and reversed, and a self-motion leads to where it ends.
-  [[nodiscard]] bool track_backwards(route& x, const search_node<Room>& to) {
-    route back({to.state, to.u, {}, smallest_singular_value_of(to.state.jacobian)});
+  /// Continues to a configuration from the singular one before it: the path back from it is
+  /// tracked and reversed, and a self-motion leads to the end of that path.
+  [[nodiscard]] bool track_backwards(partial_plan& x, const search_node<Room>& to) {
+    partial_plan back({to.state, to.u, {}, smallest_singular_value_of(to.state.jacobian)});
     back.step = steps_.options.search_step;
     const double u = x.back().u;
     if (!steps_.track(back, u, steps_.options.search_step, {})) {
@@ -192,25 +196,25 @@ private:
     return true;
   }
 
-  /// Self-motion to a configuration, or as near to it as the joints get.
-  void move_to(route& x, const vector& aim) {
+  /// Self-motion to a configuration, or as near to it as possible.
+  void move_to(partial_plan& x, const vector& aim) {
     for (double before = std::numeric_limits<double>::infinity();;) {
-      const double left = norm(aim - x.back().state.theta);
-      if (left < 1e-9 || !(left < .9 * before) ||
+      const double remaining = norm(aim - x.back().state.theta);
+      if (remaining < 1e-9 || !(remaining < .9 * before) ||
           !steps_.track(x, x.back().u, steps_.options.search_step, {&aim})) {
         return;
       }
-      before = left;
+      before = remaining;
     }
   }
 
-  traveller steps_;
+  tracker steps_;
 };
 
 template <int Room>
-typename path_planner<Room>::route path_planner<Room>::plan(const vector& start) {
-  route best = steps_.continued(stay(start));
-  // Search from where it got stuck, or else from the beginning, and there as far as possible.
+typename path_planner<Room>::partial_plan path_planner<Room>::plan(const vector& start) {
+  partial_plan best = steps_.continued(stay(start));
+  // Search from the last waypoint; if that fails, from the start.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
     if (steps_.is_at_end(best) || steps_.options.search_step == 0) {
       break;

@@ -26,9 +26,9 @@ template <class V>
   V result = theta;
   for (std::ptrdiff_t i = 0; i < theta.size(); ++i) {
     const double half = (upper[i] - lower[i]) / 2;
-    const bool has_middle = half > 0 && half - half == 0;
-    const double x = has_middle ? (theta[i] - lower[i]) / half - 1 : 0; // from -1 to 1
-    result[i] = -std::min(step, half) * x * x * x;                      // never beyond the middle
+    const bool has_centre = half > 0 && half - half == 0;
+    const double x = has_centre ? (theta[i] - lower[i]) / half - 1 : 0; // from -1 to 1
+    result[i] = -std::min(step, half) * x * x * x;                      // never beyond the centre
   }
   return result;
 }
@@ -43,20 +43,20 @@ using tip_path = std::function<tip_pose(double)>;
 template <int Room>
 struct step_result {
   chain_state<Room> state;
-  pose_error left = {}; ///< error of the tip relative to the pose
-  /// Smallest singular value of the Jacobians on the way, from above.
+  pose_error residual = {}; ///< error of the tip relative to the pose
+  /// Smallest singular value of the Jacobians of all iterates, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
-  bool is_bounded = false; ///< true if a limit held a joint back
-  bool is_blocked = false; ///< true if obstacles left no step
-  double shortfall = 0;    ///< violation of the margin to obstacles
+  bool is_bounded = false;     ///< true if a limit was active
+  bool is_blocked = false;     ///< true if no step satisfies the margins
+  double margin_violation = 0; ///< violation of the margin to obstacles
   int iterations = 0;
 
   /// Ratio of the remaining error to the tolerance.
-  [[nodiscard]] double excess(const pose_tolerance& tolerance) const {
-    return std::max(tolerance.ratio(left), shortfall / tolerance.translation);
+  [[nodiscard]] double error_ratio(const pose_tolerance& tolerance) const {
+    return std::max(tolerance.ratio(residual), margin_violation / tolerance.translation);
   }
   [[nodiscard]] bool is_within(const pose_tolerance& tolerance) const {
-    return excess(tolerance) <= 1;
+    return error_ratio(tolerance) <= 1;
   }
 };
 
@@ -78,20 +78,20 @@ struct pose_solver {
   }
 
   [[nodiscard]] bool is_endless(std::ptrdiff_t joint) const {
-    return model.turns[std::size_t(joint)] && std::isinf(upper[joint] - lower[joint]);
+    return model.is_rotational[std::size_t(joint)] && std::isinf(upper[joint] - lower[joint]);
   }
   /// Difference of configurations except for full turns of joints without limits.
-  [[nodiscard]] vector without_turns(vector apart) const {
+  [[nodiscard]] vector modulo_full_turns(vector difference) const {
     for (std::ptrdiff_t i = 0; i < model.size; ++i) {
       if (is_endless(i)) {
-        apart[i] = std::remainder(apart[i], 2 * std::numbers::pi);
+        difference[i] = std::remainder(difference[i], 2 * std::numbers::pi);
       }
     }
-    return apart;
+    return difference;
   }
 
-  /// Switches to steps without damping and nearer to targets: near singularities joints that are to
-  /// swing would lag behind.
+  /// Switches to steps without damping and nearer to targets: near singularities, damped joints
+  /// would lag behind in a rapid reorientation.
   void without_damping() {
     damped_below = undamped_threshold_near_singularity;
     tolerance = {1e-3 * tolerance.translation, 1e-3 * tolerance.rotation};
@@ -106,23 +106,24 @@ struct pose_solver {
     return true;
   }
 
-  /// Result of the step nearest to the desired joint step `wish` that takes the tip from a state
-  /// nearby to the target to first order, and then of Newton's method by least-norm steps, without
-  /// damping if that prevents convergence. No step leaves the limits.
+  /// Result of the step nearest to the desired joint step that takes the tip from a
+  /// state nearby to the target to first order, and then of Newton's method by least-norm steps,
+  /// without damping if that prevents convergence. No step leaves the limits.
   [[nodiscard]] step_result<Room> approach(const chain_state<Room>& from, const tip_pose& target,
-                                           const vector& wish) const {
-    auto result = approach(from, target, wish, damped_below);
+                                           const vector& desired_step) const {
+    auto result = approach(from, target, desired_step, damped_below);
     if (damped_below > undamped_threshold && result.smallest_singular_value < damped_below &&
         !result.is_within(tolerance)) {
       const int before = result.iterations;
-      result = approach(from, target, wish, undamped_threshold);
+      result = approach(from, target, desired_step, undamped_threshold);
       result.iterations += before;
     }
     return result;
   }
 
   /// Length of the joint step to a target near a state, to first order, without damping.
-  [[nodiscard]] double way_to(const chain_state<Room>& from, const tip_pose& target) const {
+  [[nodiscard]] double joint_distance_to(const chain_state<Room>& from,
+                                         const tip_pose& target) const {
     const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
                                    upper - from.theta, {undamped_threshold_near_singularity});
     return norm(step.step);
@@ -131,19 +132,19 @@ struct pose_solver {
 private:
   /// \param threshold  singular value below which steps are damped
   [[nodiscard]] step_result<Room> approach(const chain_state<Room>& from, const tip_pose& target,
-                                           const vector& wish, double threshold) const {
+                                           const vector& desired_step, double threshold) const {
     step_result<Room> result;
-    if (!move(result, from, error_twist(from.tip, target), wish, threshold)) {
+    if (!move(result, from, error_twist(from.tip, target), desired_step, threshold)) {
       result.state = from;
       return result;
     }
     for (double before = std::numeric_limits<double>::infinity();;) {
       const small_twist error = error_twist(result.state.tip, target);
-      result.left = deviation_of(error);
-      result.shortfall = model.shortfall(result.state.theta);
-      const double size = result.excess(tolerance);
+      result.residual = deviation_of(error);
+      result.margin_violation = model.margin_violation(result.state.theta);
+      const double size = result.error_ratio(tolerance);
       // An iteration that does not at least halve the error will not converge.
-      if (size <= 1 || result.iterations == most || size > before / 2 ||
+      if (size <= 1 || result.iterations == max_iterations || size > before / 2 ||
           !move(result, result.state, error, {}, threshold)) {
         return result;
       }
@@ -159,23 +160,24 @@ private:
     return theta;
   }
 
-  /// Takes the step nearest to `wish` that moves the tip by `e` to first order, from a state that
-  /// may be that of x; false if obstacles leave none.
+  /// Takes the step nearest to `desired_step` that moves the tip by `e` to first order, from a
+  /// state that may be that of x; false if obstacles prevent every step.
   [[nodiscard]] bool move(step_result<Room>& x, const chain_state<Room>& from, const small_twist& e,
-                          const vector& wish, double threshold) const {
+                          const vector& desired_step, double threshold) const {
     ++x.iterations;
-    const auto beside = model.step_beside(from, e, wish);
-    x.smallest_singular_value = std::min(x.smallest_singular_value, beside.smallest_singular_value);
-    if (beside.step) {
-      model.set(x.state, within(from.theta + *beside.step));
+    const auto collision_free = model.find_collision_free_step(from, e, desired_step);
+    x.smallest_singular_value =
+        std::min(x.smallest_singular_value, collision_free.smallest_singular_value);
+    if (collision_free.step) {
+      model.set(x.state, within(from.theta + *collision_free.step));
       return true;
     }
-    if (!beside.is_free) {
+    if (!collision_free.is_free) {
       x.is_blocked = true;
-      x.left.translation = std::numeric_limits<double>::infinity();
+      x.residual.translation = std::numeric_limits<double>::infinity();
       return false;
     }
-    const vector aim = within(from.theta + wish);
+    const vector aim = within(from.theta + desired_step);
     const small_twist rest = residual_after_step(e, from.jacobian, aim - from.theta);
     const auto step = bounded_step(from.jacobian, rest, lower - aim, upper - aim, {threshold});
     x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
@@ -184,7 +186,7 @@ private:
     return true;
   }
 
-  static constexpr int most = 12;
+  static constexpr int max_iterations = 12;
 };
 
 } // namespace duet::detail

@@ -25,56 +25,58 @@ template <int Room>
 class path_tracker {
 public:
   using vector = small_vector<Room>;
-  /// Gradient of the objective that the joints lower.
-  using slope_function = std::function<vector(const vector&)>;
+  /// Gradient of the secondary objective.
+  using gradient_function = std::function<vector(const vector&)>;
   struct waypoint {
     chain_state<Room> state;
     double u;
-    pose_error left = {};
-    /// Smallest singular value of the Jacobians on the way to it, in the planner's units.
+    pose_error residual = {};
+    /// Smallest singular value of the Jacobians up to it, in the planner's units.
     double smallest_singular_value = std::numeric_limits<double>::infinity();
   };
-  struct route {
+  struct partial_plan {
     std::vector<waypoint> waypoints;
     double step = .01; ///< next step, as a fraction of the path
 
-    explicit route(const waypoint& start) : waypoints{start} {}
+    explicit partial_plan(const waypoint& start) : waypoints{start} {}
     [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
   };
 
   /// \param path        pose of the tip as a function of the parameter
   /// \param parameters  parameters that become waypoints, increasing; the first and the last are
   /// the ends of the path
-  /// \param slope       gradient of the objective, or nothing
+  /// \param objective_gradient  gradient of the objective, or nothing
   path_tracker(const planning_model<Room>& model, const tip_path& path,
-               std::vector<double> parameters, const plan_options& how, const slope_function& slope)
+               std::vector<double> parameters, const plan_options& how,
+               const gradient_function& objective_gradient)
       : solver{model, model.tolerance(how.tolerance)}, target(path), stops(std::move(parameters)),
-        options(how), length(stops.back() - stops.front()), iterations_left(how.max_iterations),
-        deviation_(model.tolerance(how.deviation)), slope_(slope) {}
+        options(how), length(stops.back() - stops.front()),
+        remaining_iterations(how.max_iterations), deviation_(model.tolerance(how.deviation)),
+        objective_gradient_(objective_gradient) {}
 
   pose_solver<Room> solver;
   const tip_path& target;
   std::vector<double> stops;
   plan_options options;
   double length; ///< length of the path's parameter interval
-  int iterations_left;
+  int remaining_iterations;
 
-  /// Route that consists of the start alone.
-  [[nodiscard]] route stay(const vector& start) const {
-    return route({solver.model.at(start), stops.front()});
+  /// Partial plan that consists of the start alone.
+  [[nodiscard]] partial_plan stay(const vector& start) const {
+    return partial_plan({solver.model.at(start), stops.front()});
   }
-  [[nodiscard]] bool is_at_end(const route& x) const { return x.back().u == stops.back(); }
+  [[nodiscard]] bool is_at_end(const partial_plan& x) const { return x.back().u == stops.back(); }
 
-  /// Route continued as far as possible without self-motions.
-  [[nodiscard]] route continued(route best) {
+  /// Partial plan continued as far as possible without self-motions.
+  [[nodiscard]] partial_plan continued(partial_plan best) {
     advance(best);
-    for (route before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
+    for (partial_plan before = best; before.waypoints.size() > 1 && !is_at_end(best);) {
       before = before_singularity(before);
       keep_furthest(best, undamped(before));
     }
     return best;
   }
-  static void keep_furthest(route& best, route other) {
+  static void keep_furthest(partial_plan& best, partial_plan other) {
     if (other.back().u > best.back().u) {
       best = std::move(other);
     }
@@ -88,11 +90,11 @@ public:
     const pose_error off =
         pose_error_between(solver.model.at(between).tip, target((1 - part) * a.u + part * b.u));
     return std::max(deviation_.ratio(off),
-                    solver.model.shortfall(between) / deviation_.translation);
+                    solver.model.margin_violation(between) / deviation_.translation);
   }
 
-  /// Route up to where it last came near a singularity, if it did.
-  [[nodiscard]] route before_singularity(route x) const {
+  /// Partial plan up to where it last came near a singularity, if it did.
+  [[nodiscard]] partial_plan before_singularity(partial_plan x) const {
     const auto drop_while = [&](bool is_near) {
       while (x.waypoints.size() > 1 &&
              (x.back().smallest_singular_value < damping_threshold) == is_near) {
@@ -104,8 +106,8 @@ public:
     return x;
   }
 
-  /// Route continued without damping.
-  [[nodiscard]] route undamped(route x) {
+  /// Partial plan continued without damping.
+  [[nodiscard]] partial_plan undamped(partial_plan x) {
     const pose_solver<Room> damped = solver;
     solver.without_damping();
     x.step = options.smallest_step;
@@ -115,10 +117,10 @@ public:
     return x;
   }
 
-  /// Preferences of the joints in the null space of the Jacobian, which the tip leaves free.
-  struct wishes {
-    const vector* aim = nullptr; ///< configuration to reach at the end
-    bool lowers = false;         ///< true if they lower the objectives
+  /// Secondary task of the joints in the null space of the Jacobian.
+  struct null_space_task {
+    const vector* aim = nullptr;   ///< configuration to reach at the end, or null
+    bool lowers_objective = false; ///< true if steps descend along the gradient of the objectives
   };
 
   /// Tracks the path up to the parameter `end`, in steps that keep the tip near it between
@@ -126,13 +128,14 @@ public:
   ///
   /// \param part  fraction of the path that this counts for
   /// \return false if there is no continuation
-  [[nodiscard]] bool track(route& x, double end, double part, const wishes& have);
+  [[nodiscard]] bool track(partial_plan& x, double end, double part, const null_space_task& task);
 
 private:
   /// Continues as far as possible without stopping.
-  void advance(route& x) {
+  void advance(partial_plan& x) {
     for (const double stop : stops) {
-      if (stop > x.back().u && !track(x, stop, (stop - x.back().u) / length, {.lowers = true})) {
+      if (stop > x.back().u &&
+          !track(x, stop, (stop - x.back().u) / length, {.lowers_objective = true})) {
         return;
       }
     }
@@ -142,61 +145,63 @@ private:
   [[nodiscard]] vector descent_step(const vector& theta, double step) const {
     const vector centre =
         joint_centring_step(theta, solver.model.lower, solver.model.upper, options.centring * step);
-    return slope_ ? centre - step * slope_(theta) : centre;
+    return objective_gradient_ ? centre - step * objective_gradient_(theta) : centre;
   }
 
-  /// True if the joints move far in a step along the path that is as short as that.
+  /// True if the joints move far in a short step along the path.
   [[nodiscard]] bool is_reorienting(const waypoint& at, double step) const {
-    constexpr double least = 1e-12;
-    return solver.damped_below == undamped_threshold_near_singularity && step > least &&
-           solver.way_to(at.state, target(std::min(at.u + step * length, stops.back()))) >
-               least_swing;
+    constexpr double min_step = 1e-12;
+    return solver.damped_below == undamped_threshold_near_singularity && step > min_step &&
+           solver.joint_distance_to(
+               at.state, target(std::min(at.u + step * length, stops.back()))) > min_reorientation;
   }
 
-  static constexpr double least_swing = 1e-3;
+  static constexpr double min_reorientation = 1e-3;
   pose_tolerance deviation_;
-  const slope_function& slope_;
+  const gradient_function& objective_gradient_;
 };
 
 template <int Room>
-bool path_tracker<Room>::track(route& x, double end, double part, const wishes& have) {
+bool path_tracker<Room>::track(partial_plan& x, double end, double part,
+                               const null_space_task& task) {
   const double begin = x.back().u;
-  double way = 0; // 1 at the end
-  while (way < 1) {
-    const waypoint& here = x.back();
-    const double next = way + x.step / part > 1 - 1e-9 ? 1 : way + x.step / part;
-    const double u = next == 1 ? end : begin + (end - begin) * next;
-    const vector& theta = here.state.theta;
-    const vector wish = have.aim != nullptr ? (next - way) / (1 - way) * (*have.aim - theta)
-                        : have.lowers       ? descent_step(theta, (next - way) * part)
-                                            : vector{};
-    auto there = solver.approach(here.state, target(u), wish);
-    iterations_left -= there.iterations;
-    if (have.lowers && there.smallest_singular_value < damping_threshold) {
-      // The objective may lead the joints to where the path does not continue.
-      there = solver.approach(here.state, target(u), {});
-      iterations_left -= there.iterations;
+  double progress = 0; // fraction of the path up to `end`
+  while (progress < 1) {
+    const waypoint& current = x.back();
+    const double next_progress = progress + x.step / part > 1 - 1e-9 ? 1 : progress + x.step / part;
+    const double u = next_progress == 1 ? end : begin + (end - begin) * next_progress;
+    const vector& theta = current.state.theta;
+    const vector desired_step =
+        task.aim != nullptr     ? (next_progress - progress) / (1 - progress) * (*task.aim - theta)
+        : task.lowers_objective ? descent_step(theta, (next_progress - progress) * part)
+                                : vector{};
+    auto result = solver.approach(current.state, target(u), desired_step);
+    remaining_iterations -= result.iterations;
+    if (task.lowers_objective && result.smallest_singular_value < damping_threshold) {
+      // The objective may move the joints to where the path has no continuation.
+      result = solver.approach(current.state, target(u), {});
+      remaining_iterations -= result.iterations;
     }
     double change = .25;
-    if (there.is_within(solver.tolerance)) {
-      const waypoint on{there.state, u, there.left, there.smallest_singular_value};
-      const double excess = error_ratio_between(here, on);
+    if (result.is_within(solver.tolerance)) {
+      const waypoint on{result.state, u, result.residual, result.smallest_singular_value};
+      const double error_ratio = error_ratio_between(current, on);
       // The deviation between waypoints grows with the square of the step.
-      change = std::clamp(.85 / std::sqrt(std::max(excess, 1e-12)), .2, 2.0);
-      if (x.step < options.smallest_step && norm(there.state.theta - theta) < least_swing) {
-        change = .25;             // within tolerance of two parameters, but no progress
-      } else if (excess <= .95 || // not quite largest half way
-                 (excess <= 1 && there.smallest_singular_value < 3 * damping_threshold &&
-                  error_ratio_between(here, on, .25) <= 1 &&
-                  error_ratio_between(here, on, .75) <= 1)) {
-        // Near a singularity steps that are just allowed may lead straight on, shorter ones not.
-        way = next;
+      change = std::clamp(.85 / std::sqrt(std::max(error_ratio, 1e-12)), .2, 2.0);
+      if (x.step < options.smallest_step && norm(result.state.theta - theta) < min_reorientation) {
+        change = .25; // the pose is within tolerance of both parameters: no progress
+      } else if (error_ratio <= .95 || // halfway the deviation is not quite largest
+                 (error_ratio <= 1 && result.smallest_singular_value < 3 * damping_threshold &&
+                  error_ratio_between(current, on, .25) <= 1 &&
+                  error_ratio_between(current, on, .75) <= 1)) {
+        // Near a singularity the longest admissible steps may lead across it, shorter ones not.
+        progress = next_progress;
         x.waypoints.push_back(on);
       }
     }
     x.step = std::min(options.largest_step, x.step * change);
-    if (way < 1 && (iterations_left <= 0 ||
-                    (x.step < options.smallest_step && !is_reorienting(x.back(), x.step)))) {
+    if (progress < 1 && (remaining_iterations <= 0 ||
+                         (x.step < options.smallest_step && !is_reorienting(x.back(), x.step)))) {
       return false;
     }
   }

@@ -76,12 +76,12 @@ struct chain_reach {
                                         tolerance.rotation * tool;
   }
   /// Characteristic length of the chain, 1 if there is none in its table; proportional to the
-  /// numbers in which lengths are given.
+  /// unit of length of the input.
   [[nodiscard]] double scale() const {
     const double all = links + tool + limited_travel;
     return all > 0 ? all : 1;
   }
-  /// Reach with lengths in units of a given one.
+  /// Reach with lengths in units of `length`.
   [[nodiscard]] chain_reach in_units_of(double length) const {
     const double s = 1 / length;
     return {s * first, s * back, s * links, s * tool, s * travel, s * limited_travel, has_joints};
@@ -114,17 +114,18 @@ public:
       const three_vector<double> offset = step.offset;
       lower[i] = chain.limits(i).lower;
       upper[i] = chain.limits(i).upper;
-      turns[k] = step.is_rotational;
-      slides[k] = step.is_translational;
+      is_rotational[k] = step.is_rotational;
+      is_translational[k] = step.is_translational;
       if (i == 0) {
         reach.first = offset;
       } else {
         reach.links += length_of(offset);
       }
       if (step.is_translational) {
-        const double way = std::abs(step.pitch) * std::max(std::abs(lower[i]), std::abs(upper[i]));
-        reach.travel += way;
-        reach.limited_travel += way - way == 0 ? way : 0;
+        const double displacement =
+            std::abs(step.pitch) * std::max(std::abs(lower[i]), std::abs(upper[i]));
+        reach.travel += displacement;
+        reach.limited_travel += displacement - displacement == 0 ? displacement : 0;
       }
     }
     const auto& offset = chain.tip().offset;
@@ -135,10 +136,10 @@ public:
     length = reach.scale();
     reach = reach.in_units_of(length);
     for (int i = 0; i < Room; ++i) {
-      unit[i] = i >= size || turns[std::size_t(i)] ? 1 : length;
+      unit[i] = i >= size || is_rotational[std::size_t(i)] ? 1 : length;
       row_unit_[i] = unit[i] / length;
-      given_lower_[i] = lower[i];
-      given_upper_[i] = upper[i];
+      unscaled_lower_[i] = lower[i];
+      unscaled_upper_[i] = upper[i];
       lower[i] /= unit[i];
       upper[i] /= unit[i];
     }
@@ -163,21 +164,21 @@ public:
     return theta;
   }
   /// Joints in the user's units, clamped to the limits, which round-off may have violated.
-  [[nodiscard]] vector given_joints_within_limits(const vector& theta) const {
+  [[nodiscard]] vector unscaled_joints_within_limits(const vector& theta) const {
     vector result = unscaled_joints(theta);
     for (int i = 0; i < size; ++i) {
-      result[i] = std::clamp(result[i], given_lower_[i], given_upper_[i]);
+      result[i] = std::clamp(result[i], unscaled_lower_[i], unscaled_upper_[i]);
     }
     return result;
   }
-  [[nodiscard]] tip_pose place(const dual_quaternion<double>& a) const {
+  [[nodiscard]] tip_pose scaled_pose(const dual_quaternion<double>& a) const {
     const tip_pose x = to_tip_pose(a);
     return {x.rotation, 1 / length * x.translation};
   }
   [[nodiscard]] dual_quaternion<double> unscaled_pose(const tip_pose& a) const {
     return detail::to_dual_quaternion({a.rotation, length * a.translation});
   }
-  [[nodiscard]] small_matrix<6, Room> given_jacobian(small_matrix<6, Room> j) const {
+  [[nodiscard]] small_matrix<6, Room> unscaled_jacobian(small_matrix<6, Room> j) const {
     for (int i = 0; i < size; ++i) {
       for (int k = 0; k < 3; ++k) {
         j(k, i) *= length / unit[i];
@@ -196,7 +197,7 @@ public:
   double length = 1; ///< characteristic length of the chain, in the user's unit
   vector unit;       ///< unit of each coordinate, in the user's
   vector lower, upper;
-  std::array<bool, std::size_t(Room)> turns{}, slides{};
+  std::array<bool, std::size_t(Room)> is_rotational{}, is_translational{};
   chain_reach reach;
   double margin = 0; ///< minimum distance from obstacles
 
@@ -214,13 +215,14 @@ public:
   /// \throws invalid_input if obstacles are closer than their margin
   virtual void require_clearance(const vector&, double /*tolerance*/) const {}
   /// Margin violation: the part of the margin that is missing.
-  [[nodiscard]] double shortfall(const vector& theta) const {
+  [[nodiscard]] double margin_violation(const vector& theta) const {
     return std::max(0.0, margin - clearance(theta));
   }
-  /// Step nearest to the desired joint step `wish` that moves the tip by `e` to first order and
+  /// Step nearest to the desired joint step that moves the tip by `e` to first order and
   /// keeps the margin.
   [[nodiscard]] virtual collision_free_step<Room>
-  step_beside(const state& /*from*/, const small_twist& /*e*/, const vector& /*wish*/) const {
+  find_collision_free_step(const state& /*from*/, const small_twist& /*e*/,
+                           const vector& /*desired_step*/) const {
     return {};
   }
 
@@ -228,7 +230,7 @@ protected:
   vector row_unit_; ///< units of the coordinates relative to the length
 
 private:
-  vector given_lower_, given_upper_;
+  vector unscaled_lower_, unscaled_upper_;
 };
 
 /// Model of a chain of the type C.

@@ -91,20 +91,20 @@ namespace detail {
 /// \throws invalid_input for a vector that is not a unit vector
 inline void require_unit(const vector3<double>& n, const char* function, const char* name) {
   require(std::abs(n.squaredNorm() - 1) <= 1e-6, "duet: ", function, ": the ", name, " (", n[0],
-          ", ", n[1], ", ", n[2], ") is no unit vector");
+          ", ", n[1], ", ", n[2], ") is not a unit vector");
 }
 
 /// Rotation that takes one unit vector to another: a half turn about their bisector.
 [[nodiscard]] inline quaternion<double> relative_rotation(const vector3<double>& from,
                                                           const vector3<double>& to) {
-  vector3<double> middle = from + to;
-  if (!(middle.norm() > 1e-8)) { // opposite: any orthogonal one
-    int least = 0;
-    from.cwiseAbs().minCoeff(&least);
-    middle = from.cross(vector3<double>::Unit(least));
+  vector3<double> bisector = from + to;
+  if (!(bisector.norm() > 1e-8)) { // opposite vectors: any orthogonal one
+    int smallest = 0;
+    from.cwiseAbs().minCoeff(&smallest);
+    bisector = from.cross(vector3<double>::Unit(smallest));
   }
-  middle.normalize();
-  return {0, middle[0], middle[1], middle[2]};
+  bisector.normalize();
+  return {0, bisector[0], bisector[1], bisector[2]};
 }
 
 } // namespace detail
@@ -150,41 +150,44 @@ inline void require_goal(const task_space_region& r, const std::string& name) {
   require_pose(r.frame, "inverse_kinematics", "the frame of " + name);
   for (std::size_t i = 0; i < 3; ++i) {
     require(r.upper[i] - r.lower[i] >= 0, "duet: inverse_kinematics: ", name, " goes from ",
-            r.lower[i], " to ", r.upper[i], " along axis ", i, " of its frame");
+            r.lower[i], " to ", r.upper[i], " along axis ", i,
+            " of its frame (expected lower <= upper)");
   }
   const auto n = components(r.axis);
   require(std::abs(dot(n, n) - 1) <= 1e-6, "duet: inverse_kinematics: the axis of ", name, " (",
-          n.x, ", ", n.y, ", ", n.z, ") is no unit vector");
-  require(r.max_tilt >= 0, "duet: inverse_kinematics: the tilt of ", name, " is ", r.max_tilt);
-  require(r.rotation_upper - r.rotation_lower >= 0, "duet: inverse_kinematics: the turns of ", name,
-          " go from ", r.rotation_lower, " to ", r.rotation_upper);
+          n.x, ", ", n.y, ", ", n.z, ") is not a unit vector");
+  require(r.max_tilt >= 0, "duet: inverse_kinematics: max_tilt of ", name, " is ", r.max_tilt,
+          " (expected a non-negative number)");
+  require(r.rotation_upper - r.rotation_lower >= 0,
+          "duet: inverse_kinematics: the rotation angle of ", name, " goes from ", r.rotation_lower,
+          " to ", r.rotation_upper, " (expected lower <= upper)");
 }
 
-/// Sets a row of `twist_constraint`: least ≤ n·ω ≤ most.
-inline void want_turn(twist_constraint& wanted, Eigen::Index row, const vector3<double>& n,
-                      double least, double most) {
-  wanted.matrix.block<1, 3>(row, 3) = n.transpose();
-  wanted.lower[row] = least;
-  wanted.upper[row] = most;
+/// Sets a row of `twist_constraint`: lower ≤ n·ω ≤ upper.
+inline void constrain_rotation(twist_constraint& constraint, Eigen::Index row,
+                               const vector3<double>& n, double lower, double upper) {
+  constraint.matrix.block<1, 3>(row, 3) = n.transpose();
+  constraint.lower[row] = lower;
+  constraint.upper[row] = upper;
 }
 
 /// Constrains the rotation that takes an axis a of the tip to b, exactly or to within `max_tilt`.
-inline void want_axis(twist_constraint& wanted, const vector3<double>& a, const vector3<double>& b,
-                      double tilt) {
-  int least = 0;
-  a.cwiseAbs().minCoeff(&least);
-  const vector3<double> across = a.cross(b), any = a.cross(vector3<double>::Unit(least));
+inline void constrain_axis(twist_constraint& constraint, const vector3<double>& a,
+                           const vector3<double>& b, double tilt) {
+  int smallest = 0;
+  a.cwiseAbs().minCoeff(&smallest);
+  const vector3<double> across = a.cross(b), any = a.cross(vector3<double>::Unit(smallest));
   const vector3<double> t = any / any.norm();
   const double sine = across.norm(), angle = std::atan2(sine, a.dot(b));
   const vector3<double> u = sine > 0 ? vector3<double>(across / sine) : t;
   if (tilt > 0) {
     // The angle grows by −u·ω.
-    want_turn(wanted, 3, -u, -std::numeric_limits<double>::infinity(), tilt - angle);
+    constrain_rotation(constraint, 3, -u, -std::numeric_limits<double>::infinity(), tilt - angle);
     return;
   }
   const vector3<double> s = a.cross(t);
-  want_turn(wanted, 3, t, angle * u.dot(t), angle * u.dot(t));
-  want_turn(wanted, 4, s, angle * u.dot(s), angle * u.dot(s));
+  constrain_rotation(constraint, 3, t, angle * u.dot(t), angle * u.dot(t));
+  constrain_rotation(constraint, 4, s, angle * u.dot(s), angle * u.dot(s));
 }
 
 } // namespace detail
@@ -197,28 +200,28 @@ inline twist_constraint task_space_region::constraint(const dual_quaternion<doub
   const matrix3<double> axes = rotation_matrix(r);
   const vector3<double> at = axes.transpose() * (translation(tip) - translation(frame));
   for (Eigen::Index i = 0; i < 3; ++i) {
-    const double least = lower[std::size_t(i)], most = upper[std::size_t(i)];
-    if (least > -infinity || most < infinity) {
+    const double from = lower[std::size_t(i)], to = upper[std::size_t(i)];
+    if (from > -infinity || to < infinity) {
       result.matrix.block<1, 3>(i, 0) = axes.col(i).transpose();
-      result.lower[i] = least - at[i];
-      result.upper[i] = most - at[i];
+      result.lower[i] = from - at[i];
+      result.upper[i] = to - at[i];
     }
   }
   const vector3<double> n(axis[0], axis[1], axis[2]);
   const vector3<double> a = rotate(rotation(tip), n), b = rotate(r, n);
   if (max_tilt < pi) {
-    detail::want_axis(result, a, b, max_tilt);
+    detail::constrain_axis(result, a, b, max_tilt);
   }
   const double range = rotation_upper - rotation_lower;
   if (range < 2 * pi) {
     // With R = s t, t a rotation about n and s one about an axis orthogonal to it, the angle of t
     // is that of the quaternion's component along n, and grows by (a + b)·ω / (1 + a·b).
     const quaternion<double> q = conj(r) * rotation(tip);
-    const double turn = 2 * std::atan2(n.dot(vector3<double>(q.x(), q.y(), q.z())), q.w());
-    const double middle = rotation_lower + range / 2;
-    const double nearest = middle + std::remainder(turn - middle, 2 * pi);
-    detail::want_turn(result, 5, (a + b) / std::max(1 + a.dot(b), 1e-9), rotation_lower - nearest,
-                      rotation_upper - nearest);
+    const double angle = 2 * std::atan2(n.dot(vector3<double>(q.x(), q.y(), q.z())), q.w());
+    const double centre = rotation_lower + range / 2;
+    const double nearest = centre + std::remainder(angle - centre, 2 * pi);
+    detail::constrain_rotation(result, 5, (a + b) / std::max(1 + a.dot(b), 1e-9),
+                               rotation_lower - nearest, rotation_upper - nearest);
   }
   return result;
 }
@@ -226,11 +229,11 @@ inline twist_constraint task_space_region::constraint(const dual_quaternion<doub
 inline double task_space_region::distance_from(const vector3<double>& point) const {
   const vector3<double> at =
       rotation_matrix(rotation(frame)).transpose() * (point - translation(frame));
-  vector3<double> gap;
+  vector3<double> outside;
   for (Eigen::Index i = 0; i < 3; ++i) {
-    gap[i] = at[i] - std::clamp(at[i], lower[std::size_t(i)], upper[std::size_t(i)]);
+    outside[i] = at[i] - std::clamp(at[i], lower[std::size_t(i)], upper[std::size_t(i)]);
   }
-  return gap.norm();
+  return outside.norm();
 }
 
 } // namespace duet

@@ -29,18 +29,18 @@ struct printed_plan_options {
 
 namespace detail {
 
-/// Steps of N23 towards `next(k, here)`, k = 1, 2, …, until the tip is close to `goal` after
-/// `fewest` steps or more. `keep(k, joints, pose)` is called with every waypoint.
-template <class C, class Next, class Keep>
+/// Steps of N23 towards `next(k, current)`, k = 1, 2, …, until the tip is close to `goal` after
+/// `min_steps` steps or more. `record(k, joints, pose)` is called with every waypoint.
+template <class C, class Next, class Record>
 [[nodiscard]] stop_reason printed_steps(const C& chain, joint_vector<double, C::joints> theta,
-                                        const dual_quaternion<double>& goal, int fewest,
+                                        const dual_quaternion<double>& goal, int min_steps,
                                         const printed_plan_options& options, const Next& next,
-                                        const Keep& keep) {
-  dual_quaternion<double> here = chain.pose(theta);
-  keep(0, theta, here);
+                                        const Record& record) {
+  dual_quaternion<double> current = chain.pose(theta);
+  record(0, theta, current);
   for (int k = 0;; ++k) {
-    const pose_error left = pose_error_between(here, goal);
-    if (k >= fewest && options.tolerance.ratio(left) <= 1) {
+    const pose_error remaining = pose_error_between(current, goal);
+    if (k >= min_steps && options.tolerance.ratio(remaining) <= 1) {
       return stop_reason::reached;
     }
     if (k == options.max_iterations) {
@@ -48,7 +48,7 @@ template <class C, class Next, class Keep>
     }
     bool is_singular = false;
     catching<invalid_input>(
-        [&] { theta = resolved_step(chain, theta, next(k + 1, here), options.beta); },
+        [&] { theta = resolved_step(chain, theta, next(k + 1, current), options.beta); },
         [&](const auto&) { is_singular = true; });
     if (is_singular) {
       return stop_reason::singular;
@@ -58,8 +58,8 @@ template <class C, class Next, class Keep>
         return stop_reason::joint_limit;
       }
     }
-    here = chain.pose(theta);
-    keep(k + 1, theta, here);
+    current = chain.pose(theta);
+    record(k + 1, theta, current);
   }
 }
 
@@ -72,8 +72,8 @@ template <class C, class Next, class Keep>
 ///
 /// For study. Every step starts where the last one ended, so the path drifts from the screw motion
 /// (`deviations`, from its nearest pose); joint limits are only checked to stop; and with a fixed τ
-/// of what is left the goal is approached slower and slower: each step leaves about 1 − βτ of the
-/// motion, so β does what τ does.
+/// of the remaining motion the approach to the goal slows down: each step leaves about 1 − βτ of
+/// the motion, so β and τ have the same effect.
 ///
 /// \return `motion_plan<N>`
 /// \throws invalid_input for a start outside the limits and for a goal that is not a pose
@@ -89,11 +89,13 @@ template <SerialChain C, VectorLike Start>
   const auto motion = screw_parameters(conj(first) * goal);
   plan.reason = detail::printed_steps(
       chain, theta, goal, 0, options,
-      [&](int, const dual_quaternion<double>& here) { return sclerp(here, goal, options.tau); },
-      [&](int k, const auto& joints, const dual_quaternion<double>& here) {
-        const auto nearest = nearest_on_screw(first, motion, here, 1);
-        detail::add_waypoint(plan, chain, joints, here, nearest.tau,
-                             pose_error_between(nearest.pose, here));
+      [&](int, const dual_quaternion<double>& current) {
+        return sclerp(current, goal, options.tau);
+      },
+      [&](int k, const auto& joints, const dual_quaternion<double>& current) {
+        const auto nearest = nearest_on_screw(first, motion, current, 1);
+        detail::add_waypoint(plan, chain, joints, current, nearest.tau,
+                             pose_error_between(nearest.pose, current));
         plan.iterations = k;
       });
   return plan;
@@ -106,7 +108,7 @@ template <SerialChain C, VectorLike Start>
 ///
 /// For study; with limits as in `printed_screw_plan`. A step leaves 1 − β of the motion, so with
 /// steps of the length h the tip lags (1 − β)/β h behind; it follows for 0 < β < 2, with β = 1 to
-/// the second order of h.
+/// second order in h.
 ///
 /// \return `motion_plan<N>`
 /// \throws invalid_input for a start outside the limits, for no poses, and for one that is not a
@@ -125,9 +127,9 @@ template <SerialChain C, VectorLike Start>
   plan.reason = detail::printed_steps(
       chain, detail::to_chain_joints(chain, start), path.back(), int(path.size()), options,
       [&](int k, const dual_quaternion<double>&) { return path[target(k)]; },
-      [&](int k, const auto& joints, const dual_quaternion<double>& here) {
-        detail::add_waypoint(plan, chain, joints, here, k == 0 ? 0. : double(target(k) + 1),
-                             pose_error_between(path[target(k)], here));
+      [&](int k, const auto& joints, const dual_quaternion<double>& current) {
+        detail::add_waypoint(plan, chain, joints, current, k == 0 ? 0. : double(target(k) + 1),
+                             pose_error_between(path[target(k)], current));
         plan.iterations = k;
       });
   return plan;

@@ -53,29 +53,31 @@ private:
   std::vector<V> rows_;
 };
 
-/// Minimiser x of slope·x + ½ xᵀ B x under the constraints, B = `curvature` positive definite;
-/// nothing if no x satisfies them. With B = L Lᵀ and y = Lᵀx + L⁻¹ slope that is the least y.
+/// Minimiser x of gradient·x + ½ xᵀ B x under the constraints, B = `curvature` positive definite;
+/// nothing if no x satisfies them. With B = L Lᵀ and y = Lᵀx + L⁻¹ gradient the objective is ½|y|²
+/// up to a constant: a least-norm problem for y.
 template <class V, class M>
-[[nodiscard]] std::optional<V> quadratic_step(const V& slope, const M& curvature,
+[[nodiscard]] std::optional<V> quadratic_step(const V& gradient, const M& curvature,
                                               const step_conditions<V>& conditions) {
   const cholesky<M> factors(curvature);
-  orthonormal_rows<V> kept;
-  V aim = V::Zero(slope.size()); // the least that satisfies the equations
+  orthonormal_rows<V> equality_rows;
+  V aim = V::Zero(gradient.size()); // the least-norm y that satisfies the equations
   for (const inequality<V>& each : conditions.equations) {
     const V row = factors.forward(each.normal);
-    const double missing = each.bound - row.dot(aim), length = kept.add(row);
+    const double residual = each.bound - row.dot(aim), length = equality_rows.add(row);
     if (length > 0) {
-      aim += missing * length / (length * length + 1e-14 * row.squaredNorm()) * kept.back();
+      aim +=
+          residual * length / (length * length + 1e-14 * row.squaredNorm()) * equality_rows.back();
     }
   }
-  aim -= kept(factors.forward(slope));
-  std::vector<inequality<V>> left;
-  left.reserve(conditions.inequalities.size());
+  aim -= equality_rows(factors.forward(gradient));
+  std::vector<inequality<V>> reduced;
+  reduced.reserve(conditions.inequalities.size());
   for (const inequality<V>& each : conditions.inequalities) {
     const V row = factors.forward(each.normal);
-    left.push_back({kept(row), each.bound - row.dot(aim)});
+    reduced.push_back({equality_rows(row), each.bound - row.dot(aim)});
   }
-  const std::optional<V> correction = least_distance(left, slope.size());
+  const std::optional<V> correction = least_distance(reduced, gradient.size());
   return correction ? std::optional<V>(factors.backward(V(aim + *correction))) : std::nullopt;
 }
 

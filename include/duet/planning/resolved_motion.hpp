@@ -47,12 +47,12 @@ template <SerialChain C, VectorLike X, class T>
                                  double beta) {
   using S = promote_t<detail::chain_scalar<C, X>, T>;
   using argument = detail::vector_argument<X>;
-  const dual_quaternion<S> here(chain.pose(theta));
-  const dual_quaternion<S> given(next);
+  const dual_quaternion<S> current(chain.pose(theta));
+  const dual_quaternion<S> target(next);
   const auto aligned = select(
-      innermost(dot(rotation(here), rotation(given))) < 0,
-      [&] { return dual_quaternion<S>(-given); }, [&] { return given; });
-  const vector7<S> difference = pose_coordinates(aligned) - pose_coordinates(here);
+      innermost(dot(rotation(current), rotation(target))) < 0,
+      [&] { return dual_quaternion<S>(-target); }, [&] { return target; });
+  const vector7<S> difference = pose_coordinates(aligned) - pose_coordinates(current);
   const auto b = resolved_rate_matrix(chain, theta);
   detail::joint_vector<S, C::joints> result(chain.size());
   for (Eigen::Index i = 0; i < result.size(); ++i) {

@@ -39,9 +39,9 @@ void append_components(std::vector<double>& row, const V& values) {
 
 } // namespace detail
 
-/// Writes the waypoints of a plan as CSV, with all digits and independently of the locale; the
-/// whole file or none: τ, joint coordinates, the tip's position and rotation, its deviations. Units
-/// in the header are those of robots in metres.
+/// Writes the waypoints of a plan as CSV, atomically, with all digits and independently of the
+/// locale: τ, joint coordinates, the tip's position and rotation, its deviations. Units in the
+/// header are those of robots in metres.
 ///
 /// \throws invalid_input for a plan without waypoints, file_error
 template <int N>
@@ -67,7 +67,8 @@ void save_plan(const std::string& path, const motion_plan<N>& plan) {
 /// \throws invalid_input for a step that is not positive, file_error
 template <int N>
 void save_trajectory(const std::string& path, const joint_trajectory<N>& trajectory, double step) {
-  detail::require(step > 0, "duet: save_trajectory: the step is ", to_text(step));
+  detail::require(step > 0, "duet: save_trajectory: the step is ", to_text(step),
+                  " (expected a positive number)");
   const Eigen::Index n = trajectory(0).value.size();
   std::string text = "t [s]" + detail::numbered_columns("theta", "rad or m", n) +
                      detail::numbered_columns("rate", "rad/s or m/s", n) +

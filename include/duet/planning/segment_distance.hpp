@@ -66,7 +66,7 @@ template <class T>
 }
 
 // Signed distance of the nearest point x of a segment, and the direction out of the obstacle. The
-// segment's own direction is needed if x is on the obstacle's axis or centre, or their difference
+// direction of the segment is needed if x is on the obstacle's axis or centre, or their difference
 // is round-off: the direction out is then perpendicular to both.
 
 /// Signed distance from all points within `radius` of an axis, whose point `nearest` is nearest to
@@ -77,15 +77,15 @@ template <class T>
                                                    const vector3<T>& axis) {
   using std::sqrt;
   using R = real_type_t<T>;
-  const vector3<T> apart = x - nearest;
-  const T square = apart.squaredNorm();
+  const vector3<T> difference = x - nearest;
+  const T square = difference.squaredNorm();
   const R rounding = 8 * std::numeric_limits<R>::epsilon();
   if (innermost(square) <= rounding * rounding * innermost(x.squaredNorm())) {
     const vector3<T> out = across(along, axis);
-    return {T(out.dot(apart) - radius), out};
+    return {T(out.dot(difference) - radius), out};
   }
   const T length = sqrt(square);
-  return {T(length - radius), vector3<T>(apart / length)};
+  return {T(length - radius), vector3<T>(difference / length)};
 }
 
 template <class T>
@@ -108,7 +108,7 @@ template <class T>
   return {T(h.normal.dot(x) - h.offset), h.normal};
 }
 
-// The point of a segment from + t · along, 0 ≤ t ≤ 1, with the least signed distance from an
+// The point of a segment from + t · along, 0 ≤ t ≤ 1, with the smallest signed distance from an
 // obstacle. Which case holds is decided by real values; t itself is computed over the scalar.
 
 template <class T>
@@ -123,7 +123,7 @@ template <class T>
 /// cancellation if lines are nearly parallel.
 ///
 /// There t is ill-conditioned, and the distance changes little with t: within 1e-6 of parallel t
-/// counts as constant, or round-off times its rate would be what gradients consist of.
+/// counts as constant, or round-off times its rate would dominate gradients.
 template <class T>
 [[nodiscard]] T nearest_on_segment(const capsule<T>& c, const vector3<T>& from,
                                    const vector3<T>& along) {
@@ -133,7 +133,7 @@ template <class T>
   const vector3<T> normal = cross_product(along, axis);
   const T square = normal.squaredNorm();
   if (innermost(square) == 0) {
-    return (first + last) / T(2); // the middle of where they are side by side
+    return (first + last) / T(2); // the midpoint of the overlap
   }
   const auto distance = [&](const T& t) {
     const vector3<T> x = from + t * along;
@@ -143,11 +143,11 @@ template <class T>
   if (innermost(square) < 1e-12 * innermost(along.squaredNorm()) * innermost(axis.squaredNorm())) {
     best = T(innermost(best));
   }
-  auto least = distance(best);
+  auto min_distance = distance(best);
   for (const T& end : {first, last, T(0), T(1)}) {
-    const auto here = distance(end);
-    if (here < least) {
-      least = here;
+    const auto end_distance = distance(end);
+    if (end_distance < min_distance) {
+      min_distance = end_distance;
       best = end;
     }
   }

@@ -37,7 +37,7 @@ public:
   /// \param spacing     joint step from one configuration of a component to the next
   /// \param iterations  maximum number of iterations of Newton's method
   self_motion_components(const pose_solver<Room>& solver, double spacing, int iterations)
-      : solver_(solver), spacing_(spacing), left_(iterations) {
+      : solver_(solver), spacing_(spacing), remaining_iterations_(iterations) {
     for (std::ptrdiff_t i = 0; i < solver.model.size; ++i) {
       is_endless_ = is_endless_ || solver.is_endless(i);
     }
@@ -45,58 +45,59 @@ public:
 
 protected:
   [[nodiscard]] step_result<Room> tried(const chain_state<Room>& from, const tip_pose& target,
-                                        const vector& wish) {
-    auto result = solver_.approach(from, target, wish);
-    left_ -= result.iterations;
+                                        const vector& desired_step) {
+    auto result = solver_.approach(from, target, desired_step);
+    remaining_iterations_ -= result.iterations;
     return result;
   }
 
   [[nodiscard]] bool is_known(const vector& theta, std::size_t first) const {
-    return std::any_of(found_.begin() + std::ptrdiff_t(first), found_.end(), [&](const auto& x) {
-      // Two that part at a singularity are near each other at first.
+    return std::any_of(nodes_.begin() + std::ptrdiff_t(first), nodes_.end(), [&](const auto& x) {
+      // Two components that separate at a singularity are near each other at first.
       return is_near(x.state.theta, theta, (x.is_isolated ? 1e-4 : .5) * spacing_ * spacing_);
     });
   }
 
-  /// Adds the component that contains found_[start], unless only the tolerance makes it one.
+  /// Adds the component that contains nodes_[start], unless it is larger than a point only because
+  /// of the tolerance.
   void follow(std::size_t start, const tip_pose& target) {
     extend(start, target);
     const bool is_isolated =
-        std::all_of(found_.begin() + std::ptrdiff_t(start), found_.end(), [&](const auto& x) {
-          return norm(x.state.theta - found_[start].state.theta) < .1 * spacing_;
+        std::all_of(nodes_.begin() + std::ptrdiff_t(start), nodes_.end(), [&](const auto& x) {
+          return norm(x.state.theta - nodes_[start].state.theta) < .1 * spacing_;
         });
     if (is_isolated) {
-      found_.erase(found_.begin() + std::ptrdiff_t(start) + 1, found_.end());
-      found_[start].is_isolated = true;
+      nodes_.erase(nodes_.begin() + std::ptrdiff_t(start) + 1, nodes_.end());
+      nodes_[start].is_isolated = true;
     }
   }
 
   const pose_solver<Room>& solver_;
   double spacing_;
-  int left_;
-  std::vector<search_node<Room>> found_;
+  int remaining_iterations_;
+  std::vector<search_node<Room>> nodes_;
 
 private:
   /// True if near each other except for full turns of joints without limits.
   [[nodiscard]] bool is_near(const vector& a, const vector& b, double square) const {
-    const vector apart = a - b;
+    const vector difference = a - b;
     const auto square_of = [](const vector& x) { return dot(x, x); };
-    return square_of(apart) < square ||
-           (is_endless_ && square_of(solver_.without_turns(apart)) < square);
+    return square_of(difference) < square ||
+           (is_endless_ && square_of(solver_.modulo_full_turns(difference)) < square);
   }
 
-  /// Adds the configurations on a curve with found_[start], alternately in both directions, so that
+  /// Adds the configurations on a curve with nodes_[start], alternately in both directions, so that
   /// those nearby come first.
   void extend(std::size_t start, const tip_pose& target) {
-    const vector along = self_motion_space(found_[start].state.jacobian).any_direction();
+    const vector along = self_motion_space(nodes_[start].state.jacobian).any_direction();
     front ends[2] = {{start, along, spacing_}, {start, -1 * along, spacing_}};
     bool is_open[2] = {norm(along) > 0, norm(along) > 0};
-    for (int count = 0; (is_open[0] || is_open[1]) && left_ > 0; ++count) {
+    for (int count = 0; (is_open[0] || is_open[1]) && remaining_iterations_ > 0; ++count) {
       const int side = count % 2;
       if (is_open[side]) {
-        is_open[side] = slide(ends[side], target);
-        // A closed curve: the ends meet.
-        if (count > 6 && is_near(found_[ends[0].at].state.theta, found_[ends[1].at].state.theta,
+        is_open[side] = extend_by_step(ends[side], target);
+        // If the ends meet, the curve is closed.
+        if (count > 6 && is_near(nodes_[ends[0].at].state.theta, nodes_[ends[1].at].state.theta,
                                  .64 * spacing_ * spacing_)) {
           return;
         }
@@ -111,29 +112,30 @@ private:
   };
 
   /// Takes one step on; false at the end of the component.
-  bool slide(front& end, const tip_pose& target) {
-    const chain_state<Room>& here = found_[end.at].state;
-    // As far as the limits allow.
+  bool extend_by_step(front& end, const tip_pose& target) {
+    const chain_state<Room>& current = nodes_[end.at].state;
+    // Step length up to the limits.
     double reach = end.step;
-    for (std::ptrdiff_t i = 0; i < here.theta.size(); ++i) {
+    for (std::ptrdiff_t i = 0; i < current.theta.size(); ++i) {
       const double d = end.direction[i];
       if (std::abs(d) > 1e-9) {
         const double bound = d > 0 ? solver_.upper[i] : solver_.lower[i];
-        reach = std::min(reach, (bound - here.theta[i]) / d);
+        reach = std::min(reach, (bound - current.theta[i]) / d);
       }
     }
     for (; reach > spacing_ / 100; reach /= 2) {
-      const auto next = tried(here, target, reach * end.direction);
-      const vector moved = next.state.theta - here.theta;
-      if (next.is_within(solver_.tolerance) && norm(moved) < 2 * reach &&
-          dot(moved, end.direction) > .7 * reach) {
+      const auto next = tried(current, target, reach * end.direction);
+      const vector displacement = next.state.theta - current.theta;
+      if (next.is_within(solver_.tolerance) && norm(displacement) < 2 * reach &&
+          dot(displacement, end.direction) > .7 * reach) {
         const vector direction = self_motion_space(next.state.jacobian).direction(end.direction);
-        const bool is_turned = orientation(next.state.jacobian, direction) *
-                                   orientation(here.jacobian, end.direction) <
-                               0;
-        if (dot(direction, end.direction) > .7 && (!is_turned || reach < spacing_ / 50)) {
-          found_.push_back({next.state, found_[end.at].u, std::ptrdiff_t(end.at)});
-          end = {found_.size() - 1, direction, std::min(spacing_, 2 * reach)};
+        const bool reverses_orientation = orientation(next.state.jacobian, direction) *
+                                              orientation(current.jacobian, end.direction) <
+                                          0;
+        if (dot(direction, end.direction) > .7 &&
+            (!reverses_orientation || reach < spacing_ / 50)) {
+          nodes_.push_back({next.state, nodes_[end.at].u, std::ptrdiff_t(end.at)});
+          end = {nodes_.size() - 1, direction, std::min(spacing_, 2 * reach)};
           return true;
         }
       }

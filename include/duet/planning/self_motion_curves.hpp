@@ -80,7 +80,7 @@ template <class C>
   result.size = model.length;
   result.goal = goal;
   for (std::size_t i = 0; i < 7; ++i) {
-    result.is_revolute[i] = model.turns[i];
+    result.is_revolute[i] = model.is_rotational[i];
   }
   result.tip_error = [model,
                       scaled_goal = tip_pose{goal.rotation, 1 / model.length * goal.translation}](

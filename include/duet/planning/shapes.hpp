@@ -70,15 +70,15 @@ template <class T>
 template <class T, class... Name>
 void require_extent(const T& x, const Name&... name) {
   require(innermost(x) >= 0 && innermost(x - x) == 0, "duet: ", name..., " is ", innermost(x),
-          ", not a number from 0 up");
+          " (expected a non-negative number)");
 }
 
 } // namespace detail
 
-/// Checks whether a shape is valid: finite, of no negative size, with unit quaternions and normals.
-/// For those who extend duet.
+/// Checks whether a shape is valid: finite, without negative sizes, with unit quaternions and
+/// normals. For those who extend duet.
 ///
-/// \param name  for the message, in parts
+/// \param name  name of the shape in messages, in pieces that are concatenated
 /// \throws invalid_input
 template <class T, class... Name>
 void require_shape(const sphere<T>& s, const Name&... name) {
@@ -94,9 +94,9 @@ void require_shape(const capsule<T>& c, const Name&... name) {
 template <class T, class... Name>
 void require_shape(const box<T>& b, const Name&... name) {
   detail::require(is_unit(b.pose, 1e-6), "duet: the pose of ", name...,
-                  " is no unit dual quaternion");
+                  " is not a unit dual quaternion");
   for (Eigen::Index i = 0; i < 3; ++i) {
-    detail::require_extent(b.half_extents[i], "half size ", i, " of ", name...);
+    detail::require_extent(b.half_extents[i], "half extent ", i, " of ", name...);
   }
 }
 template <class T, class... Name>
@@ -105,7 +105,7 @@ void require_shape(const half_space<T>& h, const Name&... name) {
                   " is not finite");
   const auto square = innermost(h.normal.squaredNorm());
   detail::require(square - 1 <= 1e-6 && 1 - square <= 1e-6, "duet: the normal of ", name...,
-                  " is no unit vector");
+                  " is not a unit vector");
 }
 
 } // namespace duet

@@ -18,19 +18,19 @@ namespace duet::detail {
 /// Singular value that counts as zero.
 inline constexpr double singularity_threshold = 1e-5;
 
-/// Null space of the Jacobian: motion of the joints without the tip; it refers to the Jacobian.
+/// Null space of the Jacobian: joint motion with the tip fixed. Keeps a reference to the Jacobian.
 template <int Room>
 class self_motion_space {
 public:
   using vector = small_vector<Room>;
 
-  /// \param none  singular value that counts as zero
+  /// \param none  singular values up to this count as zero
   explicit self_motion_space(const small_matrix<6, Room>& jacobian,
                              double none = singularity_threshold)
       : jacobian_(jacobian), gram_(gram_of(jacobian), {0, none * none}) {}
 
-  /// Projection of a step onto the null space, which leaves the tip in place: λ (JᵀJ + λ)⁻¹ of it,
-  /// with λ the square of what counts as zero.
+  /// Projection of a step onto the null space, where the tip is fixed: λ (JᵀJ + λ)⁻¹ times the
+  /// step, λ the square of the singular value that counts as zero.
   [[nodiscard]] vector projection_of(vector step) const {
     const small_twist force = gram_.solve(residual_after_step({}, jacobian_, step));
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
@@ -38,19 +38,19 @@ public:
     }
     return step;
   }
-  /// Direction of the null space next to `wish`, of unit length; zero if none is near it.
-  [[nodiscard]] vector direction(vector wish) const {
+  /// Unit direction of the null space nearest to `desired`; zero if none is near it.
+  [[nodiscard]] vector direction(vector desired) const {
     for (int round = 0; round < 2; ++round) { // the second time for round-off
-      wish = projection_of(wish);
-      const double length = norm(wish);
+      desired = projection_of(desired);
+      const double length = norm(desired);
       if (!(length > .3)) {
         return {};
       }
-      wish = 1 / length * wish;
+      desired = 1 / length * desired;
     }
-    return wish;
+    return desired;
   }
-  /// Any direction of the null space, of unit length; zero if there is none.
+  /// Any unit direction of the null space; zero if it has dimension zero.
   [[nodiscard]] vector any_direction() const {
     vector best;
     double largest = 0;
@@ -103,8 +103,8 @@ template <int Room>
   return sign;
 }
 
-/// Left singular twist: the twist w of unit length that joint velocities produce least, wᵀJ = 0 in
-/// a singular configuration.
+/// Left singular twist: left singular vector w of J for its smallest singular value; wᵀJ = 0 in a
+/// singular configuration.
 template <int Room>
 [[nodiscard]] small_twist left_singular_twist(const small_matrix<6, Room>& jacobian) {
   constexpr double none = 1e-6;
@@ -141,8 +141,8 @@ public:
   }
 
   /// Escape direction, of unit length, in which the singularity is left fastest; its opposite is as
-  /// good. The joint velocities n that leave the tip in place no longer do so at θ + s d, by s
-  /// wᵀHd·n: d is the unit vector for which that is largest, of all n of length 1.
+  /// good. Joint velocities n of the null space move the tip at θ + s d by s wᵀHd·n: d is the unit
+  /// vector that maximises this over all n of length 1.
   [[nodiscard]] small_vector<Room> escape_direction() const {
     small_vector<Room> d;
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
@@ -164,11 +164,12 @@ public:
   /// twist does: wᵀJn s + ½ s² nᵀHn = w·e. Zero if there are none.
   [[nodiscard]] std::array<small_vector<Room>, 2> steps_for(const small_twist& e) const {
     const auto n = self_motion_space(jacobian_, damping_threshold).any_direction();
-    const double slope = -dot(w_, residual_after_step({}, jacobian_, n)), bend = dot(n, times_h(n));
-    const double root = std::sqrt(slope * slope + 2 * bend * dot(w_, e));
+    const double linear = -dot(w_, residual_after_step({}, jacobian_, n)),
+                 quadratic = dot(n, times_h(n));
+    const double root = std::sqrt(linear * linear + 2 * quadratic * dot(w_, e));
     std::array<small_vector<Room>, 2> result;
     for (std::size_t k = 0; k < 2; ++k) {
-      const double s = ((k == 0 ? root : -root) - slope) / bend;
+      const double s = ((k == 0 ? root : -root) - linear) / quadratic;
       if (std::abs(s) < 1) { // not NaN either
         result[k] = s * n;
       }

@@ -19,7 +19,7 @@
 #include <vector>
 
 /// \file
-/// Refinement of a solution of a goal to one nearby that keeps clear of obstacles and minimises an
+/// Refinement of a solution of a goal to one nearby that respects obstacle margins and minimises an
 /// objective.
 
 namespace duet::detail {
@@ -36,7 +36,7 @@ public:
   virtual ~solution_preferences() = default;
   [[nodiscard]] virtual bool has_objective() const = 0;
   [[nodiscard]] virtual double objective(const small_vector<Room>& theta) const = 0;
-  [[nodiscard]] virtual vector slope(const small_vector<Room>& theta) const = 0;
+  [[nodiscard]] virtual vector gradient(const small_vector<Room>& theta) const = 0;
   /// Inequalities that keep a step at the margin to obstacles.
   [[nodiscard]] virtual std::vector<inequality<vector>>
   clear_of_obstacles(const small_vector<Room>& theta) const = 0;
@@ -55,11 +55,11 @@ public:
 
   struct point {
     joints theta;
-    pose_error left;
-    double excess = 0; ///< largest deviation or margin violation, in tolerances
+    pose_error residual;
+    double error_ratio = 0; ///< largest deviation or margin violation, relative to the tolerance
     step_conditions<vector> conditions;
     double value = 0; ///< value of the objective
-    vector slope;
+    vector gradient;
   };
 
   solution_refinement(const planning_model<Room>& model, const tip_goal& goal,
@@ -72,30 +72,31 @@ public:
   [[nodiscard]] std::optional<point> operator()(const joints& theta, int iterations) const;
 
 private:
-  /// Largest step in one direction: beyond, first order is inaccurate.
+  /// Maximum step in one direction, beyond which the first order is inaccurate.
   static constexpr double trusted = .5;
 
   [[nodiscard]] point at(const joints& theta) const {
     point x;
     x.theta = theta;
     const auto state = model_.at(theta);
-    const twist_constraint wanted = goal_.constraint(state.tip);
-    x.left = residual_twist(wanted).left;
-    x.excess = std::max(tolerance_.ratio(x.left), model_.shortfall(theta) / tolerance_.translation);
+    const twist_constraint constraint = goal_.constraint(state.tip);
+    x.residual = residual_twist(constraint).residual;
+    x.error_ratio = std::max(tolerance_.ratio(x.residual),
+                             model_.margin_violation(theta) / tolerance_.translation);
     auto& more = x.conditions.inequalities;
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      if (wanted.matrix.row(i).isZero(0)) {
+      if (constraint.matrix.row(i).isZero(0)) {
         continue;
       }
-      const joints row = goal_row(wanted, i, state.jacobian);
+      const joints row = goal_row(constraint, i, state.jacobian);
       vector normal(model_.size);
       std::copy_n(row.values.begin(), model_.size, normal.begin());
-      const double least = wanted.lower[i], most = wanted.upper[i];
-      if (least == most) {
-        x.conditions.equations.push_back({normal, least});
+      const double lower = constraint.lower[i], upper = constraint.upper[i];
+      if (lower == upper) {
+        x.conditions.equations.push_back({normal, lower});
       } else {
-        add(more, normal, least);
-        add(more, -normal, -most);
+        add(more, normal, lower);
+        add(more, -normal, -upper);
       }
     }
     for (int i = 0; i < model_.size; ++i) {
@@ -122,18 +123,19 @@ private:
 
   /// Point at which all constraints hold again, by least-norm steps.
   [[nodiscard]] std::optional<point> restored(joints theta) const {
-    constexpr double close = 1e-7; // well within, for objectives to be compared
+    constexpr double close = 1e-7; // well within the tolerance, so that objectives are comparable
     const vector none = vector::Zero(model_.size);
     const matrix one = matrix::Identity(model_.size, model_.size);
     double before = std::numeric_limits<double>::infinity();
     for (int k = 0;; ++k) {
       point x = at(theta);
-      const bool is_end = x.excess <= close || k == 20 || (x.excess <= 1 && x.excess > before / 2);
+      const bool is_end =
+          x.error_ratio <= close || k == 20 || (x.error_ratio <= 1 && x.error_ratio > before / 2);
       const auto step = is_end ? std::nullopt : quadratic_step(none, one, x.conditions);
       if (!step) {
-        return x.excess <= 1 ? std::optional<point>(std::move(x)) : std::nullopt;
+        return x.error_ratio <= 1 ? std::optional<point>(std::move(x)) : std::nullopt;
       }
-      before = x.excess;
+      before = x.error_ratio;
       theta = moved(theta, *step, 1);
     }
   }
@@ -141,47 +143,47 @@ private:
     auto x = restored(theta);
     if (x && preferences_.has_objective()) {
       x->value = preferences_.objective(x->theta);
-      x->slope = preferences_.slope(x->theta);
+      x->gradient = preferences_.gradient(x->theta);
     }
     return x;
   }
 
-  /// Projected gradient: the part of the slope that active constraints leave.
+  /// Projection of the gradient onto the directions that the active constraints leave free.
   struct projected_gradient {
-    orthonormal_rows<vector> kept;
+    orthonormal_rows<vector> active_rows;
     std::size_t count = 0;
-    vector slope;
+    vector gradient;
 
     explicit projected_gradient(const point& x) {
       for (const auto& each : x.conditions.equations) {
-        kept.add(each.normal);
+        active_rows.add(each.normal);
       }
       for (const auto& each : x.conditions.inequalities) {
         if (each.bound > -1e-7) {
-          kept.add(each.normal);
+          active_rows.add(each.normal);
           ++count;
         }
       }
-      slope = kept(x.slope);
+      gradient = active_rows(x.gradient);
     }
   };
 
   /// Curvature after the update by a step (damped BFGS).
   [[nodiscard]] matrix learned(matrix curvature, bool is_first, const point& before,
                                const point& after) const {
-    const projected_gradient here(before), there(after);
+    const projected_gradient gradient_before(before), gradient_after(after);
     vector s(model_.size);
     for (int i = 0; i < model_.size; ++i) {
       s[i] = after.theta[i] - before.theta[i];
     }
-    s = there.kept(s);
-    vector y = there.slope - here.slope;
+    s = gradient_after.active_rows(s);
+    vector y = gradient_after.gradient - gradient_before.gradient;
     if (is_first && s.dot(y) > 0) {
       curvature *= y.squaredNorm() / s.dot(y) / curvature(0, 0);
     }
     const vector bs = curvature * s;
     const double sbs = s.dot(bs);
-    if (here.count != there.count || !(sbs > 0)) {
+    if (gradient_before.count != gradient_after.count || !(sbs > 0)) {
       return curvature; // another active set
     }
     if (s.dot(y) < .2 * sbs) {
@@ -210,14 +212,14 @@ solution_refinement<Room>::operator()(const joints& theta, int iterations) const
   bool is_first = true;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     if (is_first) { // a first step of a fifth of a radian
-      const double steepness = projected_gradient(*best).slope.norm();
+      const double steepness = projected_gradient(*best).gradient.norm();
       if (!(steepness > 0)) {
         break;
       }
       curvature = 5 * steepness * matrix::Identity(model_.size, model_.size);
     }
-    const auto step = quadratic_step(best->slope, curvature, best->conditions);
-    const double gain = step ? -best->slope.dot(*step) : 0;
+    const auto step = quadratic_step(best->gradient, curvature, best->conditions);
+    const double gain = step ? -best->gradient.dot(*step) : 0;
     std::optional<point> next;
     for (double part = 1; gain > 0 && part > 1e-4; part /= 3) {
       next = solution(moved(best->theta, *step, part));
@@ -236,7 +238,7 @@ solution_refinement<Room>::operator()(const joints& theta, int iterations) const
     } else if (is_first) {
       break;
     }
-    is_first = !next; // anew if the learned curvature does not help
+    is_first = !next; // restart if the learned curvature does not help
   }
   return best;
 }

@@ -17,7 +17,7 @@
 #include <vector>
 
 /// \file
-/// Search for the preferred one among the solutions of a goal.
+/// Search for the preferred solution of a goal.
 
 namespace duet::detail {
 
@@ -35,42 +35,44 @@ public:
       : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
         search_(model, start, options) {}
 
-  /// Solutions within the limits that are known before the search, up to full turns.
+  /// Solutions within the limits, up to full turns, that are known before the search.
   struct known_solutions {
     std::vector<small_vector<Room>> joints;
     bool is_complete = false; ///< true if there are no others
   };
 
-  /// \param wishes  preferences; null: the first solution is as good as any
+  /// \param preferences  null if the first solution is as good as any
   [[nodiscard]] attempt operator()(const tip_goal& goal,
                                    const solution_preferences<Room>* preferences,
                                    const known_solutions& known = {}) const;
 
 private:
-  /// Joints changed by full turns, as many as limits allow, while that lowers the objective.
-  [[nodiscard]] small_vector<Room> turned(small_vector<Room> theta,
-                                          const solution_preferences<Room>& preferences) const {
-    constexpr double most = 0x1p20;
-    double least = preferences.objective(theta);
-    const auto is_lower_by = [&](int i, double way) {
+  /// Joints moved by full turns within the limits as long as that lowers the objective.
+  [[nodiscard]] small_vector<Room>
+  improved_by_full_turns(small_vector<Room> theta,
+                         const solution_preferences<Room>& preferences) const {
+    constexpr double max_change = 0x1p20;
+    double min_value = preferences.objective(theta);
+    const auto is_lower_by = [&](int i, double change) {
       small_vector<Room> other = theta;
-      other[i] += way;
+      other[i] += change;
       const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
-      const double value = is_within ? preferences.objective(other) : least;
-      const bool result = is_within && is_less(value, least);
+      const double value = is_within ? preferences.objective(other) : min_value;
+      const bool result = is_within && is_less(value, min_value);
       if (result) {
         theta = other;
-        least = value;
+        min_value = value;
       }
       return result;
     };
     for (int i = 0; i < model_.size; ++i) {
-      const double turn = search_.turn()[i];
-      bool is_lower = turn > 0;
+      const double period = search_.period()[i];
+      bool is_lower = period > 0;
       while (is_lower) { // by 1, 2, 4 … full turns, and back
         is_lower = false;
-        for (const double side : {-turn, turn}) {
-          for (double way = side; std::abs(way) < most && is_lower_by(i, way); way *= 2) {
+        for (const double side : {-period, period}) {
+          for (double change = side; std::abs(change) < max_change && is_lower_by(i, change);
+               change *= 2) {
             is_lower = true;
           }
         }
@@ -95,13 +97,14 @@ solution_search<Room>::operator()(const tip_goal& goal,
   }
   const solution_refinement<Room> refine(model_, goal, *preferences, tolerance_);
   attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
-  double least = std::numeric_limits<double>::infinity(); // of the objective
+  double min_value = std::numeric_limits<double>::infinity(); // of the objective
   int iterations = 0, candidates = 0, restarts = 0;
   const auto consider = [&](small_vector<Room> theta) {
-    constexpr int rounds = 4; // after self-motions other full turns may be nearer
+    constexpr int rounds = 4; // after self-motions other full turns may be better
     std::optional<typename solution_refinement<Room>::point> refined;
     for (int k = 0; k < rounds; ++k) {
-      const auto other = preferences->has_objective() ? turned(theta, *preferences) : theta;
+      const auto other =
+          preferences->has_objective() ? improved_by_full_turns(theta, *preferences) : theta;
       if (refined && norm(other - theta) == 0) {
         break;
       }
@@ -111,9 +114,9 @@ solution_search<Room>::operator()(const tip_goal& goal,
       }
       theta = refined->theta;
     }
-    if (refined && (best.reason != stop_reason::reached || is_less(refined->value, least))) {
-      best = {refined->theta, refined->left, 0, 0, 0, stop_reason::reached};
-      least = refined->value;
+    if (refined && (best.reason != stop_reason::reached || is_less(refined->value, min_value))) {
+      best = {refined->theta, refined->residual, 0, 0, 0, stop_reason::reached};
+      min_value = refined->value;
     }
     return refined.has_value();
   };

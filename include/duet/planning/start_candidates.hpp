@@ -58,9 +58,9 @@ public:
     }
     splitmix64 random(1);
     for (int i = 0; i < 100 && !is_complete; ++i) {
-      const auto found = from(configuration(random), goal, 0, 1e-3);
-      if (found.reason == stop_reason::reached && is_new(found.joints, result)) {
-        add(result, {found.joints});
+      const auto solution = from(configuration(random), goal, 0, 1e-3);
+      if (solution.reason == stop_reason::reached && is_new(solution.joints, result)) {
+        add(result, {solution.joints});
       }
     }
     return result;
@@ -81,7 +81,7 @@ public:
   }
 
   /// Joints moved by full turns into their limits, as far as that is possible.
-  [[nodiscard]] joints turned(joints theta) const {
+  [[nodiscard]] joints wrapped_into_limits(joints theta) const {
     for (int i = 0; i < chain_.size(); ++i) {
       if (chain_.steps()[std::size_t(i)].is_rotational &&
           !chain_.steps()[std::size_t(i)].is_translational) {
@@ -106,7 +106,7 @@ public:
 private:
   void add(std::vector<family>& to, family all) const {
     for (joints& theta : all) {
-      theta = turned(theta);
+      theta = wrapped_into_limits(theta);
     }
     std::erase_if(all, [&](const joints& x) { return !is_within_limits(x) || !is_clear(x); });
     if (!all.empty()) {

@@ -52,8 +52,8 @@ public:
     for (std::size_t k = 0; k < candidates.size() && result.starts < options_.max_starts; ++k) {
       const joints start = candidates[k].start;
       auto plan = problem_.follow(start, quick);
-      // A joint that a limit blocked begins anew a full turn before it.
-      const joints other = wrap_angle(start, plan);
+      // If a joint stops at a limit, also try the start with this joint a full turn earlier.
+      const joints other = moved_by_full_turns(start, plan);
       const bool is_known = std::any_of(candidates.begin(), candidates.end(),
                                         [&](const candidate& each) { return each.start == other; });
       if (!is_known && !std::isnan(cost(other))) {
@@ -63,7 +63,7 @@ public:
         return result;
       }
     }
-    // Then with self-motions, from one start of each family.
+    // Then try plans with self-motions, from one start of each family.
     for (const candidate& each : candidates) {
       const bool is_tried = options_.plan.search_step > 0 && chain_.size() > 6 && each.rank == 0;
       if (is_tried && keep(result, problem_.follow(each.start, options_.plan))) {
@@ -86,8 +86,8 @@ private:
     return of.reason == stop_reason::reached;
   }
 
-  /// Candidates: the best of each family, then the second best …; without those near another one,
-  /// and without those at which the objective is nan.
+  /// Candidates: the best of each family, then the second best and so on; without those near
+  /// another one, and without those at which the objective is nan.
   ///
   /// \throws invalid_input if it is nan at all of them
   [[nodiscard]] std::vector<candidate> candidates_at(const dual_quaternion<double>& pose) const {
@@ -121,7 +121,7 @@ private:
     }
     if (result.empty() && !unknown.empty()) {
       fail_not_a_number(
-          "duet: find_start_configuration: the objective is nan at all starts, as at the",
+          "duet: find_start_configuration: the objective is nan at all starts, for example at the",
           unknown[0]);
     }
     std::sort(result.begin(), result.end(), is_before);
@@ -129,12 +129,12 @@ private:
   }
 
   [[nodiscard]] double cost(const joints& theta) const {
-    return problem_.objective ? problem_.objective(theta) : distance_from_middle(theta);
+    return problem_.objective ? problem_.objective(theta) : distance_from_centre(theta);
   }
 
-  /// Sum of squared distances of joints from the middle of their limits, relative to the range; of
+  /// Sum of squared distances of joints from the centre of their limits, relative to the range; of
   /// those without limits, from 0.
-  [[nodiscard]] double distance_from_middle(const joints& theta) const {
+  [[nodiscard]] double distance_from_centre(const joints& theta) const {
     double sum = 0;
     for (int i = 0; i < chain_.size(); ++i) {
       const auto& limits = chain_.limits(i);
@@ -146,9 +146,9 @@ private:
     return sum;
   }
 
-  /// Start with the joints that a plan ends with at a limit moved a full turn away from it.
-  [[nodiscard]] joints wrap_angle(joints start, const motion_plan<-Room>& plan) const {
-    constexpr double turn = 2 * std::numbers::pi, close = 1e-2;
+  /// Start in which the joints that end at a limit in `plan` are moved a full turn away from it.
+  [[nodiscard]] joints moved_by_full_turns(joints start, const motion_plan<-Room>& plan) const {
+    constexpr double full_turn = 2 * std::numbers::pi, close = 1e-2;
     const joints& end = plan.joints.back();
     for (int i = 0; i < chain_.size() && plan.reason == stop_reason::joint_limit; ++i) {
       const auto& step = chain_.steps()[std::size_t(i)];
@@ -156,10 +156,10 @@ private:
       if (!step.is_rotational || step.is_translational) {
         continue;
       }
-      if (end[i] > limits.upper - close && start[i] - turn >= limits.lower) {
-        start[i] -= turn;
-      } else if (end[i] < limits.lower + close && start[i] + turn <= limits.upper) {
-        start[i] += turn;
+      if (end[i] > limits.upper - close && start[i] - full_turn >= limits.lower) {
+        start[i] -= full_turn;
+      } else if (end[i] < limits.lower + close && start[i] + full_turn <= limits.upper) {
+        start[i] += full_turn;
       }
     }
     return start;
@@ -168,11 +168,11 @@ private:
   void find_unsolved(choice& result) const {
     const double first = problem_.first, last = problem_.last;
     const path_function& path = problem_.path;
-    joints nearby = result.plan.joints.empty() ? middle() : result.plan.joints.front();
+    joints nearby = result.plan.joints.empty() ? centre() : result.plan.joints.front();
     const auto is_solved = [&](double u) {
-      const auto found = solutions_.from(nearby, path(u), 100);
-      if (found.reason == stop_reason::reached) {
-        nearby = found.joints;
+      const auto solution = solutions_.from(nearby, path(u), 100);
+      if (solution.reason == stop_reason::reached) {
+        nearby = solution.joints;
         return true;
       }
       return is_solved_otherwise(path(u));
@@ -194,16 +194,16 @@ private:
     }
   }
 
-  /// True if the pose has a solution that the search for one did not find, but all solutions of six
-  /// joints contain.
+  /// True if the complete solution set of six joints contains a solution that the iterative search
+  /// missed.
   [[nodiscard]] bool is_solved_otherwise(const dual_quaternion<double>& pose) const {
     return is_algebraic(chain_, 6) && !solutions_.at(pose, options_.resolution).empty();
   }
 
   void explain(choice& result, const dual_quaternion<double>& pose) const {
-    const auto found = solutions_.from(middle(), pose, 100);
-    result.is_certain = found.reason == stop_reason::out_of_reach;
-    result.reason = found.reason;
+    const auto solution = solutions_.from(centre(), pose, 100);
+    result.is_certain = solution.reason == stop_reason::out_of_reach;
+    result.reason = solution.reason;
     if (result.reason == stop_reason::out_of_reach || result.reason == stop_reason::obstacle) {
       return;
     }
@@ -216,12 +216,12 @@ private:
     const auto infinity = joints::Constant(chain_.size(), std::numeric_limits<double>::infinity());
     const auto without_limits = with_limits(chain_, joints(-infinity), joints(infinity));
     const auto beyond =
-        inverse_kinematics(without_limits, pose, middle(), {.tolerance = options_.plan.tolerance});
+        inverse_kinematics(without_limits, pose, centre(), {.tolerance = options_.plan.tolerance});
     result.reason =
         beyond.reason == stop_reason::reached ? stop_reason::joint_limit : stop_reason::no_solution;
   }
 
-  [[nodiscard]] joints middle() const {
+  [[nodiscard]] joints centre() const {
     joints result(chain_.size());
     for (int i = 0; i < chain_.size(); ++i) {
       const double x = (chain_.limits(i).lower + chain_.limits(i).upper) / 2;

@@ -45,8 +45,8 @@ public:
   }
   [[nodiscard]] double distance_from(const three_vector<double>& point) const override {
     if constexpr (requires { goal_.distance_from(point.eigen()); }) {
-      const three_vector<double> given = length_ * point;
-      return goal_.distance_from(given.eigen()) / length_;
+      const three_vector<double> unscaled_point = length_ * point;
+      return goal_.distance_from(unscaled_point.eigen()) / length_;
     } else {
       return 0;
     }
@@ -59,11 +59,11 @@ private:
 
 /// Full pose as a goal.
 struct full_pose_goal {
-  tip_pose place;
+  tip_pose target;
 
   [[nodiscard]] twist_constraint constraint(const dual_quaternion<double>& tip) const {
     twist_constraint result;
-    const small_twist e = error_twist(to_tip_pose(tip), place);
+    const small_twist e = error_twist(to_tip_pose(tip), target);
     result.matrix.setIdentity();
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
       result.lower[i] = e[i];
@@ -72,49 +72,50 @@ struct full_pose_goal {
     return result;
   }
   [[nodiscard]] double distance_from(const vector3<double>& point) const {
-    return length_of(place.translation - components(point));
+    return length_of(target.translation - components(point));
   }
 };
 
 /// Residual twist: the part of a constraint that is not satisfied yet, and its size.
 struct residual_twist {
   small_twist e;
-  pose_error left;
+  pose_error residual;
 
-  explicit residual_twist(const twist_constraint& wanted) {
+  explicit residual_twist(const twist_constraint& constraint) {
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      e[i] = std::max(wanted.lower[i], std::min(wanted.upper[i], 0.0));
+      e[i] = std::max(constraint.lower[i], std::min(constraint.upper[i], 0.0));
     }
-    left = deviation_of(e);
+    residual = deviation_of(e);
   }
 };
 
 /// Row of M J, J in `frame::hybrid`.
 template <int Room>
-[[nodiscard]] small_vector<Room> goal_row(const twist_constraint& wanted, std::ptrdiff_t row,
+[[nodiscard]] small_vector<Room> goal_row(const twist_constraint& constraint, std::ptrdiff_t row,
                                           const small_matrix<6, Room>& jacobian) {
   small_vector<Room> result;
   for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
-      result[k] += wanted.matrix(row, i) * jacobian(i, k);
+      result[k] += constraint.matrix(row, i) * jacobian(i, k);
     }
   }
   return result;
 }
 
-/// Sets the equations M J Δ = e of a goal; rows within their bounds impose nothing.
+/// Sets the equations M J Δ = e of a goal; rows within their bounds impose no equation.
 template <int Room>
 void set_equations(goal_equations<Room>& x, const tip_goal& goal) {
-  const twist_constraint wanted = goal.constraint(x.at.tip);
-  const residual_twist missing(wanted);
-  x.e = missing.e;
-  x.left = missing.left;
+  const twist_constraint constraint = goal.constraint(x.at.tip);
+  const residual_twist unsatisfied(constraint);
+  x.e = unsatisfied.e;
+  x.residual = unsatisfied.residual;
   const small_matrix<6, Room> jacobian = x.at.jacobian;
   for (std::ptrdiff_t i = 0; i < 6; ++i) {
-    const bool is_equation = wanted.lower[i] == wanted.upper[i] && !wanted.matrix.row(i).isZero(0);
+    const bool is_equation =
+        constraint.lower[i] == constraint.upper[i] && !constraint.matrix.row(i).isZero(0);
     x.is_free[std::size_t(i)] = x.e[i] == 0 && !is_equation;
     const auto row =
-        x.is_free[std::size_t(i)] ? small_vector<Room>{} : goal_row(wanted, i, jacobian);
+        x.is_free[std::size_t(i)] ? small_vector<Room>{} : goal_row(constraint, i, jacobian);
     for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
       x.at.jacobian(i, k) = row[k];
     }
@@ -125,8 +126,8 @@ void set_equations(goal_equations<Room>& x, const tip_goal& goal) {
 /// lengths of links, prismatic joints and tool together.
 [[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_goal& goal,
                                     const pose_tolerance& tolerance) {
-  const double most = (reach.links + reach.travel + reach.tool) * (1 + 1e-12);
-  return reach.has_joints && goal.distance_from(reach.first) > most + tolerance.translation;
+  const double max_distance = (reach.links + reach.travel + reach.tool) * (1 + 1e-12);
+  return reach.has_joints && goal.distance_from(reach.first) > max_distance + tolerance.translation;
 }
 
 #ifdef DUET_COMPILED

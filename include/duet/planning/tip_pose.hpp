@@ -36,15 +36,15 @@ using tip_pose = link_displacement<double>;
   if (r.w() < 0) {
     r = -r;
   }
-  const three_vector<double> way = to.translation - from.translation;
+  const three_vector<double> displacement = to.translation - from.translation;
   const three_vector<double> sines{r.x(), r.y(), r.z()};
   const double sine = length_of(sines);
   if (!(sine > 0)) {
-    return {{way.x, way.y, way.z, 0, 0, 0}};
+    return {{displacement.x, displacement.y, displacement.z, 0, 0, 0}};
   }
   const double half = std::atan2(sine, r.w()); // of the angle
-  const three_vector<double> axis = 1 / sine * sines, across = cross(axis, way);
-  const auto v = way - half * across + (1 - half * r.w() / sine) * cross(axis, across);
+  const three_vector<double> axis = 1 / sine * sines, across = cross(axis, displacement);
+  const auto v = displacement - half * across + (1 - half * r.w() / sine) * cross(axis, across);
   const auto omega = 2 * half * axis;
   return {{v.x, v.y, v.z, omega.x, omega.y, omega.z}};
 }

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (from which joints on|first the goal|the goal is a rotation)
+// expect: duet: (the start is missing|the goal precedes the start|the goal is a rotation)
 // within: 2
 // forms: 3
 

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (a position as|the goal is a rotation|from which joints)
+// expect: duet: (for a position as|the goal is a rotation|the start is missing)
 // within: 3
 // forms: 3
 

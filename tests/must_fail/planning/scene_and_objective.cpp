@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (a scene stands where the objective belongs|what stands where the scene bel)
+// expect: duet: (a scene is passed as the objective|the argument after the objective)
 // forms: 7
 
 #include <duet/mechanism/robots.hpp>

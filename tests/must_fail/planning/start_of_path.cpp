@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: find_start_configuration finds the start
+// expect: duet: find_start_configuration takes no start
 // within: 3
 // flags: -DDUET_COMPILED
 
