@@ -62,9 +62,9 @@ joints anywhere(const arm_chain& arm, random_source& random) {
   }
   return theta;
 }
-joints nearby(const arm_chain& arm, joints theta, double most, random_source& random) {
+joints nearby(const arm_chain& arm, joints theta, double max_change, random_source& random) {
   for (int i = 0; i < arm.size(); ++i) {
-    theta[i] = std::clamp(theta[i] + random.uniform(-most, most), arm.limits(i).lower,
+    theta[i] = std::clamp(theta[i] + random.uniform(-max_change, max_change), arm.limits(i).lower,
                           arm.limits(i).upper);
   }
   return theta;
@@ -83,27 +83,29 @@ joints rounded(const arm_chain& arm, joints theta, double angle) {
 }
 /// Is the solution that is found for the pose of a configuration no farther from the posture than
 /// that configuration and, of six joints, than any solution with any full turns within limits?
-bool is_nearest(const arm_chain& arm, const joints& known, const preferred_posture<joints>& wish) {
+bool is_nearest(const arm_chain& arm, const joints& known,
+                const preferred_posture<joints>& preference) {
   const auto goal = arm.pose(known);
-  double least = wish(known);
+  double min_value = preference(known);
   if (arm.size() == 6) {
     for (const auto& each : all_inverse_kinematics(arm, goal).solutions) {
       joints nearest = joints::Constant(6, 1e6);
       for (int i = 0; i < 6; ++i) {
-        for (int turns = -2; turns <= 2; ++turns) {
-          const double x = each.joints[i] + 4 * turns * quarter;
+        for (int full_turns = -2; full_turns <= 2; ++full_turns) {
+          const double x = each.joints[i] + 4 * full_turns * quarter;
           const bool is_within = x >= arm.limits(i).lower && x <= arm.limits(i).upper;
-          if (is_within && std::abs(x - wish.posture[i]) < std::abs(nearest[i] - wish.posture[i])) {
+          if (is_within &&
+              std::abs(x - preference.posture[i]) < std::abs(nearest[i] - preference.posture[i])) {
             nearest[i] = x;
           }
         }
       }
-      least = std::min(least, wish(nearest));
+      min_value = std::min(min_value, preference(nearest));
     }
   }
-  const result found = inverse_kinematics(arm, goal, wish.posture, {}, wish);
+  const result found = inverse_kinematics(arm, goal, preference.posture, {}, preference);
   return found.reason == stop_reason::reached && is_within_limits(arm, found.joints) &&
-         wish(found.joints) <= least * (1 + 1e-6) + 1e-5;
+         preference(found.joints) <= min_value * (1 + 1e-6) + 1e-5;
 }
 vector3<double> direction(random_source& random) {
   const auto n = random.direction<3>();
@@ -162,9 +164,9 @@ void goals_in_part(int count, std::uint64_t seed) {
            });
   goal_row("box of 2 cm, cone of 0.1 rad, turns ± 0.2", count, seed,
            [](const auto& tip, random_source& random) {
-             const vector3<double> shift = .01 * direction(random), turn = .04 * direction(random);
+             const vector3<double> shift = .01 * direction(random), tilt = .04 * direction(random);
              const vector3<double> n = direction(random);
-             return task_space_region{.frame = tip * pose(exp(turn), shift),
+             return task_space_region{.frame = tip * pose(exp(tilt), shift),
                                       .lower = {-.01, -.01, -.01},
                                       .upper = {.01, .01, .01},
                                       .axis = {n[0], n[1], n[2]},
@@ -175,7 +177,7 @@ void goals_in_part(int count, std::uint64_t seed) {
   goal_row("the whole pose", count, seed, [](const auto& tip, random_source&) { return tip; });
 }
 
-void wishes(int count, std::uint64_t seed) {
+void preferences(int count, std::uint64_t seed) {
   row("pose, each joint within 0.3 of the start", count, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
         const joints start = nearby(arm, known, .3, random);
@@ -187,11 +189,11 @@ void wishes(int count, std::uint64_t seed) {
       });
   const auto preferred = [](const auto& goal_of) {
     return [=](const arm_chain& arm, const joints& known, random_source& random) {
-      const preferred_posture wish{nearby(arm, known, .3, random)};
+      const preferred_posture preference{nearby(arm, known, .3, random)};
       const result found =
-          inverse_kinematics(arm, goal_of(arm.pose(known)), wish.posture, {}, wish);
+          inverse_kinematics(arm, goal_of(arm.pose(known)), preference.posture, {}, preference);
       return found.reason == stop_reason::reached && is_within_limits(arm, found.joints) &&
-             wish(found.joints) <= wish(known) * (1 + 1e-6);
+             preference(found.joints) <= preference(known) * (1 + 1e-6);
     };
   };
   row("position, nearest to a posture", count / 10, seed,
@@ -200,13 +202,13 @@ void wishes(int count, std::uint64_t seed) {
       preferred([](const auto& tip) { return tip; }));
   row("pose, nearest to a posture anywhere", count / 10, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
-        const preferred_posture wish{anywhere(arm, random)};
-        return is_nearest(arm, known, wish);
+        const preferred_posture preference{anywhere(arm, random)};
+        return is_nearest(arm, known, preference);
       });
   row("pose of multiples of 15°, nearest to quarter turns", count / 10, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
-        const preferred_posture wish{rounded(arm, anywhere(arm, random), quarter)};
-        return is_nearest(arm, rounded(arm, known, quarter / 6), wish);
+        const preferred_posture preference{rounded(arm, anywhere(arm, random), quarter)};
+        return is_nearest(arm, rounded(arm, known, quarter / 6), preference);
       });
   row("pose, clear of obstacles", count, seed,
       [](const arm_chain& arm, const joints& known, random_source& random) {
@@ -236,11 +238,12 @@ void wishes(int count, std::uint64_t seed) {
 void starts(int count, std::uint64_t seed) {
   // The tip's path while the joints go half the way to another configuration.
   const auto solve = [](bool is_any, bool is_structured = false) {
-    return [=](const arm_chain& arm, const joints& given, random_source& random) {
+    return [=](const arm_chain& arm, const joints& unrounded, random_source& random) {
       const joints other = anywhere(arm, random);
-      const joints known = is_structured ? rounded(arm, given, quarter / 6) : given;
-      const joints way = .5 * ((is_structured ? rounded(arm, other, quarter / 6) : other) - known);
-      const auto path = [&](double u) { return arm.pose(joints(known + u * way)); };
+      const joints known = is_structured ? rounded(arm, unrounded, quarter / 6) : unrounded;
+      const joints displacement =
+          .5 * ((is_structured ? rounded(arm, other, quarter / 6) : other) - known);
+      const auto path = [&](double u) { return arm.pose(joints(known + u * displacement)); };
       if (is_any) {
         const result start =
             inverse_kinematics(arm, path(0), anywhere(arm, random), {.tolerance = 1e-9});
@@ -266,6 +269,6 @@ int main(int argc, char** argv) {
   }
   std::printf(" |\n|---|---|---|---|---|---|\n");
   goals_in_part(count, seed);
-  wishes(count, seed);
+  preferences(count, seed);
   starts(std::max(1, count / 100), seed);
 }

@@ -34,7 +34,7 @@ struct problem {
   Eigen::Matrix<double, N, 1> start;
 };
 
-enum class start { middle, anywhere };
+enum class start { centre, anywhere };
 
 /// Configurations, and starts if not in the middle, are uniform within the limits.
 template <class C>
@@ -52,7 +52,7 @@ std::vector<problem<C::joints>> problems(const C& chain, start from) {
   for (auto& p : result) {
     p.goal = chain.pose(configuration());
     p.start = configuration();
-    if (from == start::middle) {
+    if (from == start::centre) {
       p.start = (lower + upper) / 2;
     }
   }
@@ -62,16 +62,16 @@ std::vector<problem<C::joints>> problems(const C& chain, start from) {
 /// Is the tip there, the joints within limits?
 template <class C, class X>
 bool is_solution(const C& chain, const X& theta, const dual_quaternion<double>& goal) {
-  const pose_error left = pose_error_between(chain.pose(theta), goal);
+  const pose_error deviation = pose_error_between(chain.pose(theta), goal);
   const bool is_inside = (theta - lower_limits(chain)).minCoeff() >= 0 &&
                          (upper_limits(chain) - theta).minCoeff() >= 0;
-  return is_inside && std::max(left.translation, left.rotation) <= 1e-6 * (1 + 1e-9);
+  return is_inside && std::max(deviation.translation, deviation.rotation) <= 1e-6 * (1 + 1e-9);
 }
 
 /// `solve(problem)` returns joints.
 template <class C, class Solve>
 void add(const std::string& name, const C& chain, start from, Solve solve) {
-  const std::string where = from == start::middle ? "/middle/" : "/anywhere/";
+  const std::string where = from == start::centre ? "/middle/" : "/anywhere/";
   const auto all = std::make_shared<const std::vector<problem<C::joints>>>(problems(chain, from));
   const auto slash = name.find('/');
   benchmark::RegisterBenchmark((name.substr(0, slash) + where + name.substr(slash + 1)).c_str(),
@@ -96,7 +96,7 @@ void add(const std::string& name, const C& chain, start from, Solve solve) {
 
 template <class C>
 KDL::Chain kdl_chain(const C& chain) {
-  const auto turn = [](const quaternion<double>& q) {
+  const auto kdl_rotation = [](const quaternion<double>& q) {
     return KDL::Rotation::Quaternion(q.x(), q.y(), q.z(), q.w());
   };
   KDL::Chain result;
@@ -105,12 +105,12 @@ KDL::Chain kdl_chain(const C& chain) {
     const KDL::Vector origin(step.offset.x, step.offset.y, step.offset.z);
     const KDL::Vector axis(step.axis.x, step.axis.y, step.axis.z);
     result.addSegment(KDL::Segment(KDL::Joint(origin, axis, KDL::Joint::RotAxis),
-                                   KDL::Frame(turn(step.a), origin)));
+                                   KDL::Frame(kdl_rotation(step.a), origin)));
   }
   const auto& tool = chain.tip().offset;
   result.addSegment(KDL::Segment(
       KDL::Joint(KDL::Joint::None),
-      KDL::Frame(turn(tool.rotation),
+      KDL::Frame(kdl_rotation(tool.rotation),
                  KDL::Vector(tool.translation[0], tool.translation[1], tool.translation[2]))));
   return result;
 }
@@ -142,11 +142,11 @@ void add_lma(const std::string& robot, const C& chain, start from, int restarts)
   add(robot + (restarts > 0 ? "/kdl_lma_restarts" : "/kdl_lma"), chain, from, [=](const auto& p) {
     const auto lower = lower_limits(chain), upper = upper_limits(chain);
     auto theta = p.start;
-    KDL::JntArray found(unsigned(theta.size()));
+    KDL::JntArray solution(unsigned(theta.size()));
     random_source random(1);
     for (int k = 0;; ++k) {
-      kdl->lma.CartToJnt(kdl_joints(theta), kdl_frame(p.goal), found);
-      theta = found.data;
+      kdl->lma.CartToJnt(kdl_joints(theta), kdl_frame(p.goal), solution);
+      theta = solution.data;
       if (k == restarts || is_solution(chain, theta, p.goal)) {
         return theta;
       }
@@ -172,9 +172,9 @@ void add_newton(const std::string& robot, const C& chain, start from) {
   const auto kdl = std::make_shared<solver>(chain);
   add(robot + "/kdl_nr_jl", chain, from, [=](const auto& p) {
     auto theta = p.start;
-    KDL::JntArray found(unsigned(theta.size()));
-    kdl->newton.CartToJnt(kdl_joints(theta), kdl_frame(p.goal), found);
-    theta = found.data;
+    KDL::JntArray solution(unsigned(theta.size()));
+    kdl->newton.CartToJnt(kdl_joints(theta), kdl_frame(p.goal), solution);
+    theta = solution.data;
     return theta;
   });
 }
@@ -183,7 +183,7 @@ void add_newton(const std::string& robot, const C& chain, start from) {
 
 template <class C>
 void add_all(const std::string& robot, const C& chain) {
-  for (const start from : {start::middle, start::anywhere}) {
+  for (const start from : {start::centre, start::anywhere}) {
     add(robot + "/duet", chain, from,
         [=](const auto& p) { return inverse_kinematics(chain, p.goal, p.start).joints; });
 #if DUET_BENCH_KDL

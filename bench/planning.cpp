@@ -50,16 +50,16 @@ std::vector<problem> problems(family kind, unsigned seed) {
   for (problem& p : result) {
     for (int i = 0; i < 7; ++i) {
       const double lower = arm.limits(i).lower, upper = arm.limits(i).upper;
-      const double middle = (lower + upper) / 2, half = .8 * (upper - middle);
+      const double centre = (lower + upper) / 2, half = .8 * (upper - centre);
       if (kind == family::from_gripper_down) {
         p.end[i] = std::clamp(down[i] + random.uniform(-.5, .5), lower, upper);
       } else {
         const double room = kind == family::near_goals ? half - .5 : half;
-        p.start[i] = middle + room * random.uniform(-1, 1);
+        p.start[i] = centre + room * random.uniform(-1, 1);
         p.end[i] =
             kind == family::unrelated_goals
-                ? middle + half * random.uniform(-1, 1)
-                : std::clamp(p.start[i] + random.uniform(-.5, .5), middle - half, middle + half);
+                ? centre + half * random.uniform(-1, 1)
+                : std::clamp(p.start[i] + random.uniform(-.5, .5), centre - half, centre + half);
       }
     }
   }
@@ -88,7 +88,7 @@ double largest_deviation(const duet::motion_plan<7>& plan, const dual_quaternion
   return result;
 }
 
-struct problem_beside_ball {
+struct problem_near_ball {
   dual_quaternion goal;
   duet::scene around;
 };
@@ -96,9 +96,9 @@ struct problem_beside_ball {
 /// From the gripper-down pose to goals within 0.6 rad per joint and the limits, that the plan
 /// without obstacles reaches, but comes closer to a ball than the margin: one whose centre is
 /// 0.15 m from where the elbow is two thirds of that way.
-std::vector<problem_beside_ball> problems_beside_balls(unsigned seed) {
+std::vector<problem_near_ball> problems_near_balls(unsigned seed) {
   duet::random_source random(seed);
-  std::vector<problem_beside_ball> result;
+  std::vector<problem_near_ball> result;
   while (result.size() < 100) {
     vector end = gripper_down();
     for (int i = 0; i < 7; ++i) {
@@ -133,14 +133,14 @@ std::vector<problem_beside_ball> problems_beside_balls(unsigned seed) {
 
 /// One iteration plans all problems; `reached` and the least clearance, at waypoints and half way
 /// between them, are of the first.
-void plan_beside_balls(benchmark::State& state, unsigned seed) {
-  const auto all = problems_beside_balls(seed);
+void plan_near_balls(benchmark::State& state, unsigned seed) {
+  const auto all = problems_near_balls(seed);
   stopwatch times;
   int reached = 0;
   double largest = 0, nearest = std::numeric_limits<double>::infinity();
   for (auto _ : state) {
     const bool is_first = times.is_empty();
-    for (const problem_beside_ball& p : all) {
+    for (const problem_near_ball& p : all) {
       const auto plan = times.of(
           [&] { return duet::plan_screw_motion(arm, gripper_down(), p.goal, {}, {}, p.around); });
       if (is_first) {
@@ -148,8 +148,8 @@ void plan_beside_balls(benchmark::State& state, unsigned seed) {
         largest = std::max(largest, largest_deviation(plan, p.goal));
         nearest = std::min(nearest, plan.smallest_clearance);
         for (std::size_t k = 1; k < plan.joints.size(); ++k) {
-          const vector middle = (plan.joints[k - 1] + plan.joints[k]) / 2;
-          nearest = std::min(nearest, duet::clearance(arm, middle, p.around).distance);
+          const vector centre = (plan.joints[k - 1] + plan.joints[k]) / 2;
+          nearest = std::min(nearest, duet::clearance(arm, centre, p.around).distance);
         }
       }
     }
@@ -223,7 +223,7 @@ const bool registered = [] {
     add("near_and_unrelated", {family::near_goals, family::unrelated_goals}, true);
     add("gripper_down", {family::from_gripper_down}, true);
     benchmark::RegisterBenchmark(("beside_ball/seed:" + std::to_string(seed)).c_str(),
-                                 plan_beside_balls, seed)
+                                 plan_near_balls, seed)
         ->Unit(benchmark::kMillisecond);
   }
   return true;

@@ -43,12 +43,12 @@ score check(const arm<N>& a, family kind, int count, unsigned seed, bool is_list
       continue;
     }
     ++result.failed;
-    const auto way = duet_test::complete_way(a.chain, path, plan);
-    const bool is_open = way.why == stop_reason::reached;
-    const bool is_short = !is_open && way.end > plan.tau.back() + 1e-4;
-    const bool is_unknown = way.why == stop_reason::no_progress;
-    const bool is_both = way.is_both && plan.reason == stop_reason::singular;
-    const bool is_false = !is_open && !is_short && !is_unknown && plan.reason != way.why &&
+    const auto verdict = duet_test::complete_path_verdict(a.chain, path, plan);
+    const bool is_open = verdict.why == stop_reason::reached;
+    const bool is_short = !is_open && verdict.end > plan.tau.back() + 1e-4;
+    const bool is_unknown = verdict.why == stop_reason::no_progress;
+    const bool is_both = verdict.is_both && plan.reason == stop_reason::singular;
+    const bool is_false = !is_open && !is_short && !is_unknown && plan.reason != verdict.why &&
                           !is_both && plan.reason != stop_reason::out_of_reach;
     result.given_up += is_open;
     result.before_end += is_short;
@@ -56,9 +56,9 @@ score check(const arm<N>& a, family kind, int count, unsigned seed, bool is_list
     result.other_reason += is_false;
     result.both += !is_open && !is_short && is_both;
     if (is_listed &&
-        (is_open || is_short || is_unknown || is_false || plan.tau.back() > way.end + 1e-4)) {
+        (is_open || is_short || is_unknown || is_false || plan.tau.back() > verdict.end + 1e-4)) {
       std::printf("  %d: %s at %.9g, sigma %.2g; there is %s at %.9g\n", k, to_text(plan.reason),
-                  plan.tau.back(), plan.smallest_singular_value, to_text(way.why), way.end);
+                  plan.tau.back(), plan.smallest_singular_value, to_text(verdict.why), verdict.end);
     }
   }
   return result;

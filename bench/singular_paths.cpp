@@ -40,7 +40,7 @@ bool is_within(const serial_chain<N>& chain, const joints_of<N>& theta) {
   return true;
 }
 
-double apart(const goal_pose& a, const goal_pose& b) {
+double pose_distance(const goal_pose& a, const goal_pose& b) {
   const auto d = pose_error_between(a, b);
   return std::max(d.translation, d.rotation);
 }
@@ -50,11 +50,11 @@ template <int N>
 std::optional<joints_of<N>> newton(const serial_chain<N>& chain, joints_of<N> theta,
                                    const goal_pose& goal) {
   for (int k = 0; k < 12; ++k) {
-    const auto here = detail::to_tip_pose(chain.pose(theta));
-    const auto e = detail::error_twist(here, detail::to_tip_pose(goal));
+    const auto current = detail::to_tip_pose(chain.pose(theta));
+    const auto e = detail::error_twist(current, detail::to_tip_pose(goal));
     const Eigen::Matrix<double, 6, 1> twist =
         Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&e.values[0]);
-    if (apart(chain.pose(theta), goal) < 1e-7) {
+    if (pose_distance(chain.pose(theta), goal) < 1e-7) {
       return theta;
     }
     Eigen::JacobiSVD<Eigen::Matrix<double, 6, N>> svd(jacobian(chain, theta, frame::hybrid),
@@ -77,7 +77,8 @@ std::optional<joints_of<N>> tracked(const serial_chain<N>& chain, joints_of<N> t
   for (int k = 1; k <= steps; ++k) {
     const auto next = newton(chain, theta, path(double(k) / steps));
     if (!next || !is_within(chain, *next) ||
-        apart(chain.pose(joints_of<N>((theta + *next) / 2)), path((k - .5) / steps)) > 1e-5) {
+        pose_distance(chain.pose(joints_of<N>((theta + *next) / 2)), path((k - .5) / steps)) >
+            1e-5) {
       return {};
     }
     theta = *next;
@@ -89,10 +90,11 @@ std::optional<joints_of<N>> tracked(const serial_chain<N>& chain, joints_of<N> t
 /// step as straight as may be?
 template <int N>
 bool are_connected(const serial_chain<N>& chain, joints_of<N> from, const joints_of<N>& to) {
-  const goal_pose place = chain.pose(to);
+  const goal_pose pose_at_end = chain.pose(to);
   for (int k = 0; k < 1000; ++k) {
-    const joints_of<N> way = to - from;
-    if (way.norm() < .1 && apart(chain.pose(joints_of<N>(from + way / 2)), place) < 1e-5) {
+    const joints_of<N> difference = to - from;
+    if (difference.norm() < .1 &&
+        pose_distance(chain.pose(joints_of<N>(from + difference / 2)), pose_at_end) < 1e-5) {
       return true;
     }
     const Eigen::JacobiSVD<Eigen::Matrix<double, 6, N>> svd(
@@ -100,14 +102,14 @@ bool are_connected(const serial_chain<N>& chain, joints_of<N> from, const joints
     joints_of<N> along = joints_of<N>::Zero();
     for (int i = 0; i < N; ++i) {
       if (i >= 6 || svd.singularValues()[i] < 1e-3) {
-        along += svd.matrixV().col(i).dot(way) * svd.matrixV().col(i);
+        along += svd.matrixV().col(i).dot(difference) * svd.matrixV().col(i);
       }
     }
     if (!(along.norm() > 1e-4)) {
       return false;
     }
     const auto next =
-        newton(chain, joints_of<N>(from + along * std::min(1., .02 / along.norm())), place);
+        newton(chain, joints_of<N>(from + along * std::min(1., .02 / along.norm())), pose_at_end);
     if (!next || !is_within(chain, *next)) {
       return false;
     }
@@ -127,7 +129,8 @@ bool is_good(const serial_chain<N>& chain, const problem<N>& p, const motion_pla
       const double x = part / 10.;
       const joints_of<N> theta = (1 - x) * plan.joints[k - 1] + x * plan.joints[k];
       if (plan.tau[k] < plan.tau[k - 1] || !is_within(chain, theta) ||
-          apart(chain.pose(theta), path((1 - x) * plan.tau[k - 1] + x * plan.tau[k])) > 1.1e-5) {
+          pose_distance(chain.pose(theta), path((1 - x) * plan.tau[k - 1] + x * plan.tau[k])) >
+              1.1e-5) {
         return false;
       }
     }

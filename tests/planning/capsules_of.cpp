@@ -39,11 +39,11 @@ point corner(const collision_box& b, int k) {
 /// Is the most of `outside` over these points 0, but for rounding? So the points touch, too.
 template <class Points>
 void check_touches(const capsule<>& c, const Points& points, double scale) {
-  double most = -INFINITY;
+  double max_outside = -INFINITY;
   for (const point& x : points) {
-    most = std::max(most, outside(c, x));
+    max_outside = std::max(max_outside, outside(c, x));
   }
-  CHECK(std::abs(most) < 1e-13 * scale);
+  CHECK(std::abs(max_outside) < 1e-13 * scale);
 }
 
 std::vector<point> inside_cylinder(const collision_cylinder& c, int count, bool is_on_rim) {
@@ -63,17 +63,18 @@ triangle_mesh octahedron(double a, double b, double c) {
   triangle_mesh result;
   for (int k = 0; k < 8; ++k) {
     const double x = k % 2 == 0 ? a : -a, y = k / 2 % 2 == 0 ? b : -b, z = k / 4 == 0 ? c : -c;
-    const bool is_turned = x * y * z < 0;
+    const bool is_mirrored = x * y * z < 0;
     result.vertices.push_back({x, 0, 0});
-    result.vertices.push_back(is_turned ? std::array{0., 0., z} : std::array{0., y, 0.});
-    result.vertices.push_back(is_turned ? std::array{0., y, 0.} : std::array{0., 0., z});
+    result.vertices.push_back(is_mirrored ? std::array{0., 0., z} : std::array{0., y, 0.});
+    result.vertices.push_back(is_mirrored ? std::array{0., y, 0.} : std::array{0., 0., z});
   }
   return result;
 }
 
 } // namespace
 
-TEST_CASE("cylinders are inside, and no capsule along their axis is smaller") {
+TEST_CASE(
+    "bounding_capsule: contains a cylinder, and no capsule along its axis has a smaller volume") {
   for (const double r : {1e-3, .1, .5, 1., 3.}) {
     for (const double length : {0., 1e-6, .3, 1., 1.1, 1.2, 4., 1000.}) {
       const collision_cylinder cylinder{r, length};
@@ -83,20 +84,21 @@ TEST_CASE("cylinders are inside, and no capsule along their axis is smaller") {
         CHECK(outside(c, x) < 1e-13 * (r + length));
       }
       const double h = length / 2;
-      double least = INFINITY;
+      double min_volume = INFINITY;
       for (int i = 0; i <= 2000; ++i) {
         const double end = h * i / 2000, radius = std::hypot(r, h - end);
-        least = std::min(least, volume_of(capsule<>({0, 0, -end}, {0, 0, end}, radius)));
+        min_volume = std::min(min_volume, volume_of(capsule<>({0, 0, -end}, {0, 0, end}, radius)));
       }
-      CHECK(volume_of(c) <= least * (1 + 1e-14));
-      CHECK(volume_of(c) >= least * (1 - 2e-4)); // of a long one the grid is coarse at its ends
+      CHECK(volume_of(c) <= min_volume * (1 + 1e-14));
+      CHECK(volume_of(c) >=
+            min_volume * (1 - 2e-4)); // of a long one the grid is coarse at its ends
       const bool is_ball = c.to[2] == 0;
       CHECK(is_ball == (h <= r / std::numbers::sqrt3));
     }
   }
 }
 
-TEST_CASE("boxes are inside, along the edge for which it is least") {
+TEST_CASE("bounding_capsule: contains a box, along the edge with the smallest volume") {
   duet_test::random_source random(2);
   for (int k = 0; k < 8; ++k) {
     const collision_box b{
@@ -121,7 +123,7 @@ TEST_CASE("boxes are inside, along the edge for which it is least") {
   CHECK(bounding_capsule(collision_box{{0, 0, 0}}).radius == 0);
 }
 
-TEST_CASE("spheres and capsules are themselves") {
+TEST_CASE("bounding_capsule: returns spheres and capsules unchanged") {
   const capsule<> ball = bounding_capsule(collision_sphere{.3});
   CHECK(ball.from == ball.to);
   CHECK(ball.radius == .3);
@@ -134,7 +136,7 @@ TEST_CASE("spheres and capsules are themselves") {
         doctest::Approx(std::numbers::pi * (.04 + 4 * .008 / 3)).epsilon(1e-15));
 }
 
-TEST_CASE("points are inside; what is a capsule is found again") {
+TEST_CASE("bounding_capsule: contains all points and recovers a capsule from its points") {
   duet_test::random_source random(3);
   for (int k = 0; k < 6; ++k) {
     const auto at = [&](double size) {
@@ -157,7 +159,8 @@ TEST_CASE("points are inside; what is a capsule is found again") {
   }
 }
 
-TEST_CASE("few points, in line, in a plane, one again and again, none") {
+TEST_CASE("bounding_capsule: few, collinear, coplanar and repeated points are accepted, no points "
+          "rejected") {
   const point x(1, 2, 3), y(-1, 0, 2);
   CHECK(bounding_capsule(std::vector{x}).from == x);
   CHECK(bounding_capsule(std::vector{x, x, x}).radius == 0);
@@ -174,7 +177,7 @@ TEST_CASE("few points, in line, in a plane, one again and again, none") {
                        "duet: bounding_capsule: point 1 is not finite", invalid_input);
 }
 
-TEST_CASE("volumes of surfaces: closed, turned inside out, open") {
+TEST_CASE("volume_of: closed meshes of either orientation have their volume, open ones nan") {
   auto m = octahedron(1, 2, .5);
   CHECK(volume_of(m) == doctest::Approx(4. / 3).epsilon(1e-14));
   for (auto& x : m.vertices) {
@@ -185,27 +188,23 @@ TEST_CASE("volumes of surfaces: closed, turned inside out, open") {
   CHECK(std::isnan(volume_of(m)));
 }
 
-TEST_CASE("the links of a tree and a chain: each shape where it stands") {
+TEST_CASE("bounding_capsules: shapes of trees and chains have the poses of their links") {
   const std::string folder = "test_planning_capsules_of", file = folder + ".obj";
   std::ofstream(file) << "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
                          "f 1 3 5\nf 3 2 5\nf 2 4 5\nf 4 1 5\nf 3 1 6\nf 2 3 6\nf 4 2 6\nf 1 4 6\n";
   robot_description robot;
   robot.links = {{"base"}, {"arm"}, {"weld"}, {"hand"}};
   robot.joints = {
-      {"shoulder",
-       "base",
-       "arm",
-       {joint_kind::revolute, duet_test::placement_at(.1, .2, .3, 0, 0, 1)}},
+      {"shoulder", "base", "arm", {joint_kind::revolute, duet_test::placement_at(.1, .2, .3, 0, 0, 1)}},
       {"fixed", "arm", "weld", {joint_kind::fixed, duet_test::placement_at(.5, 0, 1, .3, .1, 0)}},
-      {"wrist",
-       "weld",
-       "hand",
-       {joint_kind::revolute, duet_test::placement_at(0, 1, 0, 0, 0, .5)}}};
-  const placement<double> placed = duet_test::placement_at(.7, -.2, .4, .1, .2, -.3);
-  robot.links[0].collision = {{placed, collision_cylinder{.1, 1}}, {{}, collision_sphere{.2}}};
-  robot.links[2].collision = {{placed, collision_box{{.1, .2, .5}}},
-                              {placed, collision_mesh{"package://" + file, {.1, -.2, .3}}}};
-  robot.links[3].collision = {{placed, collision_capsule{.05, .3}}};
+      {"wrist", "weld", "hand", {joint_kind::revolute, duet_test::placement_at(0, 1, 0, 0, 0, .5)}}};
+  const placement<double> shape_placement = duet_test::placement_at(.7, -.2, .4, .1, .2, -.3);
+  robot.links[0].collision = {{shape_placement, collision_cylinder{.1, 1}},
+                              {{}, collision_sphere{.2}}};
+  robot.links[2].collision = {
+      {shape_placement, collision_box{{.1, .2, .5}}},
+      {shape_placement, collision_mesh{"package://" + file, {.1, -.2, .3}}}};
+  robot.links[3].collision = {{shape_placement, collision_capsule{.05, .3}}};
   const kinematic_tree tree(robot);
   const auto chain = tree.chain("base", "hand");
   const bounding_capsules_result of_tree = bounding_capsules(tree, "."),
@@ -231,7 +230,7 @@ TEST_CASE("the links of a tree and a chain: each shape where it stands") {
   CHECK(of_tree.volume_ratios[2] > 1);
   // The vertices of the mesh, scaled, in the frame of the link.
   const auto& meshed = of_tree.bodies[3];
-  const auto where = pose(placed.rotation, point(placed.translation.data()));
+  const auto where = pose(shape_placement.rotation, point(shape_placement.translation.data()));
   for (int axis = 0; axis < 3; ++axis) {
     for (const int sign : {-1, 1}) {
       const point x = transform_point(where, point(sign * (axis + 1) / 10. * point::Unit(axis)));

@@ -28,16 +28,16 @@ using std::numbers::pi;
 
 /// Is it a plan along all of the path, from a start within limits?
 template <class Path>
-bool is_whole(const chain& arm, const start_search_result<-16>& found, const Path& path,
-              double first, double last) {
+bool is_complete_plan(const chain& arm, const start_search_result<-16>& found, const Path& path,
+                      double first, double last) {
   const auto& plan = found.plan;
   if (found.reason != stop_reason::reached || found.unsolved || plan.tau.front() != first ||
       plan.tau.back() != last) {
     return false;
   }
   for (std::size_t k = 0; k < plan.joints.size(); ++k) {
-    const auto left = pose_error_between(arm.pose(plan.joints[k]), path(plan.tau[k]));
-    if (left.translation > 1e-5 || left.rotation > 1e-5) {
+    const auto deviation = pose_error_between(arm.pose(plan.joints[k]), path(plan.tau[k]));
+    if (deviation.translation > 1e-5 || deviation.rotation > 1e-5) {
       return false;
     }
     for (int i = 0; i < arm.size(); ++i) {
@@ -52,7 +52,7 @@ bool is_whole(const chain& arm, const start_search_result<-16>& found, const Pat
 
 } // namespace
 
-TEST_CASE("paths made of joint paths: a start is found from which each can be followed") {
+TEST_CASE("find_start_configuration: finds a start for every path of a known joint path") {
   duet_test::random_source random(91);
   const std::array<chain, 5> arms{robots::ur5e().table(), robots::panda().table(),
                                   robots::iiwa14().table(), robots::baxter_left().table(),
@@ -65,13 +65,13 @@ TEST_CASE("paths made of joint paths: a start is found from which each can be fo
       const vector from = configuration(arm, random), to = configuration(arm, random);
       const auto path = [&](double u) { return arm.pose((from + .3 * u * (to - from)).eval()); };
       const auto found = find_start_configuration(arm, path, 0, 1, {.resolution = .5});
-      solved += is_whole(arm, found, path, 0, 1);
+      solved += is_complete_plan(arm, found, path, 0, 1);
     }
     CHECK(solved == count);
   }
 }
 
-TEST_CASE("the one start of eight, and the one turn of the joints") {
+TEST_CASE("find_start_configuration: finds the only feasible branch and full turn") {
   const chain arm = robots::ur5e().table();
   // The last joint turns by two and a half turns: it has to begin near a limit.
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, -6).finished();
@@ -81,7 +81,7 @@ TEST_CASE("the one start of eight, and the one turn of the joints") {
     return arm.pose(x);
   };
   const auto found = find_start_configuration(arm, path, 0, 1);
-  CHECK(is_whole(arm, found, path, 0, 1));
+  CHECK(is_complete_plan(arm, found, path, 0, 1));
   CHECK(found.plan.joints.front()[5] < -4);
   // Nowhere near are two turns and a half more.
   const auto more = [&](double u) {
@@ -95,7 +95,7 @@ TEST_CASE("the one start of eight, and the one turn of the joints") {
   CHECK(stuck.plan.tau.back() > .8);
 }
 
-TEST_CASE("the objective says which start is tried first") {
+TEST_CASE("find_start_configuration: the start with the lowest objective is tried first") {
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto path = [&](double u) {
@@ -112,7 +112,8 @@ TEST_CASE("the objective says which start is tried first") {
   }
 }
 
-TEST_CASE("no start is chosen where the objective is nan, and that it is so at all is told") {
+TEST_CASE(
+    "find_start_configuration: starts with a nan objective are skipped; nan at all is an error") {
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto path = [&](double u) {
@@ -137,7 +138,7 @@ TEST_CASE("no start is chosen where the objective is nan, and that it is so at a
                          "example at the joints ("));
 }
 
-TEST_CASE("the first pose without a solution, and why") {
+TEST_CASE("find_start_configuration: reports the first pose without a solution and the reason") {
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto start = arm.pose(theta);
@@ -164,10 +165,10 @@ TEST_CASE("the first pose without a solution, and why") {
   for (int i = 0; i < 6; ++i) {
     limited = with_limits(limited, i, {theta[i] - .5, theta[i] + .5});
   }
-  const auto turning = [&](double u) {
+  const auto rotating = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u / 2)), vector3<double>(0, 0, 0)) * start;
   };
-  const auto bounded = find_start_configuration(limited, turning, 0, 1);
+  const auto bounded = find_start_configuration(limited, rotating, 0, 1);
   REQUIRE(bounded.unsolved);
   CHECK(bounded.reason == stop_reason::joint_limit);
   CHECK(bounded.is_certain);
@@ -189,7 +190,7 @@ TEST_CASE("the first pose without a solution, and why") {
   CHECK(*blocked.unsolved < 1);
 }
 
-TEST_CASE("along a spline of poses, over all of its domain") {
+TEST_CASE("find_start_configuration: follows a spline of poses over its whole domain") {
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   std::vector<double> u;
@@ -203,21 +204,22 @@ TEST_CASE("along a spline of poses, over all of its domain") {
   }
   const auto curve = interpolate<rotation_vector_spline<dual<double, 1, screw_tag>>>(u, poses);
   const auto found = find_start_configuration(arm, curve);
-  CHECK(is_whole(arm, found, curve, 2, 6));
+  CHECK(is_complete_plan(arm, found, curve, 2, 6));
   // Every knot is a waypoint.
   for (const double each : u) {
     CHECK(std::find(found.plan.tau.begin(), found.plan.tau.end(), each) != found.plan.tau.end());
   }
   // The objective says which start, as of other paths.
   for (const auto& branch : all_inverse_kinematics(arm, curve(2)).solutions) {
-    const auto wanted = find_start_configuration(arm, curve, {}, preferred_posture{branch.joints});
-    CHECK((wanted.reason != stop_reason::reached || wanted.starts > 1 ||
-           (wanted.plan.joints.front() - branch.joints).norm() < 1e-9));
+    const auto preferred =
+        find_start_configuration(arm, curve, {}, preferred_posture{branch.joints});
+    CHECK((preferred.reason != stop_reason::reached || preferred.starts > 1 ||
+           (preferred.plan.joints.front() - branch.joints).norm() < 1e-9));
   }
 }
 
 /// The flange's body is kept apart from the upper arm's: of the elbow's two ways one is too near.
-TEST_CASE("links that are kept apart, in single solutions and along paths") {
+TEST_CASE("inverse kinematics and starts respect self-collision pairs") {
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto all = all_inverse_kinematics(arm, arm.pose(theta));
@@ -230,38 +232,39 @@ TEST_CASE("links that are kept apart, in single solutions and along paths") {
   for (const auto& branch : all.solutions) {
     distances.push_back(clearance(arm, branch.joints, around).distance);
   }
-  const auto [least, most] = std::minmax_element(distances.begin(), distances.end());
-  REQUIRE(*most > *least + .02);
-  around.margin = (*least + *most) / 2;
-  const vector too_near = all.solutions[std::size_t(least - distances.begin())].joints;
+  const auto [nearest_pair, farthest_pair] =
+      std::minmax_element(distances.begin(), distances.end());
+  REQUIRE(*farthest_pair > *nearest_pair + .02);
+  around.margin = (*nearest_pair + *farthest_pair) / 2;
+  const vector too_near = all.solutions[std::size_t(nearest_pair - distances.begin())].joints;
   const auto goal = arm.pose(theta);
   // Without pairs the solution at the start is the one; with them it is another.
   const auto free = inverse_kinematics(arm, goal, too_near);
   CHECK((free.joints - too_near).norm() < 1e-9);
-  const auto apart = inverse_kinematics(arm, goal, too_near, {}, no_objective{}, around);
-  REQUIRE(apart.reason == stop_reason::reached);
-  CHECK(clearance(arm, apart.joints, around).distance >= around.margin - 1e-6);
+  const auto separated = inverse_kinematics(arm, goal, too_near, {}, no_objective{}, around);
+  REQUIRE(separated.reason == stop_reason::reached);
+  CHECK(clearance(arm, separated.joints, around).distance >= around.margin - 1e-6);
 
   const auto path = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(0, 0, .02 * u)) * goal;
   };
-  const preferred_posture wish{too_near};
-  CHECK(
-      (find_start_configuration(arm, path, 0, 1, {}, wish).plan.joints.front() - too_near).norm() <
-      1e-9);
-  const auto found = find_start_configuration(arm, path, 0, 1, {}, wish, around);
-  REQUIRE(is_whole(arm, found, path, 0, 1));
+  const preferred_posture preference{too_near};
+  CHECK((find_start_configuration(arm, path, 0, 1, {}, preference).plan.joints.front() - too_near)
+            .norm() < 1e-9);
+  const auto found = find_start_configuration(arm, path, 0, 1, {}, preference, around);
+  REQUIRE(is_complete_plan(arm, found, path, 0, 1));
   CHECK(found.plan.smallest_clearance >= around.margin - 1e-6);
   // Nothing is far enough apart.
-  around.margin = *most + .3;
+  around.margin = *farthest_pair + .3;
   around.influence_distance_offset = 1;
-  const auto none = find_start_configuration(arm, path, 0, 1, {}, wish, around);
+  const auto none = find_start_configuration(arm, path, 0, 1, {}, preference, around);
   CHECK(none.reason == stop_reason::obstacle);
   REQUIRE(none.unsolved);
   CHECK(*none.unsolved == 0);
 }
 
-TEST_CASE("seven joints without a solution, and with one of few starts") {
+TEST_CASE(
+    "find_start_configuration: a seven-joint path that ends early reports the unsolved pose") {
   const chain arm = robots::iiwa14().table();
   const vector theta = (vector(7) << .3, .6, -.2, -1.3, .4, .9, .1).finished();
   const auto path = [&](double u) {
@@ -275,7 +278,7 @@ TEST_CASE("seven joints without a solution, and with one of few starts") {
   CHECK(found.plan.tau.back() > .8 * *found.unsolved);
 }
 
-TEST_CASE("what is refused") {
+TEST_CASE("find_start_configuration: invalid options, intervals and postures are rejected") {
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto path = [&](double) { return arm.pose(theta); };

@@ -35,15 +35,15 @@ scene cage() {
 
 } // namespace
 
-TEST_CASE("the least distance, and its gradient: nᵀ J at the closest point") {
+TEST_CASE("clearance: smallest distance, and its gradient nᵀ J at the closest point") {
   const auto arm = robots::panda().table();
   const scene s = cage();
   require_scene(arm, s);
-  double least = INFINITY, most = -INFINITY;
+  double min_distance = INFINITY, max_distance = -INFINITY;
   for (const auto& theta : duet_test::configurations(arm, 20)) {
     const auto c = clearance(arm, theta, s);
-    least = std::min(least, c.distance);
-    most = std::max(most, c.distance);
+    min_distance = std::min(min_distance, c.distance);
+    max_distance = std::max(max_distance, c.distance);
     for (std::size_t b = 0; b < s.bodies.size(); ++b) {
       for (std::size_t o = 0; o < s.obstacles.size(); ++o) {
         const auto p = closest_points(arm, theta, s.bodies[b], s.obstacles[o]);
@@ -63,17 +63,17 @@ TEST_CASE("the least distance, and its gradient: nᵀ J at the closest point") {
     }
     CHECK(c.points.distance == c.distance);
     // The same over dual numbers throughout.
-    const auto whole =
+    const auto by_duals =
         gradient([&](const auto& x) { return clearance(arm, x, s).distance; }, theta);
-    CHECK(whole.gradient ==
+    CHECK(by_duals.gradient ==
           distance_and_gradient(arm, theta, s.bodies[c.body], s.obstacles[c.other]).gradient);
   }
   // Both sides were seen.
-  CHECK(least < -.05);
-  CHECK(most > 0);
+  CHECK(min_distance < -.05);
+  CHECK(max_distance > 0);
 }
 
-TEST_CASE("nothing to touch; what is no scene") {
+TEST_CASE("clearance: infinite without obstacles; invalid scenes are rejected") {
   const auto arm = robots::panda().table();
   const duet_test::coordinates<7> theta = duet_test::coordinates<7>::Zero();
   scene s = cage();
@@ -96,7 +96,7 @@ TEST_CASE("nothing to touch; what is no scene") {
                        invalid_input);
 }
 
-TEST_CASE("where a coordinate is nan no distance is told, whichever obstacle comes first") {
+TEST_CASE("clearance: nan coordinates give a nan distance, independent of the order of obstacles") {
   const auto arm = robots::panda().table();
   duet_test::coordinates<7> theta = duet_test::coordinates<7>::Zero();
   theta[6] = std::nan(""); // only link 7 is nowhere
@@ -109,9 +109,9 @@ TEST_CASE("where a coordinate is nan no distance is told, whichever obstacle com
       CHECK(std::isnan(clearance(arm, theta, scene{bodies, {each}}).distance));
     }
     CHECK(std::isnan(clearance(arm, theta, scene{bodies, obstacles}).distance));
-    scene apart{bodies, {}};
-    apart.pairs = {{0, 1}};
-    CHECK(std::isnan(clearance(arm, theta, apart).distance));
+    scene pair_only{bodies, {}};
+    pair_only.pairs = {{0, 1}};
+    CHECK(std::isnan(clearance(arm, theta, pair_only).distance));
   }
   CHECK(clearance(arm, theta, scene{{upper}, obstacles}).distance < 1);
 }

@@ -28,7 +28,7 @@ vector point(duet_test::random_source& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
-dual_quaternion<double> placed(duet_test::random_source& random) {
+dual_quaternion<double> random_pose(duet_test::random_source& random) {
   return pose(from_rotation_vector(point(random, 3)), point(random, 1));
 }
 
@@ -57,7 +57,7 @@ double reference(const capsule<>& c, const vector& x) {
 
 /// The least of a convex function on [0, 1], by ternary search.
 template <class F>
-double least(F&& f) {
+double minimum(F&& f) {
   double low = 0, high = 1;
   for (int i = 0; i < 90; ++i) {
     const double a = low + (high - low) / 3, b = high - (high - low) / 3;
@@ -71,7 +71,7 @@ void check(const capsule<>& c, const Obstacle& obstacle) {
   const auto p = closest_points(c, obstacle);
   const vector along = c.to - c.from;
   const double expected =
-      least([&](double t) { return reference(obstacle, vector(c.from + t * (c.to - c.from))); }) -
+      minimum([&](double t) { return reference(obstacle, vector(c.from + t * (c.to - c.from))); }) -
       c.radius;
   const double scale = 1 + c.from.norm() + along.norm();
   CHECK(std::abs(p.distance - expected) < 1e-14 * scale);
@@ -87,8 +87,8 @@ void check(const capsule<>& c, const Obstacle& obstacle) {
 template <class F>
 void for_each_obstacle(duet_test::random_source& random, F&& f) {
   f(sphere<>{point(random, 1), random.uniform(0, 1)});
-  f(box<>{placed(random), point(random, 1).cwiseAbs()});
-  f(box<>{placed(random), vector(random.uniform(0, 1), 0, random.uniform(0, .01))}); // a plate
+  f(box<>{random_pose(random), point(random, 1).cwiseAbs()});
+  f(box<>{random_pose(random), vector(random.uniform(0, 1), 0, random.uniform(0, .01))}); // a plate
   f(half_space<>{point(random, 1).normalized(), random.uniform(-1, 1)});
   f(capsule<>(point(random, 1), point(random, 1), random.uniform(0, .3)));
 }
@@ -103,17 +103,17 @@ void check_with_50_digits(const capsule<>& a, const capsule<>& b) {
   const double scale = 1 + a.from.norm() + a.to.norm() + b.from.norm() + b.to.norm();
   const auto c = with_50_digits(a), d = with_50_digits(b);
   const auto exact = closest_points(c, d);
-  const real_50 there = closest_points(d, c).distance;
-  CHECK(abs(real_50(there - exact.distance)) < 1e-45 * scale);
+  const real_50 swapped = closest_points(d, c).distance;
+  CHECK(abs(real_50(swapped - exact.distance)) < 1e-45 * scale);
   CHECK(abs(real_50(closest_points(a, b).distance - exact.distance)) < 2e-15 * scale);
   CHECK(abs(real_50(closest_points(b, a).distance - exact.distance)) < 2e-15 * scale);
-  const auto apart = [&](const real_50& s, const real_50& t) {
+  const auto distance_at = [&](const real_50& s, const real_50& t) {
     return real_50((c.from + s * (c.to - c.from) - d.from - t * (d.to - d.from)).norm() - c.radius -
                    d.radius);
   };
   for (int i = 0; i <= 8; ++i) {
     for (int k = 0; k <= 8; ++k) {
-      CHECK(apart(real_50(i) / 8, real_50(k) / 8) - exact.distance > -1e-45 * scale);
+      CHECK(distance_at(real_50(i) / 8, real_50(k) / 8) - exact.distance > -1e-45 * scale);
     }
   }
   const vector3<real_50> u = c.to - c.from, v = d.to - d.from;
@@ -129,7 +129,7 @@ void check_with_50_digits(const capsule<>& a, const capsule<>& b) {
       for (const int k : {-1, 0, 1}) {
         const real_50 x = s + i * step, y = t + k * step;
         if (x >= 0 && x <= 1 && y >= 0 && y <= 1) {
-          CHECK(apart(x, y) - exact.distance > -1e-45 * scale);
+          CHECK(distance_at(x, y) - exact.distance > -1e-45 * scale);
         }
       }
     }
@@ -138,7 +138,7 @@ void check_with_50_digits(const capsule<>& a, const capsule<>& b) {
 
 } // namespace
 
-TEST_CASE("capsules and obstacles, apart, touching and overlapping, by search") {
+TEST_CASE("closest_points: capsules and obstacles agree with a numerical search") {
   duet_test::random_source random(1);
   for (int k = 0; k < 150; ++k) {
     const double length = k % 3 == 0 ? 3 : random.log_uniform(1e-9, 1);
@@ -148,9 +148,9 @@ TEST_CASE("capsules and obstacles, apart, touching and overlapping, by search") 
   }
 }
 
-TEST_CASE("axes along edges, through corners, in faces, and of no length") {
+TEST_CASE("closest_points: capsule axes in degenerate positions relative to a box") {
   duet_test::random_source random(2);
-  for (const auto& where : {pose(quaternion<double>(1), vector(0, 0, 0)), placed(random)}) {
+  for (const auto& where : {pose(quaternion<double>(1), vector(0, 0, 0)), random_pose(random)}) {
     const box<> b{where, vector(.5, 1, 2)};
     const auto at = [&](double x, double y, double z) {
       return transform_point(where, vector(x, y, z));
@@ -183,7 +183,7 @@ TEST_CASE("axes along edges, through corners, in faces, and of no length") {
   check(capsule<>(vector(-1, 0, 1), vector(1, 0, 1), .1), half_space<>{vector::UnitZ(), 0});
 }
 
-TEST_CASE("capsules beside, across, along and in each other, at 50 digits") {
+TEST_CASE("closest_points: pairs of capsules agree with results in 50 digits") {
   duet_test::random_source random(5);
   for (int k = 0; k < 12; ++k) {
     const double length = k % 2 == 0 ? 1 : random.log_uniform(1e-9, 1);
@@ -193,11 +193,11 @@ TEST_CASE("capsules beside, across, along and in each other, at 50 digits") {
     // Nearly parallel, of all angles down to none; nearly in touch.
     for (const double angle : {1e-2, 1e-5, 1e-7, 1e-8, 1e-10, 1e-15, 0.0}) {
       for (const double aside : {1., 1e-6, 0.}) {
-        const vector off = aside * point(random, 1), turn = angle * point(random, 1);
+        const vector off = aside * point(random, 1), tilt = angle * point(random, 1);
         check_with_50_digits(capsule<>(from, to, 0),
-                             capsule<>(vector(from + off - turn), vector(to + off + turn), 0));
+                             capsule<>(vector(from + off - tilt), vector(to + off + tilt), 0));
         check_with_50_digits(capsule<>(from, to, .1),
-                             capsule<>(vector(to + off), vector(2 * to - from + off + turn), .1));
+                             capsule<>(vector(to + off), vector(2 * to - from + off + tilt), .1));
       }
     }
   }
@@ -222,7 +222,7 @@ TEST_CASE("capsules beside, across, along and in each other, at 50 digits") {
   run(vector(-1e4 * x), vector(1e4 * x), vector(-1e4 * x + 1e-9 * y), vector(1e4 * x - y)); // long
 }
 
-TEST_CASE("where axes cross and touch, what leads out is across both") {
+TEST_CASE("closest_points: the normal of crossing axes is perpendicular to both") {
   const vector o(0, 0, 0), x(1, 0, 0), y(0, 1, 0);
   const auto crossed = closest_points(capsule<>(-x, x, .1), capsule<>(-y, y, .2));
   CHECK(crossed.distance == doctest::Approx(-.3).epsilon(1e-15));
@@ -235,21 +235,21 @@ TEST_CASE("where axes cross and touch, what leads out is across both") {
   CHECK(same.normal[1] == 0);
   CHECK(std::abs(same.normal.norm() - 1) < 1e-15);
   CHECK(std::abs(same.on_body[1]) == 0); // the middle of where they are beside each other
-  const auto beside =
+  const auto alongside =
       closest_points(capsule<>(o, x, 0), capsule<>(vector(.5 * x + y), vector(9 * x + y), 0));
-  CHECK(beside.on_body == vector(.75, 0, 0));
+  CHECK(alongside.on_body == vector(.75, 0, 0));
   // The distance grows along the normal, whatever moves.
-  const auto slope = gradient(
+  const auto distance_gradient = gradient(
       [&](const auto& move) {
         using T = std::decay_t<decltype(move[0])>;
         const vector3<T> a = -x.cast<T>() + move, b = x.cast<T>() + move;
         return closest_points(capsule<T>(a, b, T(.1)), capsule<>(-y, y, .2)).distance;
       },
       o);
-  CHECK((slope.gradient - crossed.normal).norm() == 0);
+  CHECK((distance_gradient.gradient - crossed.normal).norm() == 0);
 }
 
-TEST_CASE("50 digits, and the rounding of double") {
+TEST_CASE("closest_points: results in 50 digits are exact, in double accurate to round-off") {
   duet_test::random_source random(3);
   for (int k = 0; k < 15; ++k) {
     const vector from = point(random, 1.2);
@@ -273,7 +273,8 @@ TEST_CASE("50 digits, and the rounding of double") {
   }
 }
 
-TEST_CASE("the gradient by dual numbers is the normal, shared by the ends as the point is") {
+TEST_CASE("closest_points: the gradient by dual numbers is the normal, weighted by the point on "
+          "the axis") {
   duet_test::random_source random(4);
   for (int k = 0; k < 100; ++k) {
     const vector from = point(random, 1.5);
@@ -282,7 +283,7 @@ TEST_CASE("the gradient by dual numbers is the normal, shared by the ends as the
       const auto p = closest_points(c, obstacle);
       Eigen::Matrix<double, 6, 1> ends;
       ends << c.from, c.to;
-      const auto slope = gradient(
+      const auto distance_gradient = gradient(
           [&](const auto& x) {
             using T = std::decay_t<decltype(x[0])>;
             return closest_points(
@@ -293,9 +294,9 @@ TEST_CASE("the gradient by dual numbers is the normal, shared by the ends as the
           ends);
       const vector along = c.to - c.from;
       const double t = (p.on_body + c.radius * p.normal - c.from).dot(along) / along.squaredNorm();
-      CHECK(std::abs(slope.value - p.distance) < 1e-15 + duet_test::if_fused(1e-15));
-      const vector first = slope.gradient.template head<3>(),
-                   second = slope.gradient.template tail<3>();
+      CHECK(std::abs(distance_gradient.value - p.distance) < 1e-15 + duet_test::if_fused(1e-15));
+      const vector first = distance_gradient.gradient.template head<3>(),
+                   second = distance_gradient.gradient.template tail<3>();
       // In a box where one face takes over from another the gradient is that of the edge.
       CHECK((first + second).norm() <= 1 + 1e-12);
       if (p.distance + c.radius > 0) {
@@ -316,8 +317,8 @@ TEST_CASE("the gradient by dual numbers is the normal, shared by the ends as the
   }
 }
 
-TEST_CASE("touching and coinciding: finite gradients that lead out") {
-  const auto slope = [](const auto& obstacle, const vector& x) {
+TEST_CASE("closest_points: gradients are finite for touching and coinciding shapes") {
+  const auto distance_gradient = [](const auto& obstacle, const vector& x) {
     return gradient(
                [&](const auto& y) {
                  using T = std::decay_t<decltype(y[0])>;
@@ -327,16 +328,16 @@ TEST_CASE("touching and coinciding: finite gradients that lead out") {
         .gradient;
   };
   const box<> b{pose(quaternion<double>(1), vector(0, 0, 0)), vector(1, 1, 1)};
-  CHECK(slope(b, vector(1, .2, 0)) == vector(1, 0, 0));
-  CHECK(slope(b, vector(-1, .2, 0)) == vector(-1, 0, 0));
-  CHECK(slope(b, vector(1, 1, 1)).norm() == 1);
-  CHECK(slope(sphere<>{vector::Zero(), 1}, vector::Zero()).norm() == 1);
+  CHECK(distance_gradient(b, vector(1, .2, 0)) == vector(1, 0, 0));
+  CHECK(distance_gradient(b, vector(-1, .2, 0)) == vector(-1, 0, 0));
+  CHECK(distance_gradient(b, vector(1, 1, 1)).norm() == 1);
+  CHECK(distance_gradient(sphere<>{vector::Zero(), 1}, vector::Zero()).norm() == 1);
   CHECK(closest_points(sphere<>{vector(1, .2, 0), 0}, b).distance == 0);
 }
 
-TEST_CASE("what is no shape") {
+TEST_CASE("require_shape: invalid shapes are rejected") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  const auto here = pose(quaternion<double>(1), vector(0, 0, 0));
+  const auto identity_pose = pose(quaternion<double>(1), vector(0, 0, 0));
   require_shape(sphere<>{vector::Zero(), 0}, "it");
   CHECK_THROWS_WITH_AS(require_shape(sphere<>{vector::Zero(), -1}, "obstacle 2"),
                        "duet: the radius of obstacle 2 is -1 (expected a non-negative number)",
@@ -347,10 +348,10 @@ TEST_CASE("what is no shape") {
                   invalid_input);
   CHECK_THROWS_AS(require_shape(capsule<>(vector::Zero(), vector::Zero(), nan), "it"),
                   invalid_input);
-  CHECK_THROWS_WITH_AS(require_shape(box<>{here, vector(1, -.5, 1)}, "it"),
+  CHECK_THROWS_WITH_AS(require_shape(box<>{identity_pose, vector(1, -.5, 1)}, "it"),
                        "duet: half extent 1 of it is -0.5 (expected a non-negative number)",
                        invalid_input);
-  CHECK_THROWS_AS(require_shape(box<>{here * 2.0, vector(1, 1, 1)}, "it"), invalid_input);
+  CHECK_THROWS_AS(require_shape(box<>{identity_pose * 2.0, vector(1, 1, 1)}, "it"), invalid_input);
   CHECK_THROWS_AS(require_shape(half_space<>{vector(0, 0, 2), 1}, "it"), invalid_input);
   CHECK_THROWS_AS(require_shape(half_space<>{vector(0, 0, 1), nan}, "it"), invalid_input);
 }

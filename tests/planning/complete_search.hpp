@@ -51,11 +51,12 @@ public:
   [[nodiscard]] path_verdict operator()(const joints& start) {
     constexpr int parts = 128;
     verdict_ = {};
-    std::vector<joints> here = leave(start, 0);
-    for (int k = 0; k < parts && !here.empty(); ++k) {
-      here = advance(here, k == 0 ? beside : double(k) / parts, double(k + 1) / parts, 23);
+    std::vector<joints> current = leave(start, 0);
+    for (int k = 0; k < parts && !current.empty(); ++k) {
+      current =
+          advance(current, k == 0 ? near_offset : double(k) / parts, double(k + 1) / parts, 23);
     }
-    if (!here.empty()) {
+    if (!current.empty()) {
       verdict_ = {1, duet::stop_reason::reached};
     }
     return verdict_;
@@ -64,15 +65,15 @@ public:
   /// The configuration next to one that is nearly at u, where there is one within limits.
   [[nodiscard]] std::optional<joints> exact(double u, const joints& x) const {
     const joints y = at(u, x);
-    const auto left = duet::pose_error_between(arm_.pose(y), path_(u));
-    return std::max(left.translation, left.rotation) < 1e-12 && (y - x).norm() < .01 &&
+    const auto deviation = duet::pose_error_between(arm_.pose(y), path_(u));
+    return std::max(deviation.translation, deviation.rotation) < 1e-12 && (y - x).norm() < .01 &&
                    is_within_limits(y)
                ? std::optional(y)
                : std::nullopt;
   }
 
 private:
-  static constexpr double beside = 1e-4, fibre_step = .02;
+  static constexpr double near_offset = 1e-4, fibre_step = .02;
 
   [[nodiscard]] bool is_within_limits(const joints& x) const {
     for (int i = 0; i < 6; ++i) {
@@ -85,9 +86,9 @@ private:
 
   /// By Newton's method.
   [[nodiscard]] joints at(double u, joints x) const {
-    const auto here = duet::detail::to_tip_pose(path_(u));
+    const auto current = duet::detail::to_tip_pose(path_(u));
     for (int round = 0; round < 5; ++round) {
-      const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)), here);
+      const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)), current);
       const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
           duet::jacobian(arm_, x, duet::frame::hybrid), Eigen::ComputeFullU | Eigen::ComputeFullV);
       x += svd.solve(Eigen::Map<const joints>(&e.values[0]));
@@ -105,16 +106,16 @@ private:
         known_.push_back(each.joints);
       }
     }
-    constexpr double turn = 2 * std::numbers::pi;
+    constexpr double full_turn = 2 * std::numbers::pi;
     std::vector<joints> result = known_;
     for (joints& each : result) {
       for (int i = 0; i < 6; ++i) {
-        each[i] += turn * std::round((x[i] - each[i]) / turn);
+        each[i] += full_turn * std::round((x[i] - each[i]) / full_turn);
       }
     }
     const joints nearby = at(u, x);
-    const auto left = duet::pose_error_between(arm_.pose(nearby), path_(u));
-    if (std::max(left.translation, left.rotation) < 1e-12) {
+    const auto deviation = duet::pose_error_between(arm_.pose(nearby), path_(u));
+    if (std::max(deviation.translation, deviation.rotation) < 1e-12) {
       add(result, nearby);
     }
     return result;
@@ -180,9 +181,9 @@ private:
       return result;
     }
     if (halvings > 0) {
-      const double middle = (a + b) / 2;
-      const auto there = advance(from, a, middle, halvings - 1);
-      return there.empty() ? there : advance(there, middle, b, halvings - 1);
+      const double midpoint = (a + b) / 2;
+      const auto reached = advance(from, a, midpoint, halvings - 1);
+      return reached.empty() ? reached : advance(reached, midpoint, b, halvings - 1);
     }
     if (result.empty() && a >= verdict_.end) {
       verdict_ = {a, is_beyond     ? duet::stop_reason::joint_limit
@@ -199,41 +200,41 @@ private:
     joints z = y;
     while (b - a > 1e-9) {
       const double u = (a + b) / 2;
-      const joints middle = (x + z) / 2;
-      const auto all = solutions(u, middle);
+      const joints midpoint = (x + z) / 2;
+      const auto all = solutions(u, midpoint);
       const auto nearest =
           std::min_element(all.begin(), all.end(), [&](const auto& p, const auto& q) {
-            return (p - middle).norm() < (q - middle).norm();
+            return (p - midpoint).norm() < (q - midpoint).norm();
           });
-      if (nearest == all.end() || (*nearest - middle).norm() > (z - x).norm() + 1e-9) {
+      if (nearest == all.end() || (*nearest - midpoint).norm() > (z - x).norm() + 1e-9) {
         return {};
       }
       (determinant(*nearest) * determinant(x) > 0 ? x : z) = *nearest;
       (z == *nearest ? b : a) = u;
     }
-    const joints middle = (x + z) / 2;
-    if (fibre(middle, path_(a), true).size() < 3) {
+    const joints midpoint = (x + z) / 2;
+    if (fibre(midpoint, path_(a), true).size() < 3) {
       return {};
     }
-    const double next = a + beside;
+    const double next = a + near_offset;
     if (next > end) {
       return {};
     }
-    const auto there = leave(middle, a);
-    return there.empty() ? there : advance(there, next, end, 20);
+    const auto reached = leave(midpoint, a);
+    return reached.empty() ? reached : advance(reached, next, end, 20);
   }
 
-  /// The configurations `beside` behind u that joints get to if they may first move in place.
+  /// The configurations `near_offset` behind u that joints get to if they may first move in place.
   [[nodiscard]] std::vector<joints> leave(const joints& from, double u) {
     const auto all = fibre(from, path_(u), true);
     if (all.size() < 3) {
-      return advance({from}, u, u + beside, 17);
+      return advance({from}, u, u + near_offset, 17);
     }
     std::vector<joints> result;
     const auto next_to = [&](const std::vector<joints>& these) {
       bool is_any = false;
       for (const joints& x : these) {
-        for (const joints& y : solutions(u + beside, x)) {
+        for (const joints& y : solutions(u + near_offset, x)) {
           const bool is_near = (y - x).norm() < fibre_step;
           is_any = is_any || is_near;
           if (is_near && is_within_limits(y)) {
@@ -273,11 +274,11 @@ private:
         for (int round = 0; round < 5; ++round) {
           const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(y)),
                                                    duet::detail::to_tip_pose(pose));
-          Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> here(
+          Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> current(
               duet::jacobian(arm_, y, duet::frame::hybrid),
               Eigen::ComputeFullU | Eigen::ComputeFullV);
-          here.setThreshold(1e-4);
-          y += here.solve(Eigen::Map<const joints>(&e.values[0]));
+          current.setThreshold(1e-4);
+          y += current.solve(Eigen::Map<const joints>(&e.values[0]));
         }
         const auto off = duet::pose_error_between(arm_.pose(y), pose);
         if (std::max(off.translation, off.rotation) > 1e-9 ||
@@ -304,9 +305,9 @@ private:
 /// How far a way leads from the start of a plan or from a waypoint: a tolerance may have let the
 /// plan pass where no pose of the path is exactly within reach.
 template <class Plan>
-[[nodiscard]] path_verdict complete_way(const duet::serial_chain<6>& arm,
-                                        const complete_search::path_function& path,
-                                        const Plan& plan) {
+[[nodiscard]] path_verdict complete_path_verdict(const duet::serial_chain<6>& arm,
+                                                 const complete_search::path_function& path,
+                                                 const Plan& plan) {
   path_verdict result = complete_search(arm, path)(plan.joints.front());
   for (std::size_t k = 1; k < plan.tau.size(); ++k) {
     const double begin = plan.tau[k];
@@ -315,8 +316,8 @@ template <class Plan>
     }
     complete_search rest(arm, [&](double u) { return path(begin + (1 - begin) * u); });
     if (const auto x = rest.exact(0, plan.joints[k])) {
-      const path_verdict way = rest(*x);
-      result = {begin + (1 - begin) * way.end, way.why};
+      const path_verdict verdict = rest(*x);
+      result = {begin + (1 - begin) * verdict.end, verdict.why};
     }
   }
   return result;

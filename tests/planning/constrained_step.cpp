@@ -37,7 +37,7 @@ M random_matrix(duet_test::random_source& random, M m) {
 
 } // namespace
 
-TEST_CASE("Cholesky's factors solve; an unknown without a pivot is left out") {
+TEST_CASE("cholesky: solves systems; an unknown without a positive pivot is 0") {
   duet_test::random_source random(4);
   for (int n = 1; n <= 10; ++n) {
     using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 10, 10>;
@@ -57,11 +57,11 @@ TEST_CASE("Cholesky's factors solve; an unknown without a pivot is left out") {
     for (int i = 0; i < n; ++i) {
       b[i] = a.row(i).dot(x);
     }
-    const detail::cholesky whole(lower), less(cut);
-    CHECK(whole.is_positive());
-    CHECK((whole.solve(b) - x).norm() < 1e-10 * x.norm());
-    CHECK(!less.is_positive());
-    const vector found = less.solve(b);
+    const detail::cholesky full(lower), reduced(cut);
+    CHECK(full.is_positive());
+    CHECK((full.solve(b) - x).norm() < 1e-10 * x.norm());
+    CHECK(!reduced.is_positive());
+    const vector found = reduced.solve(b);
     CHECK(found[n - 1] == 0);
     for (int i = 0; i < n - 1; ++i) {
       CHECK(std::abs(a.row(i).dot(found) - b[i]) < 1e-10 * x.norm());
@@ -69,24 +69,24 @@ TEST_CASE("Cholesky's factors solve; an unknown without a pivot is left out") {
   }
 }
 
-TEST_CASE("the least x of linear inequalities: where projections onto them end") {
+TEST_CASE("least_distance: agrees with Dykstra's alternating projections") {
   duet_test::random_source random(1);
   int moved = 0;
   for (int k = 0; k < 200; ++k) {
     const int n = random.integer(1, 10), m = random.integer(0, 20);
     const vector inside = random_matrix(random, vector(n));
-    std::vector<inequality<vector>> given;
+    std::vector<inequality<vector>> inequalities;
     for (int i = 0; i < m; ++i) {
       const vector normal = random_matrix(random, vector(n));
-      given.push_back({normal, normal.dot(inside) - .3 * std::abs(random.normal())});
+      inequalities.push_back({normal, normal.dot(inside) - .3 * std::abs(random.normal())});
     }
     if (m > 0) { // the same twice, and one that says nothing
-      given.push_back(given[0]);
-      given.push_back({vector::Zero(n), -1});
+      inequalities.push_back(inequalities[0]);
+      inequalities.push_back({vector::Zero(n), -1});
     }
-    const auto x = detail::least_distance(given, n);
+    const auto x = detail::least_distance(inequalities, n);
     REQUIRE(x);
-    for (const auto& each : given) {
+    for (const auto& each : inequalities) {
       CHECK(each.normal.dot(*x) - each.bound > -1e-10);
     }
     // Optimal: x·(y − x) ≥ 0 for all other solutions y.
@@ -94,14 +94,15 @@ TEST_CASE("the least x of linear inequalities: where projections onto them end")
     // Dykstra's alternating projections end at the same point.
     if (n < 4) {
       vector y = vector::Zero(n);
-      std::vector<vector> left(given.size(), y);
+      std::vector<vector> increments(inequalities.size(), y);
       for (int round = 0; round < 500; ++round) {
-        for (std::size_t i = 0; i < given.size(); ++i) {
-          const vector from = y + left[i];
-          const double length2 = std::max(given[i].normal.squaredNorm(), 1e-300);
-          y = from + given[i].normal *
-                         (std::max(0.0, given[i].bound - given[i].normal.dot(from)) / length2);
-          left[i] = from - y;
+        for (std::size_t i = 0; i < inequalities.size(); ++i) {
+          const vector from = y + increments[i];
+          const double length2 = std::max(inequalities[i].normal.squaredNorm(), 1e-300);
+          y = from + inequalities[i].normal *
+                         (std::max(0.0, inequalities[i].bound - inequalities[i].normal.dot(from)) /
+                          length2);
+          increments[i] = from - y;
         }
       }
       CHECK((y - *x).norm() < 1e-3);
@@ -111,21 +112,21 @@ TEST_CASE("the least x of linear inequalities: where projections onto them end")
   CHECK(moved > 10);
 }
 
-TEST_CASE("no x: said so, however it comes about") {
+TEST_CASE("least_distance: infeasible inequalities have no solution") {
   duet_test::random_source random(2);
   for (int k = 0; k < 100; ++k) {
     const int n = random.integer(1, 8), m = random.integer(1, 20);
     // A positive combination of all is 0 ≥ 1e-3.
-    std::vector<inequality<vector>> given;
+    std::vector<inequality<vector>> inequalities;
     inequality<vector> sum{vector::Zero(n), 0};
     for (int i = 0; i < m; ++i) {
-      given.push_back({random_matrix(random, vector(n)), -std::abs(random.normal())});
+      inequalities.push_back({random_matrix(random, vector(n)), -std::abs(random.normal())});
       const double u = random.uniform(.1, 2);
-      sum.normal += u * given.back().normal;
-      sum.bound += u * given.back().bound;
+      sum.normal += u * inequalities.back().normal;
+      sum.bound += u * inequalities.back().bound;
     }
-    given.push_back({-sum.normal, 1e-3 - sum.bound});
-    CHECK(!detail::least_distance(given, n));
+    inequalities.push_back({-sum.normal, 1e-3 - sum.bound});
+    CHECK(!detail::least_distance(inequalities, n));
   }
   using list = std::vector<inequality<vector>>;
   CHECK(!detail::least_distance(list{{vector::Zero(3), 1e-3}}, 3));
@@ -133,41 +134,42 @@ TEST_CASE("no x: said so, however it comes about") {
   CHECK(detail::least_distance(list{}, 3) == vector(vector::Zero(3)));
 }
 
-TEST_CASE("a step keeps the twist, the limits and the inequalities, and is the nearest of those") {
+TEST_CASE("constrained_step: satisfies twist, limits and inequalities and is nearest to the "
+          "preferred step") {
   duet_test::random_source random(3);
   int found = 0, none = 0;
   for (int k = 0; k < 300; ++k) {
     const auto j = random_matrix(random, Eigen::Matrix<double, 6, 7>());
-    const joints wish = .3 * random_matrix(random, joints());
+    const joints preferred = .3 * random_matrix(random, joints());
     const joints some = .1 * random_matrix(random, joints());
     const vector6<double> e = j * some;
     const joints lower = joints::Constant(-.3), upper = joints::Constant(.3);
-    std::vector<inequality<joints>> given;
+    std::vector<inequality<joints>> inequalities;
     for (int i = 0; i < 3; ++i) {
-      given.push_back({random_matrix(random, joints()), .3 * random.normal()});
+      inequalities.push_back({random_matrix(random, joints()), .3 * random.normal()});
     }
-    const auto step = detail::constrained_step(j, e, wish, lower, upper, given).step;
+    const auto step = detail::constrained_step(j, e, preferred, lower, upper, inequalities).step;
     // The one self-motion; where on some + y z everything is kept, and the wish.
     const joints any = random_matrix(random, joints());
     const joints z = detail::self_motion<joints>(j)(any).normalized();
     CHECK((j * z).norm() < 1e-14);
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     const auto keep = [&](const joints& normal, double bound) {
-      const double slope = normal.dot(z), limit = (bound - normal.dot(some)) / slope;
-      (slope > 0 ? low : high) = slope > 0 ? std::max(low, limit) : std::min(high, limit);
+      const double rate = normal.dot(z), limit = (bound - normal.dot(some)) / rate;
+      (rate > 0 ? low : high) = rate > 0 ? std::max(low, limit) : std::min(high, limit);
     };
     for (Eigen::Index i = 0; i < 7; ++i) {
       keep(joints::Unit(i), -.3);
       keep(-joints::Unit(i), -.3);
     }
-    for (const auto& each : given) {
+    for (const auto& each : inequalities) {
       keep(each.normal, each.bound);
     }
     REQUIRE(std::abs(high - low) > 1e-6);
     CHECK(step.has_value() == (low < high));
     if (step) {
       ++found;
-      const double y = std::clamp(z.dot(wish - some), low, high);
+      const double y = std::clamp(z.dot(preferred - some), low, high);
       CHECK((*step - some - y * z).norm() < 1e-10);
     } else {
       ++none;
@@ -177,16 +179,17 @@ TEST_CASE("a step keeps the twist, the limits and the inequalities, and is the n
   CHECK(none > 20);
 }
 
-TEST_CASE("no joint to spare: the step as it is, or none") {
+TEST_CASE("constrained_step: without redundancy returns the only step or none") {
   using six = Eigen::Matrix<double, 6, 1>;
   const Eigen::Matrix<double, 6, 6> j = Eigen::Matrix<double, 6, 6>::Identity();
   const six far = six::Constant(std::numeric_limits<double>::infinity()), none = six::Zero();
-  const std::vector<inequality<six>> given{{-six::Unit(2), -.5}}; // Δ_2 ≤ 0.5
+  const std::vector<inequality<six>> inequalities{{-six::Unit(2), -.5}}; // Δ_2 ≤ 0.5
   const six e = six::Constant(.4);
-  const auto step = detail::constrained_step(j, e, six(six::Ones()), six(-far), far, given).step;
+  const auto step =
+      detail::constrained_step(j, e, six(six::Ones()), six(-far), far, inequalities).step;
   REQUIRE(step);
   CHECK((*step - e).norm() < 1e-15);
-  CHECK(!detail::constrained_step(j, six(2 * e), none, six(-far), far, given).step);
+  CHECK(!detail::constrained_step(j, six(2 * e), none, six(-far), far, inequalities).step);
 }
 
 } // namespace test_planning_constrained_step

@@ -30,11 +30,11 @@ six by_jacobian(const six& theta, const six& twist) {
   return Eigen::Matrix<double, 6, 6>(jacobian(arm, theta, frame::hybrid)).lu().solve(twist);
 }
 
-TEST_CASE("by the goal, for every branch") {
+TEST_CASE("differentiable_branch: derivatives with respect to the goal, for every branch") {
   const auto goal = example_goal();
-  const auto found = all_inverse_kinematics(arm, goal);
-  REQUIRE(found.solutions.size() == 8);
-  for (const auto& s : found.solutions) {
+  const auto branches = all_inverse_kinematics(arm, goal);
+  REQUIRE(branches.solutions.size() == 8);
+  for (const auto& s : branches.solutions) {
     const six theta = s.joints;
     const auto moving = [&](const auto& t) {
       using S = std::decay_t<decltype(t)>;
@@ -52,20 +52,20 @@ TEST_CASE("by the goal, for every branch") {
     CHECK((x[1] - by_jacobian(theta, twist)).norm() < 1e-9 * x[1].norm());
     // The tip moves as the goal does, in the second order too.
     const auto tip = derivatives<2>([&](const auto& t) { return arm.pose(along(t)); }, 0.);
-    const auto wanted = derivatives<2>(moving, 0.);
-    const double sign = real_part(tip[0]).w() * real_part(wanted[0]).w() < 0 ? -1 : 1;
+    const auto expected = derivatives<2>(moving, 0.);
+    const double sign = real_part(tip[0]).w() * real_part(expected[0]).w() < 0 ? -1 : 1;
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto p = real_part(tip[k]) - sign * real_part(wanted[k]);
-      const auto q = dual_part(tip[k]) - sign * dual_part(wanted[k]);
+      const auto p = real_part(tip[k]) - sign * real_part(expected[k]);
+      const auto q = dual_part(tip[k]) - sign * dual_part(expected[k]);
       CHECK(std::sqrt(squared_norm(p) + squared_norm(q)) < 1e-8 * (1 + x[k].norm()));
     }
   }
 }
 
-TEST_CASE("by the arm's geometry") {
+TEST_CASE("differentiable_branch: derivatives with respect to the geometry of the arm") {
   const auto goal = example_goal();
-  const auto found = all_inverse_kinematics(arm, goal);
-  for (const auto& s : found.solutions) {
+  const auto branches = all_inverse_kinematics(arm, goal);
+  for (const auto& s : branches.solutions) {
     const six theta = s.joints;
     const auto with_tool = [&](const auto& length) {
       using S = std::decay_t<decltype(length)>;
@@ -81,7 +81,7 @@ TEST_CASE("by the arm's geometry") {
   }
 }
 
-TEST_CASE("where branches meet there is none") {
+TEST_CASE("differentiable_branch: throws no_convergence where branches meet") {
   six theta;
   theta << .3, -1.1, 1.4, -.5, 0, .2;
   CHECK_THROWS_AS(static_cast<void>(differentiable_branch(arm, theta, arm.pose(theta))),

@@ -45,7 +45,7 @@ void check_reached(const Plan& plan, double last) {
 
 } // namespace
 
-TEST_CASE("along a list of poses: through each, along screws") {
+TEST_CASE("follow_path: passes through each pose of a list along screw motions") {
   const poses list = corners();
   const auto path = [&](double u) {
     const std::size_t i = std::min(std::size_t(u), list.size() - 2);
@@ -65,7 +65,7 @@ TEST_CASE("along a list of poses: through each, along screws") {
   CHECK(follow_path(arm, gripper_down(), poses{list[0]}).reason == stop_reason::reached);
 }
 
-TEST_CASE("along splines, over their domains") {
+TEST_CASE("follow_path: follows splines over their domains") {
   const poses list = corners();
   const std::vector<double> u = {2, 2.5, 4, 5};
   const auto smooth = interpolate<rotation_vector_spline<dual<double, 1, screw_tag>>>(u, list);
@@ -79,7 +79,7 @@ TEST_CASE("along splines, over their domains") {
   CHECK(largest_deviation(arm, other, curve) < 1e-5);
 }
 
-TEST_CASE("along a function; objectives move the joints and leave the tip where it belongs") {
+TEST_CASE("follow_path: objectives move the joints and keep the tip on the path") {
   vector bent = gripper_down();
   bent[2] = .6;
   const auto first = arm.pose(bent);
@@ -115,22 +115,22 @@ TEST_CASE("along a function; objectives move the joints and leave the tip where 
   CHECK(manipulability(arm, agile.joints.back()) > 1.01 * manipulability(arm, lazy.joints.back()));
 }
 
-TEST_CASE("gradients of objectives") {
+TEST_CASE("objectives: member gradients agree with automatic differentiation") {
   const vector theta = gripper_down() + vector::Constant(.1);
   // No joint where a sign would not count.
   const preferred_posture posture{gripper_down() + vector::Constant(.3), 3.0};
   CHECK((gradient(posture, theta).gradient - posture.gradient(theta)).norm() < 1e-14);
   const manipulability_objective agile{arm, 1.5};
-  const auto slope = agile.gradient(theta);
-  CHECK((gradient(agile, theta).gradient - slope).norm() < 1e-12 * slope.norm());
+  const auto symbolic = agile.gradient(theta);
+  CHECK((gradient(agile, theta).gradient - symbolic).norm() < 1e-12 * symbolic.norm());
 }
 
-TEST_CASE("an objective that is nan at the start") {
+TEST_CASE("follow_path: an objective that is nan at the start is rejected") {
   const Eigen::Matrix<double, 7, 1> start(0, -.75, 0, -2.5, 0, 1.5, .75);
   const auto nowhere = [](const auto& x) { return 0 * x[0] + std::nan(""); };
-  const auto here = arm.pose(start);
+  const auto start_pose = arm.pose(start);
   const auto path = [&](double u) {
-    return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * here;
+    return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * start_pose;
   };
   const char* const what = "duet: follow_path: the objective is nan at the start, joints "
                            "(0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
@@ -140,7 +140,7 @@ TEST_CASE("an objective that is nan at the start") {
                        invalid_input);
 }
 
-TEST_CASE("bad paths") {
+TEST_CASE("follow_path: invalid paths and starts are rejected") {
   const vector start = gripper_down();
   const auto first = arm.pose(start);
   const auto still = [&](double) { return first; };

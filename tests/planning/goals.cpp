@@ -67,16 +67,16 @@ bool is_within_limits(const chain& arm, const vector& theta) {
 
 /// By matrices, to 50 digits: where the origin of the tip is in a region's frame, how far the axis
 /// is tilted, and by how much the tip is turned about it once it is tilted back.
-struct place_in_region {
+struct region_coordinates {
   wide_vector at;
-  real_50 tilt, turn;
+  real_50 tilt, angle;
 
-  place_in_region(const dual_quaternion<real_50>& tip, const task_space_region& region) {
+  region_coordinates(const dual_quaternion<real_50>& tip, const task_space_region& region) {
     const auto frame = transform_matrix(dual_quaternion<real_50>(region.frame));
-    const auto here = transform_matrix(tip);
+    const auto tip_matrix = transform_matrix(tip);
     const wide_matrix axes = frame.topLeftCorner<3, 3>();
-    at = axes.transpose() * (here.topRightCorner<3, 1>() - frame.topRightCorner<3, 1>());
-    const wide_matrix r = axes.transpose() * here.topLeftCorner<3, 3>();
+    at = axes.transpose() * (tip_matrix.topRightCorner<3, 1>() - frame.topRightCorner<3, 1>());
+    const wide_matrix r = axes.transpose() * tip_matrix.topLeftCorner<3, 3>();
     const wide_vector n(region.axis[0], region.axis[1], region.axis[2]);
     const wide_vector tilted = r * n;
     const wide_vector across = n.cross(tilted);
@@ -84,32 +84,33 @@ struct place_in_region {
     // By Rodrigues: the least turn that takes n to where it is.
     wide_matrix k;
     k << 0, -across[2], across[1], across[2], 0, -across[0], -across[1], across[0], 0;
-    const wide_matrix swing = wide_matrix::Identity() + k + k * k / real_50(1 + n.dot(tilted));
-    const wide_matrix twist = swing.transpose() * r;
-    int least = 0;
-    n.cwiseAbs().minCoeff(&least);
-    const wide_vector p = n.cross(wide_vector::Unit(least));
+    const wide_matrix tilting = wide_matrix::Identity() + k + k * k / real_50(1 + n.dot(tilted));
+    const wide_matrix twist = tilting.transpose() * r;
+    int smallest = 0;
+    n.cwiseAbs().minCoeff(&smallest);
+    const wide_vector p = n.cross(wide_vector::Unit(smallest));
     const wide_vector q = twist * p;
-    turn = atan2(n.dot(p.cross(q)), p.dot(q));
+    angle = atan2(n.dot(p.cross(q)), p.dot(q));
   }
 };
 
 /// How far a tip is outside: of lengths and angles.
 pose_error outside(const chain& arm, const vector& theta, const task_space_region& region) {
   const Eigen::Matrix<real_50, Eigen::Dynamic, 1> exact = theta.cast<real_50>();
-  const place_in_region place(arm.pose(exact), region);
+  const region_coordinates coordinates(arm.pose(exact), region);
   pose_error result;
   for (int i = 0; i < 3; ++i) {
     const auto k = std::size_t(i);
     result.translation =
-        std::max({result.translation, double(real_50(region.lower[k]) - place.at[i]),
-                  double(place.at[i] - real_50(region.upper[k]))});
+        std::max({result.translation, double(real_50(region.lower[k]) - coordinates.at[i]),
+                  double(coordinates.at[i] - real_50(region.upper[k]))});
   }
-  result.rotation = std::max(0., double(place.tilt - real_50(region.max_tilt)));
-  const double turn(place.turn), middle = (region.rotation_lower + region.rotation_upper) / 2;
+  result.rotation = std::max(0., double(coordinates.tilt - real_50(region.max_tilt)));
+  const double angle(coordinates.angle),
+      centre = (region.rotation_lower + region.rotation_upper) / 2;
   const double half = (region.rotation_upper - region.rotation_lower) / 2;
-  const double from_middle = std::abs(std::remainder(turn - middle, 2 * pi));
-  result.rotation = std::max(result.rotation, from_middle - half);
+  const double from_centre = std::abs(std::remainder(angle - centre, 2 * pi));
+  result.rotation = std::max(result.rotation, from_centre - half);
   return result;
 }
 
@@ -123,22 +124,22 @@ std::vector<made_goal> goals_at(const dual_quaternion<double>& tip,
                                 duet_test::random_source& random) {
   const vector3<double> n = direction(random), p = translation(tip);
   const vector3<double> d = rotate(rotation(tip), n);
-  const auto up_to = [&](double most) { return random.uniform(0, most); };
+  const auto up_to = [&](double maximum) { return random.uniform(0, maximum); };
   // A region whose frame is tilted and turned away from the tip, which still is within it.
   const vector3<double> axis = direction(random);
   const vector3<double> across = axis.cross(direction(random)).normalized();
-  const double tilt = up_to(.3), turn = random.uniform(-3, 3);
-  const auto swing = exp(vector3<double>(tilt / 2 * across));
-  const auto twist = exp(vector3<double>(turn / 2 * axis));
-  const quaternion<double> frame = rotation(tip) * conj(swing * twist);
+  const double tilt = up_to(.3), angle = random.uniform(-3, 3);
+  const auto tilting = exp(vector3<double>(tilt / 2 * across));
+  const auto twist = exp(vector3<double>(angle / 2 * axis));
+  const quaternion<double> frame = rotation(tip) * conj(tilting * twist);
   const vector3<double> shift(up_to(.1), -up_to(.1), up_to(.02));
   const task_space_region region{.frame = pose(frame, vector3<double>(p - rotate(frame, shift))),
                                  .lower = {shift[0] - up_to(.01), shift[1] - up_to(.02), shift[2]},
                                  .upper = {shift[0] + up_to(.05), shift[1], shift[2] + up_to(.05)},
                                  .axis = {axis[0], axis[1], axis[2]},
                                  .max_tilt = tilt + up_to(.1),
-                                 .rotation_lower = turn - up_to(.2),
-                                 .rotation_upper = turn + up_to(.2)};
+                                 .rotation_lower = angle - up_to(.2),
+                                 .rotation_upper = angle + up_to(.2)};
   auto line = position_goal(p);
   line.upper[2] = std::numeric_limits<double>::infinity();
   return {{"position", position_goal(p)},
@@ -153,7 +154,7 @@ std::vector<made_goal> goals_at(const dual_quaternion<double>& tip,
 
 } // namespace
 
-TEST_CASE("partial goals made of known joints, six arms, to 50 digits") {
+TEST_CASE("inverse_kinematics: partial goals of known configurations are reached, six arms") {
   const std::uint64_t seed = 71;
   CAPTURE(seed);
   duet_test::random_source random(seed);
@@ -168,8 +169,9 @@ TEST_CASE("partial goals made of known joints, six arms, to 50 digits") {
       for (std::size_t g = 0; g < goals.size(); ++g) {
         const auto& region = goals[g].region;
         const auto found = inverse_kinematics(arm, region, start, {.tolerance = 1e-9});
-        const auto left = outside(arm, found.joints, region);
-        const bool is_true = left.translation <= 1e-9 + 1e-14 && left.rotation <= 1e-9 + 1e-13;
+        const auto deviation = outside(arm, found.joints, region);
+        const bool is_true =
+            deviation.translation <= 1e-9 + 1e-14 && deviation.rotation <= 1e-9 + 1e-13;
         solved[g] +=
             found.reason == stop_reason::reached && is_true && is_within_limits(arm, found.joints);
       }
@@ -180,7 +182,7 @@ TEST_CASE("partial goals made of known joints, six arms, to 50 digits") {
   }
 }
 
-TEST_CASE("rows are the derivatives of what they want less of") {
+TEST_CASE("task_space_region: rows of the constraint are derivatives of the errors") {
   duet_test::random_source random(72);
   for (int k = 0; k < 100; ++k) {
     const auto frame = anywhere(random);
@@ -201,44 +203,44 @@ TEST_CASE("rows are the derivatives of what they want less of") {
       const auto rows = region.constraint(tip).matrix;
       for (int j = 0; j < 6; ++j) {
         const double h = 1e-6;
-        const auto moved = [&](double way) {
+        const auto moved = [&](double displacement) {
           vector3<double> t = translation(tip), half(0, 0, 0);
-          (j < 3 ? t[j] : half[j - 3]) += (j < 3 ? way : way / 2);
+          (j < 3 ? t[j] : half[j - 3]) += (j < 3 ? displacement : displacement / 2);
           return region.constraint(pose(exp(half) * rotation(tip), t));
         };
         const auto after = moved(h), before = moved(-h);
         for (int i = 0; i < 6; ++i) {
-          const double least = (before.lower[i] - after.lower[i]) / (2 * h);
-          const double most = (before.upper[i] - after.upper[i]) / (2 * h);
+          const double lower_rate = (before.lower[i] - after.lower[i]) / (2 * h);
+          const double upper_rate = (before.upper[i] - after.upper[i]) / (2 * h);
           if (after.lower[i] > -std::numeric_limits<double>::infinity()) {
-            CHECK(std::abs(rows(i, j) - least) < 1e-7 * (1 + std::abs(least)));
+            CHECK(std::abs(rows(i, j) - lower_rate) < 1e-7 * (1 + std::abs(lower_rate)));
           }
-          CHECK(std::abs(rows(i, j) - most) < 1e-7 * (1 + std::abs(most)));
+          CHECK(std::abs(rows(i, j) - upper_rate) < 1e-7 * (1 + std::abs(upper_rate)));
         }
       }
     }
   }
 }
 
-TEST_CASE("what regions want at their edges, and for opposite axes") {
+TEST_CASE("task_space_region: constraints at bounds and for opposite axes") {
   const quaternion<double> one(1);
   const vector3<double> x(1, 0, 0), z(0, 0, 1), zero(0, 0, 0);
   // The axis is where it should not be at all: any way is as good, but there is one.
   const auto opposite = pointing_goal(z, -z).constraint(pose(one, zero));
   CHECK(opposite.lower.norm() == doctest::Approx(pi));
   CHECK(opposite.matrix.allFinite());
-  const auto there = pointing_goal(z, z).constraint(pose(one, zero));
-  CHECK(there.lower.norm() < 1e-15);
+  const auto aligned = pointing_goal(z, z).constraint(pose(one, zero));
+  CHECK(aligned.lower.norm() < 1e-15);
   // Nothing is wanted but three lengths, in the region's axes.
   const auto position = position_goal(x).constraint(pose(one, zero));
   CHECK(position.lower.head<3>() == x);
   CHECK(position.matrix.topLeftCorner<3, 3>() == Eigen::Matrix3d::Identity());
   CHECK(position.matrix.bottomRows<3>().isZero(0));
   // Turns are counted to the nearer edge.
-  task_space_region turns{
+  task_space_region angle_region{
       .frame = pose(one, zero), .max_tilt = pi, .rotation_lower = 3, .rotation_upper = 3.2};
   const auto at = [&](double angle) {
-    return turns.constraint(pose(exp(vector3<double>(0, 0, angle / 2)), zero));
+    return angle_region.constraint(pose(exp(vector3<double>(0, 0, angle / 2)), zero));
   };
   CHECK(at(2.9).lower[5] == doctest::Approx(.1));
   CHECK(at(-2.9).upper[5] == doctest::Approx(-(2 * pi - 2.9 - 3.2)));
@@ -252,7 +254,7 @@ TEST_CASE("what regions want at their edges, and for opposite axes") {
   CHECK(box.distance_from(vector3<double>(4, 2.5, 3.5)) == doctest::Approx(2));
 }
 
-TEST_CASE("equations of one's own: a tip on a sphere that looks at its middle") {
+TEST_CASE("equation_goal: a tip on a sphere that points to its centre is found") {
   const vector3<double> centre(.4, .1, .3);
   const equation_goal goal{[&](const auto& tip) {
     using S = std::decay_t<decltype(translation(tip)[0])>;
@@ -280,19 +282,19 @@ TEST_CASE("equations of one's own: a tip on a sphere that looks at its middle") 
   }
 }
 
-TEST_CASE("goals that cannot be reached, and why") {
+TEST_CASE("inverse_kinematics: unreachable partial goals report the reason") {
   const chain panda = robots::panda().table();
-  const vector middle = (lower_limits(panda) + upper_limits(panda)) / 2;
+  const vector centre = (lower_limits(panda) + upper_limits(panda)) / 2;
   const auto far =
-      inverse_kinematics(panda, position_goal({1.4, 0, .3}), middle, {.max_restarts = 3});
+      inverse_kinematics(panda, position_goal({1.4, 0, .3}), centre, {.max_restarts = 3});
   CHECK(far.reason == stop_reason::out_of_reach);
   CHECK(far.restarts == 3);
   // A box of which only a corner is near enough.
   auto box = position_goal({.5, .5, .3});
   box.upper = {3, 3, 3};
-  CHECK(inverse_kinematics(panda, box, middle).reason == stop_reason::reached);
+  CHECK(inverse_kinematics(panda, box, centre).reason == stop_reason::reached);
   box.lower = {2.5, 2.5, 0};
-  CHECK(inverse_kinematics(panda, box, middle).reason == stop_reason::out_of_reach);
+  CHECK(inverse_kinematics(panda, box, centre).reason == stop_reason::out_of_reach);
 
   // A slide that is too short for the height.
   const std::array<dh_row<>, 4> rows{{{.a = .4, .d = .2},
@@ -324,7 +326,7 @@ TEST_CASE("goals that cannot be reached, and why") {
   CHECK(folded.deviation.translation < .12);
 }
 
-TEST_CASE("regions that hold no pose") {
+TEST_CASE("task_space_region: regions without a pose are rejected") {
   const chain arm = robots::panda().table();
   const vector start = vector::Zero(7).cwiseMin(upper_limits(arm));
   const auto text = [&](const task_space_region& region) -> std::string {
@@ -374,7 +376,7 @@ TEST_CASE("regions that hold no pose") {
   CHECK(text(bad) == "");
 }
 
-TEST_CASE("directions that are none") {
+TEST_CASE("pointing goals: vectors that are not unit vectors are rejected") {
   const vector3<double> z(0, 0, 1), p(.5, 0, .5);
   for (const vector3<double>& none :
        {vector3<double>(0, 0, 0), vector3<double>(0, .3, .4), vector3<double>(0, 0, -2),

@@ -116,9 +116,9 @@ bool is_initialized() {
   alignas(T) static unsigned char memory[sizeof(T)];
   std::memset(memory, pattern, sizeof(T));
   T* const x = new (memory) T;
-  const bool is_whole = !is_uninitialized(*x);
+  const bool is_initialized = !is_uninitialized(*x);
   x->~T();
-  return is_whole;
+  return is_initialized;
 }
 
 struct without_value {
@@ -126,7 +126,7 @@ struct without_value {
   int count = 0;
 };
 
-TEST_CASE("default-initialized aggregates hold the values that their fields state") {
+TEST_CASE("default-initialized aggregates have the documented default values") {
   CHECK_FALSE(is_initialized<without_value>());
 
 #define DUET_CHECK(...) CHECK_MESSAGE((is_initialized<__VA_ARGS__>()), #__VA_ARGS__)
@@ -249,7 +249,7 @@ TEST_CASE("default-initialized aggregates hold the values that their fields stat
   static_assert(!std::is_default_constructible_v<manipulability_objective<serial_chain<7>>>);
 }
 
-TEST_CASE("default values of ends, shapes and planes are the documented ones") {
+TEST_CASE("default values of ends, shapes and planes are as documented") {
   const std::vector<double> u = {0, 1, 2, 3};
   const std::vector<quaternion<double>> q = {
       from_rotation_vector(Vector3d(0, 0, 0)), from_rotation_vector(Vector3d(.2, 0, .1)),

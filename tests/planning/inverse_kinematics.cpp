@@ -44,12 +44,13 @@ pose_error deviation_by_matrices(const chain& arm, const vector& theta,
 /// Is this a solution, and what it says about itself true?
 bool is_solution(const chain& arm, const result& found, const dual_quaternion<double>& goal,
                  double tolerance = 1e-6) {
-  const pose_error left = deviation_by_matrices(arm, found.joints, goal);
+  const pose_error deviation = deviation_by_matrices(arm, found.joints, goal);
   const double rounding = 1e-15 * std::max(10.0, translation(goal).norm());
   return found.reason == stop_reason::reached && is_within_limits(arm, found.joints) &&
-         left.translation <= tolerance + rounding && left.rotation <= tolerance + rounding &&
-         std::abs(left.translation - found.deviation.translation) < rounding &&
-         std::abs(left.rotation - found.deviation.rotation) < rounding;
+         deviation.translation <= tolerance + rounding &&
+         deviation.rotation <= tolerance + rounding &&
+         std::abs(deviation.translation - found.deviation.translation) < rounding &&
+         std::abs(deviation.rotation - found.deviation.rotation) < rounding;
 }
 
 bool are_identical(const result& a, const result& b) {
@@ -69,13 +70,14 @@ chain gantry(double lower, double upper) {
   return serial_chain<6>(joints);
 }
 
-dual_quaternion<double> at(double x, double y, double z, const Eigen::Vector3d& turn = {0, 0, 0}) {
-  return pose(from_rotation_vector(turn), Eigen::Vector3d(x, y, z));
+dual_quaternion<double> at(double x, double y, double z,
+                           const Eigen::Vector3d& rotation_part = {0, 0, 0}) {
+  return pose(from_rotation_vector(rotation_part), Eigen::Vector3d(x, y, z));
 }
 
 } // namespace
 
-TEST_CASE("reachable poses of four arms, from anywhere") {
+TEST_CASE("inverse_kinematics: reachable poses of four arms are found from random starts") {
   const std::uint64_t seed = 31;
   CAPTURE(seed);
   duet_test::random_source random(seed);
@@ -91,7 +93,7 @@ TEST_CASE("reachable poses of four arms, from anywhere") {
   }
 }
 
-TEST_CASE("goals and starts at singularities and limits") {
+TEST_CASE("inverse_kinematics: goals and starts at singularities and limits") {
   duet_test::random_source random(32);
   for (const chain& arm : arms()) {
     const vector lower = lower_limits(arm), upper = upper_limits(arm);
@@ -112,7 +114,7 @@ TEST_CASE("goals and starts at singularities and limits") {
   }
 }
 
-TEST_CASE("either sign of the goal, and small tolerances") {
+TEST_CASE("inverse_kinematics: independent of the sign of the goal; separate small tolerances") {
   const chain arm = robots::panda().table();
   duet_test::random_source random(33);
   const vector start = configuration(arm, random);
@@ -125,12 +127,12 @@ TEST_CASE("either sign of the goal, and small tolerances") {
   const auto moved = at(.01, 0, 0) * arm.pose(start);
   CHECK(inverse_kinematics(arm, moved, start, {.tolerance = {.011, 1e-9}}).iterations == 0);
   CHECK(inverse_kinematics(arm, moved, start, {.tolerance = {.009, 1}}).iterations > 0);
-  const auto turned = arm.pose(start) * at(0, 0, 0, {0, .02, 0});
-  CHECK(inverse_kinematics(arm, turned, start, {.tolerance = {1e-9, .021}}).iterations == 0);
-  CHECK(inverse_kinematics(arm, turned, start, {.tolerance = {1, .019}}).iterations > 0);
+  const auto rotated = arm.pose(start) * at(0, 0, 0, {0, .02, 0});
+  CHECK(inverse_kinematics(arm, rotated, start, {.tolerance = {1e-9, .021}}).iterations == 0);
+  CHECK(inverse_kinematics(arm, rotated, start, {.tolerance = {1, .019}}).iterations > 0);
 }
 
-TEST_CASE("every kind of joint, without limits; turning joints are turned back into theirs") {
+TEST_CASE("inverse_kinematics: all joint types; revolute joints are wrapped into their limits") {
   const chain arm = duet_test::every_joint();
   duet_test::random_source random(34);
   for (int k = 0; k < 20; ++k) {
@@ -145,10 +147,10 @@ TEST_CASE("every kind of joint, without limits; turning joints are turned back i
   const chain ur5e = robots::ur5e().table();
   vector theta(6);
   theta << 3, -1, 1.5, -2, 1, 6;
-  vector turned = theta;
-  turned[0] += 6 * pi;
-  turned[5] -= 10 * pi;
-  const auto same = inverse_kinematics(ur5e, ur5e.pose(theta), turned);
+  vector rotated = theta;
+  rotated[0] += 6 * pi;
+  rotated[5] -= 10 * pi;
+  const auto same = inverse_kinematics(ur5e, ur5e.pose(theta), rotated);
   CHECK(same.iterations == 0);
   CHECK(is_solution(ur5e, same, ur5e.pose(theta)));
   // Through the limit at 2π, which is none.
@@ -158,7 +160,7 @@ TEST_CASE("every kind of joint, without limits; turning joints are turned back i
                     ur5e.pose(beyond)));
 }
 
-TEST_CASE("units of length do not matter") {
+TEST_CASE("inverse_kinematics: results do not depend on the unit of length") {
   const auto in_units = [](double unit) {
     std::array<joint<>, 6> joints;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -176,7 +178,7 @@ TEST_CASE("units of length do not matter") {
   CHECK(found.joints == inverse_kinematics(metres, metres.pose(theta), start, few).joints);
 }
 
-TEST_CASE("nor do they where joints slide, or only slide, and what is out of reach") {
+TEST_CASE("inverse_kinematics: independent of the unit with prismatic joints and out of reach") {
   // In units that are powers of two apart results are equal to the last bit.
   const auto stanford = [](double unit) {
     const std::array<dh_row<>, 6> rows{
@@ -213,23 +215,23 @@ TEST_CASE("nor do they where joints slide, or only slide, and what is out of rea
     duet_test::random_source random(41);
     int restarts = 0, solved = 0;
     for (int k = 0; k < 40; ++k) {
-      vector start(6), theta(6), start_there(6), theta_there(6);
+      vector start(6), theta(6), scaled_start(6), scaled_theta(6);
       for (int i = 0; i < 6; ++i) {
         const auto& limits = one.limits(i);
         const double scale = one.kind(i) == joint_kind::prismatic ? unit : 1;
         CHECK(other.limits(i).upper == scale * limits.upper);
         start[i] = random.uniform(limits.lower, limits.upper);
         theta[i] = random.uniform(limits.lower, limits.upper);
-        start_there[i] = scale * start[i];
-        theta_there[i] = scale * theta[i];
+        scaled_start[i] = scale * start[i];
+        scaled_theta[i] = scale * theta[i];
       }
       const bool is_far = k % 8 == 7; // out of reach
       const auto goal = is_far ? at(9, -k, 3, {.1, 2, .3}) : one.pose(theta);
-      const auto goal_there =
-          is_far ? at(9 * unit, -k * unit, 3 * unit, {.1, 2, .3}) : other.pose(theta_there);
+      const auto scaled_goal =
+          is_far ? at(9 * unit, -k * unit, 3 * unit, {.1, 2, .3}) : other.pose(scaled_theta);
       const auto x = inverse_kinematics(one, goal, start, {.tolerance = {1e-6, 1e-7}});
       const auto y =
-          inverse_kinematics(other, goal_there, start_there, {.tolerance = {1e-6 * unit, 1e-7}});
+          inverse_kinematics(other, scaled_goal, scaled_start, {.tolerance = {1e-6 * unit, 1e-7}});
       CHECK(x.reason == (is_far ? stop_reason::out_of_reach : y.reason));
       CHECK(x.reason == y.reason);
       CHECK(x.iterations == y.iterations);
@@ -250,10 +252,10 @@ TEST_CASE("nor do they where joints slide, or only slide, and what is out of rea
   compare(screw(1), screw(unit), true);
 }
 
-TEST_CASE("what cannot be reached, and why") {
+TEST_CASE("inverse_kinematics: unreachable goals report the reason") {
   const chain panda = robots::panda().table();
-  const vector middle = (lower_limits(panda) + upper_limits(panda)) / 2;
-  const auto far = inverse_kinematics(panda, at(1.3, 0, .3), middle);
+  const vector centre = (lower_limits(panda) + upper_limits(panda)) / 2;
+  const auto far = inverse_kinematics(panda, at(1.3, 0, .3), centre);
   CHECK(far.reason == stop_reason::out_of_reach);
   CHECK(std::string(to_text(far.reason)) == "out_of_reach");
   CHECK(far.restarts == 100);
@@ -271,8 +273,8 @@ TEST_CASE("what cannot be reached, and why") {
 
   const chain ur5e = robots::ur5e().table();
   // The hand turned away from the base, where it would have to be stretched to it.
-  const auto turned = inverse_kinematics(ur5e, at(.85, .2, .1, {0, -pi / 2, 0}), zero);
-  CHECK(turned.reason == stop_reason::singular);
+  const auto rotated = inverse_kinematics(ur5e, at(.85, .2, .1, {0, -pi / 2, 0}), zero);
+  CHECK(rotated.reason == stop_reason::singular);
 
   const std::array<dh_row<>, 4> rows{{{.a = .4, .d = .2},
                                       {.a = .3, .alpha = pi},
@@ -288,14 +290,14 @@ TEST_CASE("what cannot be reached, and why") {
   CHECK(inverse_kinematics(scara, tilted, start).reason == stop_reason::no_progress);
 
   duet_test::random_source random(35);
-  const auto hurried = inverse_kinematics(panda, panda.pose(configuration(panda, random)), middle,
+  const auto hurried = inverse_kinematics(panda, panda.pose(configuration(panda, random)), centre,
                                           {.max_restarts = 0, .max_iterations = 2});
   CHECK(hurried.reason == stop_reason::iteration_limit);
   CHECK(hurried.iterations == 2);
   CHECK(hurried.restarts == 0);
 }
 
-TEST_CASE("the nearest pose to a goal out of reach") {
+TEST_CASE("inverse_kinematics: out of reach, the result is the nearest pose") {
   // Of three slides it is known, and their limits hold at once.
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -328,22 +330,22 @@ TEST_CASE("the nearest pose to a goal out of reach") {
                            Eigen::Vector3d(3 * t[0], 3 * t[1], 3 * t[2]));
       const auto error = [&](const auto& theta) {
         const auto tip = arm.pose(theta);
-        const auto way = (translation(tip) - translation(goal)).eval();
-        const auto turn = rotation_vector(rotation(goal) * conj(rotation(tip)));
-        return way.squaredNorm() / (scale * scale) + turn.squaredNorm();
+        const auto displacement = (translation(tip) - translation(goal)).eval();
+        const auto rotation_error = rotation_vector(rotation(goal) * conj(rotation(tip)));
+        return displacement.squaredNorm() / (scale * scale) + rotation_error.squaredNorm();
       };
       const vector start = configuration(arm, random);
       const auto found = inverse_kinematics(arm, goal, start, {.max_restarts = 50});
       CHECK(found.reason == stop_reason::out_of_reach);
       CHECK(is_within_limits(arm, found.joints));
-      const pose_error left = deviation_by_matrices(arm, found.joints, goal);
-      CHECK(left.translation == doctest::Approx(found.deviation.translation).epsilon(1e-12));
-      CHECK(left.rotation == doctest::Approx(found.deviation.rotation).epsilon(1e-7));
-      const auto [value, slope] = gradient(error, found.joints);
+      const pose_error deviation = deviation_by_matrices(arm, found.joints, goal);
+      CHECK(deviation.translation == doctest::Approx(found.deviation.translation).epsilon(1e-12));
+      CHECK(deviation.rotation == doctest::Approx(found.deviation.rotation).epsilon(1e-7));
+      const auto [value, derivatives] = gradient(error, found.joints);
       for (int i = 0; i < arm.size(); ++i) {
-        const bool is_held = slope[i] > 0 ? found.joints[i] == arm.limits(i).lower
-                                          : found.joints[i] == arm.limits(i).upper;
-        CHECK((is_held || std::abs(slope[i]) < 1e-9 * (1 + value)));
+        const bool is_fixed = derivatives[i] > 0 ? found.joints[i] == arm.limits(i).lower
+                                                 : found.joints[i] == arm.limits(i).upper;
+        CHECK((is_fixed || std::abs(derivatives[i]) < 1e-9 * (1 + value)));
       }
       for (int j = 0; j < 1000; ++j) {
         CHECK(value <= error(configuration(arm, random)));
@@ -354,30 +356,31 @@ TEST_CASE("the nearest pose to a goal out of reach") {
   }
 }
 
-TEST_CASE("how far a pose is from a goal, to second order") {
+TEST_CASE("squared_error_of: gradient and Hessian agree with dual numbers") {
   duet_test::random_source random(43);
-  const auto check = [&](const chain& arm, double turn) {
+  const auto check = [&](const chain& arm, double angle) {
     const detail::chain_model<chain> model(arm);
     for (int k = 0; k < 5; ++k) {
       const vector theta = configuration(arm, random);
       const auto t = random.direction<3>();
       const auto goal = at(t[1], 2 * t[2], t[0], {0, 0, 0}) * arm.pose(theta) *
-                        at(0, 0, 0, Eigen::Vector3d(turn * t[0], turn * t[1], turn * t[2]));
+                        at(0, 0, 0, Eigen::Vector3d(angle * t[0], angle * t[1], angle * t[2]));
       const auto state = model.at(model.joints(theta));
       const auto twist = detail::error_twist(state.tip, model.scaled_pose(goal));
-      const auto way = model.scaled_pose(goal).translation - state.tip.translation;
+      const auto displacement = model.scaled_pose(goal).translation - state.tip.translation;
       const auto found = detail::squared_error_of(
-          state.jacobian, detail::small_twist{{way.x, way.y, way.z, twist[3], twist[4], twist[5]}});
+          state.jacobian, detail::small_twist{{displacement.x, displacement.y, displacement.z,
+                                               twist[3], twist[4], twist[5]}});
       const auto half_square = [&](const auto& x) {
         const auto tip = arm.pose(x);
-        const auto apart = ((translation(goal) - translation(tip)) / model.length).eval();
+        const auto offset = ((translation(goal) - translation(tip)) / model.length).eval();
         const auto about = rotation_vector(rotation(goal) * conj(rotation(tip)));
-        return (apart.squaredNorm() + about.squaredNorm()) / 2;
+        return (offset.squaredNorm() + about.squaredNorm()) / 2;
       };
       const auto expected = hessian(half_square, theta);
       for (int i = 0; i < arm.size(); ++i) {
         CHECK(std::abs(found.gradient[i] - model.unit[i] * expected.gradient[i]) <
-              2e-14 * (1 + 4 * turn));
+              2e-14 * (1 + 4 * angle));
         for (int j = 0; j <= i; ++j) {
           CHECK(std::abs(found.curvature(i, j) -
                          model.unit[i] * model.unit[j] * expected.hessian(i, j)) < 1e-12);
@@ -385,13 +388,14 @@ TEST_CASE("how far a pose is from a goal, to second order") {
       }
     }
   };
-  for (const double turn : {1e-6, 1e-2, 1., 3.}) {
-    check(robots::panda().table(), turn);
-    check(duet_test::every_joint(), turn);
+  for (const double angle : {1e-6, 1e-2, 1., 3.}) {
+    check(robots::panda().table(), angle);
+    check(duet_test::every_joint(), angle);
   }
 }
 
-TEST_CASE("many goals: as one by one, on any number of cores") {
+TEST_CASE(
+    "inverse_kinematics: many goals give the results of single calls, for any number of threads") {
   const chain arm = robots::baxter_left().table();
   duet_test::random_source random(36);
   const vector start = configuration(arm, random);
@@ -436,7 +440,7 @@ TEST_CASE("many goals: as one by one, on any number of cores") {
   CHECK(out[0].iterations == -1); // nothing was begun
 }
 
-TEST_CASE("bad problems") {
+TEST_CASE("inverse_kinematics: invalid goals, starts and options are rejected") {
   const chain arm = robots::panda().table();
   const vector start = (lower_limits(arm) + upper_limits(arm)) / 2;
   const auto goal = arm.pose(start);
@@ -450,8 +454,9 @@ TEST_CASE("bad problems") {
                        "duet: inverse_kinematics: the translation of the goal is not finite: (nan, "
                        "nan, nan)",
                        invalid_input);
-  const auto not_turned = pose(quaternion<double>(1, 0, std::nan(""), 0), vector3<double>(1, 2, 3));
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, not_turned, start),
+  const auto not_a_rotation =
+      pose(quaternion<double>(1, 0, std::nan(""), 0), vector3<double>(1, 2, 3));
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, not_a_rotation, start),
                        "duet: inverse_kinematics: the rotation of the goal is not finite: (1, 0, "
                        "nan, 0)",
                        invalid_input);
@@ -478,31 +483,31 @@ TEST_CASE("bad problems") {
   CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.max_iterations = 0}), invalid_input);
 }
 
-TEST_CASE("the error of a pose is the twist of the shorter screw motion to another") {
+TEST_CASE("error_twist: is the twist of the shorter screw motion") {
   duet_test::random_source random(38);
   for (const double angle : {0., 1e-200, 1e-160, 1e-9, 1e-3, 1., 3., pi - 1e-9, pi, 4., 6.}) {
     for (const double sign : {1., -1.}) {
       const auto n = random.direction<3>(), t = random.direction<3>(), u = random.direction<3>();
-      const auto turn = exp(vector3<double>(.5 * angle * vector3<double>(n[0], n[1], n[2])));
+      const auto relative = exp(vector3<double>(.5 * angle * vector3<double>(n[0], n[1], n[2])));
       const auto rotation = exp(vector3<double>(t[0], t[1], t[2]));
       const detail::tip_pose from{rotation, {u[0], u[1], u[2]}};
-      const detail::tip_pose to{sign * (turn * rotation), {t[2], 3 * t[0], t[1]}};
+      const detail::tip_pose to{sign * (relative * rotation), {t[2], 3 * t[0], t[1]}};
       const auto e = detail::error_twist(from, to);
       const vector3<double> omega(e[3], e[4], e[5]), p(u[0], u[1], u[2]);
       CHECK(omega.norm() <= pi * (1 + 1e-15));
       CHECK(omega.norm() == doctest::Approx(std::min(angle, 2 * pi - angle)));
       const vector3<double> spatial = vector3<double>(e[0], e[1], e[2]) - omega.cross(p);
-      const auto there =
+      const auto moved =
           exp(make_dual_vector(vector3<double>(omega / 2), vector3<double>(spatial / 2))) *
           detail::to_dual_quaternion(from);
-      const auto left = pose_error_between(there, detail::to_dual_quaternion(to));
-      CHECK(left.translation < 1e-14);
-      CHECK(left.rotation < 1e-14);
+      const auto deviation = pose_error_between(moved, detail::to_dual_quaternion(to));
+      CHECK(deviation.translation < 1e-14);
+      CHECK(deviation.rotation < 1e-14);
     }
   }
 }
 
-TEST_CASE("nothing is allocated, restarts included") {
+TEST_CASE("inverse_kinematics: allocates no memory, including restarts") {
   std::array<joint<>, 16> joints;
   for (std::size_t i = 0; i < 16; ++i) {
     joints[i].origin.translation = {.1, 0, .05};

@@ -43,24 +43,24 @@ public:
 
   [[nodiscard]] path_verdict operator()(const joints& start) const {
     constexpr int layers = 48;
-    layer here = layer_at(0);
-    reach(here, start);
+    layer current = layer_at(0);
+    reach(current, start);
     for (int k = 0; k < layers; ++k) {
       const double end = double(k + 1) / layers;
-      double step = end - here.u;
-      while (here.u < end) {
-        layer next = layer_at(here.u + step > end - 1e-9 ? end : here.u + step);
-        advance(here, next);
+      double step = end - current.u;
+      while (current.u < end) {
+        layer next = layer_at(current.u + step > end - 1e-9 ? end : current.u + step);
+        advance(current, next);
         if (next.reached.empty()) {
           step /= 4;
-          if (step < least) {
-            const bool is_beyond = goes_on_without_limits(here, 4 * least);
-            return {here.u,
+          if (step < min_step) {
+            const bool is_beyond = goes_on_without_limits(current, 4 * min_step);
+            return {current.u,
                     is_beyond ? duet::stop_reason::joint_limit : duet::stop_reason::singular,
-                    is_beyond && !goes_on_without_limits(here, 1e-4)};
+                    is_beyond && !goes_on_without_limits(current, 1e-4)};
           }
         } else {
-          here = std::move(next);
+          current = std::move(next);
         }
       }
     }
@@ -68,20 +68,20 @@ public:
   }
 
 private:
-  static constexpr double least = 1e-6, resolution = .2;
+  static constexpr double min_step = 1e-6, resolution = .2;
   static constexpr int none = -1;
 
   struct point {
     joints x;
-    int curve, piece;    ///< `none`: outside the limits
-    std::ptrdiff_t next; ///< on its curve
+    int curve, component; ///< `none`: outside the limits
+    std::ptrdiff_t next;  ///< on its curve
   };
   struct layer {
     double u;
     std::vector<point> points;
-    int pieces = 0;
+    int component_count = 0;
     std::set<int> reached;
-    std::vector<joints> beside; ///< what is reached and on no piece that points show
+    std::vector<joints> isolated; ///< what is reached and on no piece that points show
   };
 
   [[nodiscard]] bool is_within_limits(const joints& x) const {
@@ -101,31 +101,32 @@ private:
       const std::size_t first = result.points.size();
       for (joints x : curve.joints) {
         for (int i = 0; i < 7; ++i) {
-          const double middle = (arm_.limits(i).lower + arm_.limits(i).upper) / 2;
-          x[i] = middle + std::remainder(x[i] - middle, 2 * std::numbers::pi);
+          const double centre = (arm_.limits(i).lower + arm_.limits(i).upper) / 2;
+          x[i] = centre + std::remainder(x[i] - centre, 2 * std::numbers::pi);
         }
         const bool is_inside = is_within_limits(x);
         if (result.points.size() > first && curve.dimension == 1) {
           result.points.back().next = std::ptrdiff_t(result.points.size());
         }
         const bool goes_on = is_inside && curve.dimension == 1 && result.points.size() > first &&
-                             result.points.back().piece != none &&
+                             result.points.back().component != none &&
                              (result.points.back().x - x).norm() < 1;
         result.points.push_back({x, number,
                                  !is_inside ? none
-                                 : goes_on  ? result.points.back().piece
-                                            : result.pieces++,
+                                 : goes_on  ? result.points.back().component
+                                            : result.component_count++,
                                  none});
       }
       if (curve.is_closed && result.points.size() > first) {
         point& last = result.points.back();
         last.next = std::ptrdiff_t(first);
-        const int piece = result.points[first].piece;
-        if (last.piece != none && piece != none && (last.x - result.points[first].x).norm() < 1) {
-          const int same = last.piece;
+        const int component = result.points[first].component;
+        if (last.component != none && component != none &&
+            (last.x - result.points[first].x).norm() < 1) {
+          const int same = last.component;
           for (std::size_t i = first; i < result.points.size(); ++i) {
             point& p = result.points[i];
-            p.piece = p.piece == same ? piece : p.piece;
+            p.component = p.component == same ? component : p.component;
           }
         }
       }
@@ -153,15 +154,15 @@ private:
       };
       joints y = x + step();
       if (keeps_limits) {
-        bool is_held = false;
+        bool is_fixed = false;
         for (int i = 0; i < 7; ++i) {
           const double bounded = std::clamp(y[i], arm_.limits(i).lower, arm_.limits(i).upper);
           if (bounded != y[i] && bounded == x[i]) {
             j.col(i).setZero();
-            is_held = true;
+            is_fixed = true;
           }
         }
-        y = is_held ? joints(x + step()) : y;
+        y = is_fixed ? joints(x + step()) : y;
         for (int i = 0; i < 7; ++i) {
           y[i] = std::clamp(y[i], arm_.limits(i).lower, arm_.limits(i).upper);
         }
@@ -190,47 +191,47 @@ private:
   /// What is next to a configuration is reached with it.
   void reach(layer& at, const joints& x) const {
     double nearest = .05;
-    int piece = none;
+    int component = none;
     for (const point& p : at.points) {
       if (p.next == none) {
         continue;
       }
       const point& q = at.points[std::size_t(p.next)];
-      const joints way = q.x - p.x;
-      const int its = p.piece != none ? p.piece : q.piece;
-      if (its == none || way.norm() > 1) {
+      const joints segment = q.x - p.x;
+      const int its = p.component != none ? p.component : q.component;
+      if (its == none || segment.norm() > 1) {
         continue;
       }
-      const double part = std::clamp(way.dot(x - p.x) / way.squaredNorm(), 0., 1.);
-      const double distance = (p.x + part * way - x).norm();
+      const double part = std::clamp(segment.dot(x - p.x) / segment.squaredNorm(), 0., 1.);
+      const double distance = (p.x + part * segment - x).norm();
       if (distance < nearest) {
         nearest = distance;
-        piece = p.piece != none && q.piece != none && part > .5 ? q.piece : its;
+        component = p.component != none && q.component != none && part > .5 ? q.component : its;
       }
     }
-    if (piece != none) {
-      at.reached.insert(piece);
+    if (component != none) {
+      at.reached.insert(component);
     } else {
-      if (std::none_of(at.beside.begin(), at.beside.end(),
+      if (std::none_of(at.isolated.begin(), at.isolated.end(),
                        [&](const joints& y) { return (x - y).norm() < .02; })) {
-        at.beside.push_back(x);
+        at.isolated.push_back(x);
       }
-      at.reached.insert(at.pieces); // one that no point is on
+      at.reached.insert(at.component_count); // one that no point is on
     }
   }
 
-  void advance(const layer& here, layer& next) const {
+  void advance(const layer& current, layer& next) const {
     const auto go = [&](const joints& x) {
-      if (const auto y = follow(x, here.u, next.u, true)) {
+      if (const auto y = follow(x, current.u, next.u, true)) {
         reach(next, *y);
       }
     };
-    for (const point& p : here.points) {
-      if (p.piece != none && here.reached.count(p.piece) > 0) {
+    for (const point& p : current.points) {
+      if (p.component != none && current.reached.count(p.component) > 0) {
         go(p.x);
       }
     }
-    for (const joints& x : here.beside) {
+    for (const joints& x : current.isolated) {
       go(x);
     }
     if (const auto x = known_(next.u)) {
@@ -240,19 +241,19 @@ private:
     }
   }
 
-  [[nodiscard]] bool goes_on_without_limits(const layer& here, double by) const {
+  [[nodiscard]] bool goes_on_without_limits(const layer& current, double by) const {
     std::set<int> curves;
-    for (const point& p : here.points) {
-      if (here.reached.count(p.piece) > 0) {
+    for (const point& p : current.points) {
+      if (current.reached.count(p.component) > 0) {
         curves.insert(p.curve);
       }
     }
     const auto goes_on = [&](const joints& x) {
-      return bool(follow(x, here.u, std::min(1., here.u + by), false));
+      return bool(follow(x, current.u, std::min(1., current.u + by), false));
     };
-    return std::any_of(here.points.begin(), here.points.end(),
+    return std::any_of(current.points.begin(), current.points.end(),
                        [&](const point& p) { return curves.count(p.curve) > 0 && goes_on(p.x); }) ||
-           std::any_of(here.beside.begin(), here.beside.end(), goes_on);
+           std::any_of(current.isolated.begin(), current.isolated.end(), goes_on);
   }
 
   const duet::serial_chain<7>& arm_;
@@ -262,9 +263,9 @@ private:
 
 /// How far a way leads that may leave a plan anywhere.
 template <class Plan>
-[[nodiscard]] path_verdict complete_way(const duet::serial_chain<7>& arm,
-                                        const layered_search::path_function& path,
-                                        const Plan& plan) {
+[[nodiscard]] path_verdict complete_path_verdict(const duet::serial_chain<7>& arm,
+                                                 const layered_search::path_function& path,
+                                                 const Plan& plan) {
   const auto known = [&](double u) -> std::optional<layered_search::joints> {
     const auto next = std::lower_bound(plan.tau.begin(), plan.tau.end(), u) - plan.tau.begin();
     if (next == std::ptrdiff_t(plan.tau.size())) {

@@ -74,7 +74,8 @@ const auto small_first = [](const auto& theta) {
 
 } // namespace
 
-TEST_CASE("regions, some beyond reach, with and without wishes") {
+TEST_CASE(
+    "many goals: regions agree with single calls to the last bit, with and without objectives") {
   duet_test::random_source random(91);
   for (const chain& arm : {chain(robots::panda().table()), chain(duet_test::stanford_arm(1))}) {
     const vector start = configuration(arm, random);
@@ -106,7 +107,7 @@ TEST_CASE("regions, some beyond reach, with and without wishes") {
   }
 }
 
-TEST_CASE("goals of one's own, in an array; what may be left away") {
+TEST_CASE("many goals: user-defined goals in an array; optional arguments") {
   const auto arm = robots::ur5e();
   using joints = Eigen::Matrix<double, 6, 1>;
   const joints start(0, -1, 1, 0, 1, 0);
@@ -128,7 +129,7 @@ TEST_CASE("goals of one's own, in an array; what may be left away") {
   CHECK(out[2].reason != stop_reason::reached);
 }
 
-TEST_CASE("what is refused, before anything is begun") {
+TEST_CASE("many goals: invalid arguments are rejected before the first search") {
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
   std::vector<task_space_region> regions(20, position_goal({.5, 0, .5}));
@@ -136,14 +137,16 @@ TEST_CASE("what is refused, before anything is begun") {
       20, pose(quaternion<double>(1), vector3<double>(.5, 0, .5)));
   std::vector<result> out(20);
   out[0].iterations = -1;
-  const preferred_posture wish{start};
+  const preferred_posture preference{start};
   const auto text_of = [&](const auto& goals, std::size_t room, const auto& objective) {
     return duet_test::message_of<invalid_input>([&] {
       inverse_kinematics(arm, goals, start, std::span(out).first(room), {}, all_cores, objective);
     });
   };
-  CHECK(text_of(regions, 7, wish) == "duet: inverse_kinematics: 20 goals, but room for 7 results");
-  CHECK(text_of(poses, 7, wish) == "duet: inverse_kinematics: 20 goals, but room for 7 results");
+  CHECK(text_of(regions, 7, preference) ==
+        "duet: inverse_kinematics: 20 goals, but room for 7 results");
+  CHECK(text_of(poses, 7, preference) ==
+        "duet: inverse_kinematics: 20 goals, but room for 7 results");
   CHECK(text_of(regions, 20, preferred_posture{vector(vector::Zero(3))}) ==
         "duet: preferred_posture: 3 coordinates (expected 7, one per joint)");
   regions[17].max_tilt = -1;
@@ -151,8 +154,8 @@ TEST_CASE("what is refused, before anything is begun") {
   poses[17] = 2 * poses[17];
   CHECK(text_of(regions, 20, no_objective{}) ==
         "duet: inverse_kinematics: max_tilt of goal 17 is -1 (expected a non-negative number)");
-  CHECK(text_of(poses, 20, wish) == "duet: inverse_kinematics: goal 17 is not a unit dual "
-                                    "quaternion: |p|^2 = 4, p.q = 0 (expected 1 and 0)");
+  CHECK(text_of(poses, 20, preference) == "duet: inverse_kinematics: goal 17 is not a unit dual "
+                                          "quaternion: |p|^2 = 4, p.q = 0 (expected 1 and 0)");
   regions[17].max_tilt = 1;
   CHECK(text_of(regions, 20, no_objective{}) ==
         "duet: inverse_kinematics: the axis of goal 18 (0, 0, 2) is not a unit vector");

@@ -38,7 +38,7 @@ scene arm_among(std::vector<obstacle> obstacles) {
 
 } // namespace
 
-TEST_CASE("the elbow makes way for an obstacle, the tip stays on the screw") {
+TEST_CASE("plan_screw_motion: the elbow avoids an obstacle while the tip stays on the screw") {
   for (const int seed : {354, 373, 903}) {
     duet_test::random_source random{std::uint64_t(seed)};
     vector end;
@@ -51,9 +51,10 @@ TEST_CASE("the elbow makes way for an obstacle, the tip stays on the screw") {
     const vector late = plain.joints[plain.joints.size() * 2 / 3];
     const auto aside = random.direction<3>();
     const point centre = translation(arm.pose(late, 4)) + .15 * point(aside[0], aside[1], aside[2]);
-    const auto turned = pose(from_rotation_vector(point(.5, 1, 0)), centre);
-    const scene around = arm_among({seed % 2 == 0 ? obstacle(sphere<>{centre, .1})
-                                                  : obstacle(box<>{turned, point(.09, .07, .08)})});
+    const auto rotated = pose(from_rotation_vector(point(.5, 1, 0)), centre);
+    const scene around =
+        arm_among({seed % 2 == 0 ? obstacle(sphere<>{centre, .1})
+                                 : obstacle(box<>{rotated, point(.09, .07, .08)})});
     REQUIRE(clearance(arm, gripper_down(), around).distance > .01);
     REQUIRE(clearance(arm, late, around).distance < -.01);
     const auto plan = plan_screw_motion(arm, gripper_down(), goal, {}, {}, around);
@@ -63,7 +64,7 @@ TEST_CASE("the elbow makes way for an obstacle, the tip stays on the screw") {
   }
 }
 
-TEST_CASE("an obstacle in the way of the tip: as far as the margin, and why") {
+TEST_CASE("plan_screw_motion: an obstacle on the path of the tip ends the plan at the margin") {
   const auto start = gripper_down();
   const point from = translation(arm.pose(start));
   const auto goal = pose(rotation(arm.pose(start)), point(from + point(.1, 0, -.2)));
@@ -79,7 +80,7 @@ TEST_CASE("an obstacle in the way of the tip: as far as the margin, and why") {
   duet_test::check_clear_screw(arm, plan, goal, around);
 }
 
-TEST_CASE("obstacles far away change nothing") {
+TEST_CASE("plan_screw_motion: distant obstacles do not change the plan") {
   const auto start = gripper_down();
   vector end = start;
   end[1] += .3;
@@ -94,7 +95,7 @@ TEST_CASE("obstacles far away change nothing") {
   CHECK(plain.smallest_clearance == INFINITY);
 }
 
-TEST_CASE("limits are no obstacles; bad scenes") {
+TEST_CASE("plan_screw_motion: limits are not reported as obstacles; invalid scenes are rejected") {
   const auto start = gripper_down();
   // Farther than the elbow can be stretched, beside a wall that is near but not in the way.
   const auto far = pose(rotation(arm.pose(start)), point(.87, 0, .3));

@@ -39,13 +39,13 @@ problem random_problem(unsigned seed, int number, bool is_near) {
   problem result;
   for (int k = 0; k <= number; ++k) {
     for (int i = 0; i < 7; ++i) {
-      const double middle = (arm.limits(i).lower + arm.limits(i).upper) / 2;
-      const double half = .8 * (arm.limits(i).upper - middle);
+      const double centre = (arm.limits(i).lower + arm.limits(i).upper) / 2;
+      const double half = .8 * (arm.limits(i).upper - centre);
       double& from = result.start[i];
-      from = middle + half * random.uniform(-1, 1);
+      from = centre + half * random.uniform(-1, 1);
       result.end[i] = is_near
-                          ? std::clamp(from + random.uniform(-.5, .5), middle - half, middle + half)
-                          : middle + half * random.uniform(-1, 1);
+                          ? std::clamp(from + random.uniform(-.5, .5), centre - half, centre + half)
+                          : centre + half * random.uniform(-1, 1);
     }
   }
   return result;
@@ -69,7 +69,7 @@ constexpr plan_options without_search = {.search_step = 0};
 
 } // namespace
 
-TEST_CASE("from the gripper-down pose to near goals, along the screw") {
+TEST_CASE("plan_screw_motion: reaches near goals along the screw") {
   duet_test::random_source random(1);
   for (int k = 0; k < 8; ++k) {
     vector end = gripper_down();
@@ -83,8 +83,8 @@ TEST_CASE("from the gripper-down pose to near goals, along the screw") {
     REQUIRE(plan.reason == stop_reason::reached);
     CHECK(worst(plan, goal) < 1e-5);
     CHECK(plan.joints.front() == gripper_down());
-    const pose_error left = pose_error_between(plan.poses.back(), goal);
-    CHECK(std::max(left.translation, left.rotation) <= 1e-6);
+    const pose_error deviation = pose_error_between(plan.poses.back(), goal);
+    CHECK(std::max(deviation.translation, deviation.rotation) <= 1e-6);
     CHECK(plan.tau.back() == 1);
     CHECK(plan.iterations <
           2.3 * double(plan.joints.size())); // a step to first order, and Newton's
@@ -104,16 +104,16 @@ TEST_CASE("from the gripper-down pose to near goals, along the screw") {
   }
 }
 
-TEST_CASE("centring moves joints away from their limits") {
+TEST_CASE("plan_screw_motion: joint centring increases the distance from limits") {
   const vector lower = lower_limits(arm), upper = upper_limits(arm);
-  const vector middle = (lower + upper) / 2;
-  const vector theta = middle + .45 * (upper - lower);
+  const vector centre = (lower + upper) / 2;
+  const vector theta = centre + .45 * (upper - lower);
   const vector step = detail::joint_centring_step(theta, lower, upper, .1);
   CHECK((step + vector::Constant(.1 * .9 * .9 * .9)).norm() < 1e-14);
-  CHECK(detail::joint_centring_step(middle, lower, upper, .1).norm() < 1e-14);
+  CHECK(detail::joint_centring_step(centre, lower, upper, .1).norm() < 1e-14);
 }
 
-TEST_CASE("where an arm gets stuck, motions in place go on") {
+TEST_CASE("plan_screw_motion: self-motions continue a plan that is stuck") {
   const auto [start, end] = random_problem(1, 96, true);
   const auto goal = arm.pose(end);
   const auto stuck = plan_screw_motion(arm, start, goal, without_search);
@@ -129,7 +129,7 @@ TEST_CASE("where an arm gets stuck, motions in place go on") {
 }
 
 /// Damped steps alone end at a singularity.
-TEST_CASE("beside a singularity an arm goes on without motions in place") {
+TEST_CASE("plan_screw_motion: passes near a singularity without self-motions") {
   const auto [start, end] = random_problem(1, 84, true);
   const auto goal = arm.pose(end);
   const auto plan = plan_screw_motion(arm, start, goal, without_search);
@@ -139,7 +139,7 @@ TEST_CASE("beside a singularity an arm goes on without motions in place") {
   CHECK(worst(plan, goal) < 1e-5);
 }
 
-TEST_CASE("no joint has to make up for an unlimited one") {
+TEST_CASE("plan_screw_motion: an arm with limits of one joint only reaches its goal") {
   // The same arm with all but one joint continuous, as a chain of run-time size.
   auto joints = std::array<joint<>, 7>{};
   for (std::size_t i = 0; i < 7; ++i) {
@@ -158,14 +158,14 @@ TEST_CASE("no joint has to make up for an unlimited one") {
   CHECK(plan.smallest_limit_margin <= .9);
 }
 
-TEST_CASE("N24: the notes' planner reaches near goals too, but drifts from the screw") {
+TEST_CASE("N24: the planner of the notes reaches near goals but drifts from the screw") {
   vector end = gripper_down();
   end += vector(.3, -.2, .4, .1, -.3, .2, .4);
   const auto goal = arm.pose(end);
   const auto plan = printed_screw_plan(arm, gripper_down(), goal);
   CHECK(plan.reason == stop_reason::reached);
-  const pose_error left = pose_error_between(plan.poses.back(), goal);
-  CHECK(std::max(left.translation, left.rotation) <= 1e-4);
+  const pose_error deviation = pose_error_between(plan.poses.back(), goal);
+  CHECK(std::max(deviation.translation, deviation.rotation) <= 1e-4);
   // Each step goes one hundredth of what is left.
   CHECK(plan.iterations > 300);
   double drift = 0;
@@ -175,7 +175,7 @@ TEST_CASE("N24: the notes' planner reaches near goals too, but drifts from the s
   CHECK(drift > 1e-5);
 }
 
-TEST_CASE("why it stops") {
+TEST_CASE("plan_screw_motion: reports the termination reason") {
   // Farther than the elbow can be stretched: as far as the arm goes.
   const auto far = pose(rotation(arm.pose(gripper_down())), Eigen::Vector3d(.87, 0, .3));
   const auto plan = plan_screw_motion(arm, gripper_down(), far, without_search);
@@ -236,7 +236,7 @@ TEST_CASE("why it stops") {
   CHECK(nothing.reason == stop_reason::reached);
 }
 
-TEST_CASE("bad problems") {
+TEST_CASE("plan_screw_motion: invalid starts, goals and options are rejected") {
   const vector start = gripper_down();
   const auto goal = arm.pose(start);
   vector outside = start;

@@ -51,7 +51,7 @@ double lag(const Plan& plan, std::size_t poses) {
 
 } // namespace
 
-TEST_CASE("N24: every step is one of ScLERP, then N23, from where the last one ended") {
+TEST_CASE("N24: every step is ScLERP followed by N23, from the end of the previous step") {
   const auto goal = arm.pose(near_gripper_down());
   for (const double beta : {.3, 1., 1.8, 2.5}) {
     const auto plan = printed_screw_plan(arm, gripper_down(), goal, {.tau = .1, .beta = beta});
@@ -66,10 +66,10 @@ TEST_CASE("N24: every step is one of ScLERP, then N23, from where the last one e
   }
 }
 
-TEST_CASE("N24: what β does, τ does: each step leaves about 1 − βτ of the way") {
+TEST_CASE("N24: each step leaves about 1 − βτ of the motion") {
   const auto goal = arm.pose(near_gripper_down());
-  const auto way = pose_error_between(arm.pose(gripper_down()), goal);
-  const double left = 1e-4 / std::max(way.translation, way.rotation);
+  const auto initial_error = pose_error_between(arm.pose(gripper_down()), goal);
+  const double remaining_part = 1e-4 / std::max(initial_error.translation, initial_error.rotation);
   for (const double tau : {.05, .1}) {
     for (const double beta : {.3, 1., 1.8, 2.5}) {
       CAPTURE(tau);
@@ -77,7 +77,7 @@ TEST_CASE("N24: what β does, τ does: each step leaves about 1 − βτ of the 
       const auto plan = printed_screw_plan(arm, gripper_down(), goal, {.tau = tau, .beta = beta});
       CHECK(plan.reason == stop_reason::reached);
       CHECK(plan.iterations ==
-            doctest::Approx(std::log(left) / std::log1p(-beta * tau)).epsilon(.06));
+            doctest::Approx(std::log(remaining_part) / std::log1p(-beta * tau)).epsilon(.06));
     }
   }
   // Where 1 − βτ is not between −1 and 1, nothing comes closer.
@@ -85,7 +85,7 @@ TEST_CASE("N24: what β does, τ does: each step leaves about 1 − βτ of the 
         stop_reason::reached);
 }
 
-TEST_CASE("N25, note 2: inverse kinematics, whose answer depends on the start") {
+TEST_CASE("N25, note 2: inverse kinematics depends on the start") {
   const auto goal = arm.pose(near_gripper_down());
   std::vector<vector> answers;
   for (const auto& shift : {vector(0, 0, 0, 0, 0, 0, 0), vector(-.6, .3, .5, .4, -.2, .3, -.4),
@@ -103,7 +103,7 @@ TEST_CASE("N25, note 2: inverse kinematics, whose answer depends on the start") 
   CHECK(printed_screw_plan(arm, answers[0], goal).iterations == 0);
 }
 
-TEST_CASE("N25, note 1: along a path of poses, N23 towards one after the other") {
+TEST_CASE("N25, note 1: N23 towards each pose of a path in turn") {
   const auto path = circle(100);
   const auto plan = printed_path_plan(arm, gripper_down(), path, {.beta = .7});
   CHECK(plan.reason == stop_reason::reached);
@@ -122,7 +122,7 @@ TEST_CASE("N25, note 1: along a path of poses, N23 towards one after the other")
   CHECK(pose_error_between(arm.pose(plan.joints.back()), path.back()).translation <= 1e-4);
 }
 
-TEST_CASE("N25, note 1: what β does along a path") {
+TEST_CASE("N25, note 1: dependence of the error along a path on β") {
   const double h = 6.283185307179586 * .1 / 200;
   const auto fine = circle(200);
   for (const double beta : {.3, .6, 1.4, 1.8}) {
@@ -141,7 +141,7 @@ TEST_CASE("N25, note 1: what β does along a path") {
         stop_reason::reached);
 }
 
-TEST_CASE("N25: paths that cannot be followed") {
+TEST_CASE("N25: invalid paths are rejected") {
   std::vector<dual_quaternion<double>> path;
   CHECK_THROWS_WITH_AS((void)printed_path_plan(arm, gripper_down(), path),
                        "duet: plan: the path has no poses", invalid_input);

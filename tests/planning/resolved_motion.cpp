@@ -16,7 +16,7 @@ using duet_test::max_abs_difference;
 
 } // namespace
 
-TEST_CASE("N22: B γ̇ moves the tip by γ̇, with the least joint rates") {
+TEST_CASE("N22: B γ̇ moves the tip by γ̇ with least-norm joint rates") {
   const auto arm = robots::panda();
   const auto all = duet_test::configurations(arm.table(), 20);
   for (std::size_t i = 5; i < all.size(); ++i) { // the others are singular
@@ -44,14 +44,14 @@ TEST_CASE("N22: B γ̇ moves the tip by γ̇, with the least joint rates") {
   }
 }
 
-TEST_CASE("N23: a step towards a near pose leaves an error of second order; either sign will do") {
+TEST_CASE("N23: a step leaves an error of second order, for either sign of the pose") {
   const auto arm = robots::panda();
   const auto theta = duet_test::configurations(arm.table(), 1).back();
-  const auto here = arm.pose(theta);
+  const auto current = arm.pose(theta);
   double before = 0;
   for (const double h : {1e-2, 1e-3, 1e-4}) {
     const vector6<double> small = h * vector6<double>(1, -.5, .3, .8, -.2, .4);
-    const auto next = manifold<dual_quaternion<double>>::plus(here, small, frame::body);
+    const auto next = manifold<dual_quaternion<double>>::plus(current, small, frame::body);
     const auto step = resolved_step(arm, theta, next, 1);
     CHECK(max_abs_difference(step, resolved_step(arm, theta, dual_quaternion<double>(-next), 1)) ==
           0);
@@ -66,14 +66,14 @@ TEST_CASE("N23: a step towards a near pose leaves an error of second order; eith
   }
 }
 
-TEST_CASE("where the Jacobian is not of full rank there is no B") {
+TEST_CASE("N22: a rank-deficient Jacobian is rejected") {
   const std::array<joint<>, 6> joints{}; // all about one axis
   CHECK_THROWS_AS((void)resolved_rate_matrix(serial_chain<6>(joints),
                                              Eigen::Matrix<double, 6, 1>::Zero().eval()),
                   invalid_input);
 }
 
-TEST_CASE("N22, N23: lanes are what they are alone, where the Jacobian is nearly singular too") {
+TEST_CASE("N22, N23: lanes agree with scalar results, also for nearly singular Jacobians") {
   const auto arm = robots::panda();
   auto all = duet_test::configurations(arm.table(), 8);
   all.erase(all.begin(), all.begin() + 5); // those of no full rank
@@ -107,7 +107,7 @@ TEST_CASE("N22, N23: lanes are what they are alone, where the Jacobian is nearly
       next);
 }
 
-TEST_CASE("N22: where the Jacobian of one lane is not of full rank there is no B") {
+TEST_CASE("N22: a rank-deficient Jacobian in one lane is rejected") {
   using B = batch<double, 4>;
   const auto arm = robots::panda();
   Eigen::Matrix<B, 7, 1> theta;

@@ -24,7 +24,7 @@ const std::string path = "test_planning_save_plan.csv";
 
 } // namespace
 
-TEST_CASE("a plan and its trajectory, to the last digit") {
+TEST_CASE("save_plan, save_trajectory: files contain all digits") {
   motion_plan<2> plan;
   CHECK_THROWS_AS(save_plan(path, plan), invalid_input);
   for (int k = 0; k < 3; ++k) {

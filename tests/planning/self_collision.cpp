@@ -81,7 +81,7 @@ void check_gradients(const M& mechanism, const X& theta, const scene& s) {
 
 } // namespace
 
-TEST_CASE("pairs: neither one link, nor neighbours, nor what is excluded by name") {
+TEST_CASE("self_collision_pairs: omits the same link, neighbours and excluded names") {
   const scene s = panda_bodies();
   CHECK(s.pairs.size() == 5);
   CHECK(!has(s.pairs, 0, 1));
@@ -99,9 +99,9 @@ TEST_CASE("pairs: neither one link, nor neighbours, nor what is excluded by name
                        invalid_input);
 }
 
-TEST_CASE("a chain and itself: the least distance, and its gradient") {
+TEST_CASE("clearance: smallest distance of a chain from itself, and its gradient") {
   const scene s = panda_bodies();
-  double least = INFINITY, most = -INFINITY;
+  double min_distance = INFINITY, max_distance = -INFINITY;
   for (const auto& theta : duet_test::configurations(arm, 100)) {
     check_gradients(arm, theta, s);
     const auto c = clearance(arm, theta, s);
@@ -114,18 +114,18 @@ TEST_CASE("a chain and itself: the least distance, and its gradient") {
     CHECK(c.is_self);
     CHECK(has(s.pairs, c.body, c.other));
     CHECK(c.points.distance == c.distance);
-    const auto whole =
+    const auto by_duals =
         gradient([&](const auto& x) { return clearance(arm, x, s).distance; }, theta);
-    CHECK(whole.gradient ==
+    CHECK(by_duals.gradient ==
           distance_and_gradient(arm, theta, s.bodies[c.body], s.bodies[c.other]).gradient);
-    least = std::min(least, c.distance);
-    most = std::max(most, c.distance);
+    min_distance = std::min(min_distance, c.distance);
+    max_distance = std::max(max_distance, c.distance);
   }
-  CHECK(least < -.05); // both sides were seen
-  CHECK(most > .05);
+  CHECK(min_distance < -.05); // both sides were seen
+  CHECK(max_distance > .05);
 }
 
-TEST_CASE("a tree and itself; links that are fixed to each other are one") {
+TEST_CASE("self_collision_pairs: links of a tree that are fixed to each other count as one") {
   const kinematic_tree tree(duet_test::all_joints());
   scene s;
   duet_test::random_source random(3);
@@ -136,19 +136,19 @@ TEST_CASE("a tree and itself; links that are fixed to each other are one") {
     s.bodies.push_back({int(i), capsule<>(at(), at(), .02), tree.links()[i].name});
   }
   s.pairs = self_collision_pairs(tree, s.bodies, {{"finger", "flange"}});
-  const auto kept_apart = [&](const char* a, const char* b) {
+  const auto is_pair = [&](const char* a, const char* b) {
     const auto i = std::size_t(tree.link(a).link), k = std::size_t(tree.link(b).link);
     return has(s.pairs, std::min(i, k), std::max(i, k));
   };
-  CHECK(!kept_apart("hand", "tool"));    // fixed to it
-  CHECK(!kept_apart("elbow", "tool"));   // beside it, the joint is the hand's
-  CHECK(!kept_apart("finger", "tool"));  // on the hand
-  CHECK(!kept_apart("world", "flange")); // fixed to it
-  CHECK(!kept_apart("flange", "cart"));
-  CHECK(!kept_apart("finger", "flange")); // excluded
-  CHECK(kept_apart("finger", "thumb"));
-  CHECK(kept_apart("screw", "flange"));
-  CHECK(kept_apart("shoulder", "hand"));
+  CHECK(!is_pair("hand", "tool"));    // fixed to it
+  CHECK(!is_pair("elbow", "tool"));   // beside it, the joint is the hand's
+  CHECK(!is_pair("finger", "tool"));  // on the hand
+  CHECK(!is_pair("world", "flange")); // fixed to it
+  CHECK(!is_pair("flange", "cart"));
+  CHECK(!is_pair("finger", "flange")); // excluded
+  CHECK(is_pair("finger", "thumb"));
+  CHECK(is_pair("screw", "flange"));
+  CHECK(is_pair("shoulder", "hand"));
   Eigen::VectorXd q(tree.size());
   for (int k = 0; k < 20; ++k) {
     for (Eigen::Index i = 0; i < q.size(); ++i) {
@@ -160,7 +160,7 @@ TEST_CASE("a tree and itself; links that are fixed to each other are one") {
   }
 }
 
-TEST_CASE("an arm that would run into its base moves its elbow around it") {
+TEST_CASE("plan_screw_motion: the elbow avoids the base") {
   vector start, end;
   start << 0, 1.2, -.4, -2.6, .65, 2.5, 1;
   end << -.6, 1.7, -.9, -3, -.55, 1.95, 1.7;
@@ -168,18 +168,19 @@ TEST_CASE("an arm that would run into its base moves its elbow around it") {
   const auto goal = arm.pose(end);
   const auto plain = plan_screw_motion(arm, start, goal);
   REQUIRE(plain.reason == stop_reason::reached);
-  double least = INFINITY;
+  double min_distance = INFINITY;
   for (const auto& theta : plain.joints) {
-    least = std::min(least, clearance(arm, theta, around).distance);
+    min_distance = std::min(min_distance, clearance(arm, theta, around).distance);
   }
-  CHECK(least < -.01);
+  CHECK(min_distance < -.01);
   const auto plan = plan_screw_motion(arm, start, goal, {}, {}, around);
   CHECK(plan.reason == stop_reason::reached);
   CHECK(plan.smallest_clearance < .0201); // it does come to the margin
   duet_test::check_clear_screw(arm, plan, goal, around);
 }
 
-TEST_CASE("a hand that is moved into the base stops before it, and says why") {
+TEST_CASE(
+    "plan_screw_motion: a hand moved into the base stops at the margin with reason obstacle") {
   vector start, end;
   start << -.24, 1.05, -.43, -2.6, 2.17, 3.05, 1.38;
   end << .23, 1.71, .55, -2.54, 1.3, 2.77, 1.43;
@@ -192,7 +193,7 @@ TEST_CASE("a hand that is moved into the base stops before it, and says why") {
   duet_test::check_clear_screw(arm, plan, goal, around);
 }
 
-TEST_CASE("a start that is folded too far; pairs that are none") {
+TEST_CASE("plan_screw_motion: starts in self-collision and invalid pairs are rejected") {
   scene s = panda_bodies();
   vector start;
   start << 0, 1.7, 0, -3, 0, 3.2, .8;

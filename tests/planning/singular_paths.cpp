@@ -34,15 +34,15 @@ const chain puma = from_dh(std::array<dh_row<>, 6>{{{.alpha = pi / 2},
                                                     {.alpha = -pi / 2},
                                                     {.d = .1}}});
 
-vector configuration(duet_test::random_source& random, double most) {
+vector configuration(duet_test::random_source& random, double max_angle) {
   vector theta;
   for (int i = 0; i < 6; ++i) {
-    theta[i] = random.uniform(-most, most);
+    theta[i] = random.uniform(-max_angle, max_angle);
   }
   return theta;
 }
-vector beside(const vector& theta, duet_test::random_source& random, double most) {
-  return theta + configuration(random, most);
+vector nearby(const vector& theta, duet_test::random_source& random, double max_angle) {
+  return theta + configuration(random, max_angle);
 }
 
 /// Along the screw to the pose of `end`.
@@ -76,7 +76,7 @@ double smallest_singular_value(const chain& arm, const vector& theta) {
 
 } // namespace
 
-TEST_CASE("joint 5 from x to -x, through the wrist's singularity") {
+TEST_CASE("plans cross the wrist singularity: joint 5 from x to -x") {
   duet_test::random_source random(1);
   for (const chain& arm : {ur5e, puma}) {
     for (int k = 0; k < 5; ++k) {
@@ -89,12 +89,12 @@ TEST_CASE("joint 5 from x to -x, through the wrist's singularity") {
   }
 }
 
-TEST_CASE("joints 4 and 6 swing where a path passes beside the wrist's singularity") {
+TEST_CASE("joints 4 and 6 reorient rapidly on a path near the wrist singularity") {
   duet_test::random_source random(2);
   for (int k = 0; k < 5; ++k) {
     vector start = configuration(random, 1);
     start[4] = .5;
-    vector end = beside(start, random, 1e-3);
+    vector end = nearby(start, random, 1e-3);
     end[4] = -.5;
     check_reached(puma, start, end);
     // With limits that leave no room for the swing it stops there.
@@ -109,7 +109,7 @@ TEST_CASE("joints 4 and 6 swing where a path passes beside the wrist's singulari
   }
 }
 
-TEST_CASE("from a stretched elbow inwards, and not outwards") {
+TEST_CASE("plans leave a stretched elbow inwards and not outwards") {
   duet_test::random_source random(3);
   for (int k = 0; k < 6; ++k) {
     vector start = configuration(random, 1);
@@ -118,8 +118,8 @@ TEST_CASE("from a stretched elbow inwards, and not outwards") {
     const auto t = random.direction<3>();
     const Eigen::Vector3d stretch =
         translation(ur5e.pose(start, 2)) - translation(ur5e.pose(start, 1));
-    const Eigen::Vector3d way = .01 * Eigen::Vector3d(t[0], t[1], t[2]) - .25 * stretch;
-    const auto goal = pose(quaternion<double>(1), way) * ur5e.pose(start);
+    const Eigen::Vector3d displacement = .01 * Eigen::Vector3d(t[0], t[1], t[2]) - .25 * stretch;
+    const auto goal = pose(quaternion<double>(1), displacement) * ur5e.pose(start);
     const auto inwards = plan_screw_motion(ur5e, start, goal);
     CHECK(inwards.reason == stop_reason::reached);
     CHECK(std::abs(inwards.joints.back()[2]) > .1);
@@ -127,7 +127,8 @@ TEST_CASE("from a stretched elbow inwards, and not outwards") {
             return sclerp(inwards.poses[0], goal, tau);
           }) < 1.1e-5);
     const auto outwards = plan_screw_motion(
-        ur5e, start, pose(quaternion<double>(1), Eigen::Vector3d(-way)) * ur5e.pose(start));
+        ur5e, start,
+        pose(quaternion<double>(1), Eigen::Vector3d(-displacement)) * ur5e.pose(start));
     CHECK(
         (outwards.reason == stop_reason::singular || outwards.reason == stop_reason::out_of_reach));
     CHECK(outwards.tau.back() < 1e-3);
@@ -136,7 +137,7 @@ TEST_CASE("from a stretched elbow inwards, and not outwards") {
 
 /// Whatever way back leads to the singular pose, the way there exists, but for motions in place
 /// that limits cut off; the arms have none here.
-TEST_CASE("from the wrist's singularity, to where a way back comes from") {
+TEST_CASE("plans leave the wrist singularity whenever a path back to it exists") {
   duet_test::random_source random(4);
   int count = 0;
   for (const chain& arm : {ur5e, puma}) {
@@ -144,7 +145,7 @@ TEST_CASE("from the wrist's singularity, to where a way back comes from") {
       vector start = configuration(random, 1.5);
       start[2] += start[2] > 0 ? .4 : -.4;
       start[4] = 0;
-      vector end = beside(start, random, .4);
+      vector end = nearby(start, random, .4);
       if (plan_to(arm, end, start).reason == stop_reason::reached) {
         check_reached(arm, start, end);
         ++count;
@@ -154,7 +155,7 @@ TEST_CASE("from the wrist's singularity, to where a way back comes from") {
   CHECK(count >= 8);
 }
 
-TEST_CASE("the way out of a singularity is the one on which it is left fastest") {
+TEST_CASE("escape_direction: increases the smallest singular value fastest") {
   duet_test::random_source random(5);
   const detail::chain_model<chain> model(puma);
   for (int k = 0; k < 5; ++k) {
@@ -166,18 +167,18 @@ TEST_CASE("the way out of a singularity is the one on which it is left fastest")
         detail::to_chain_joints(puma, detail::singular_point(at.jacobian).escape_direction());
     CHECK(out.norm() == doctest::Approx(1));
     CHECK(std::abs(out[4]) == doctest::Approx(1)); // all axes but that of joint 5 go on meeting
-    const double h = 1e-3, left = smallest_singular_value(puma, theta + h * out);
-    CHECK(left > 1e-3 * h);
+    const double h = 1e-3, singular_value = smallest_singular_value(puma, theta + h * out);
+    CHECK(singular_value > 1e-3 * h);
     CHECK(smallest_singular_value(puma, theta) < 1e-6);
     for (int trial = 0; trial < 5; ++trial) {
       const vector other = configuration(random, 1).normalized();
-      CHECK(smallest_singular_value(puma, theta + h * other) < left * (1 + 1e-2));
+      CHECK(smallest_singular_value(puma, theta + h * other) < singular_value * (1 + 1e-2));
     }
   }
 }
 
 /// Of a general arm w and n are single, and the way out is the gradient of the determinant.
-TEST_CASE("the way out of a singularity is the gradient of the determinant, by dual numbers") {
+TEST_CASE("escape_direction: is the gradient of the determinant by dual numbers") {
   const chain general = from_dh(std::array<dh_row<>, 6>{{{.a = .3, .d = .1, .alpha = .7},
                                                          {.a = .5, .d = -.2, .alpha = -1.1},
                                                          {.a = .2, .d = .3, .alpha = 1.3},
@@ -199,19 +200,19 @@ TEST_CASE("the way out of a singularity is the gradient of the determinant, by d
     }
     ++count;
     for (int i = 0; i < 60; ++i) {
-      const vector middle = (low + high) / 2;
-      (determinant(low) * determinant(middle) > 0 ? low : high) = middle;
+      const vector midpoint = (low + high) / 2;
+      (determinant(low) * determinant(midpoint) > 0 ? low : high) = midpoint;
     }
     const auto at = model.at(model.joints(low));
     const vector out =
         detail::to_chain_joints(general, detail::singular_point(at.jacobian).escape_direction());
-    const vector slope = gradient(determinant, low).gradient.normalized();
-    CHECK(std::abs(out.dot(slope)) == doctest::Approx(1).epsilon(1e-6));
+    const vector determinant_gradient = gradient(determinant, low).gradient.normalized();
+    CHECK(std::abs(out.dot(determinant_gradient)) == doctest::Approx(1).epsilon(1e-6));
   }
   CHECK(count >= 5);
 }
 
-TEST_CASE("where joints slide plans do not depend on the unit of length") {
+TEST_CASE("plans with prismatic joints do not depend on the unit of length") {
   const auto& stanford = duet_test::stanford_arm;
   for (const double unit : {1024., 1000.}) {
     const bool is_exact = unit == 1024;
@@ -219,7 +220,7 @@ TEST_CASE("where joints slide plans do not depend on the unit of length") {
     duet_test::random_source random(6);
     int reached = 0;
     for (int k = 0; k < 10; ++k) {
-      vector start = configuration(random, 1.4), end = beside(start, random, .3);
+      vector start = configuration(random, 1.4), end = nearby(start, random, .3);
       start[2] = random.uniform(.31, 1.2);
       end[2] = random.uniform(.31, 1.2);
       end[4] = std::clamp(end[4], -1.5, 1.5);
@@ -238,9 +239,9 @@ TEST_CASE("where joints slide plans do not depend on the unit of length") {
       CHECK(x.iterations == y.iterations);
       CHECK(y.joints.front() == scaled(start));
       for (std::size_t i = 0; i < x.joints.size(); ++i) {
-        const double apart =
+        const double difference =
             (scaled(x.joints[i]) - y.joints[i]).cwiseAbs().maxCoeff() / (is_exact ? 1 : unit);
-        CHECK(apart <= (is_exact ? 0 : 1e-6));
+        CHECK(difference <= (is_exact ? 0 : 1e-6));
       }
     }
     CHECK(reached >= 5);
@@ -248,25 +249,25 @@ TEST_CASE("where joints slide plans do not depend on the unit of length") {
 }
 
 /// Joints 2, 3, 4 and 6 swing by several radians within a ten thousandth of the path.
-TEST_CASE("the UR5e's swing beside its wrist's singularity, which is no end") {
+TEST_CASE("the UR5e passes its wrist singularity by a rapid reorientation") {
   duet_test::random_source random(8);
   int reached = 0;
   for (int k = 0; k < 12; ++k) {
     vector start = configuration(random, 2);
     start[4] = random.uniform(.3, 1.5);
-    vector end = beside(start, random, k % 2 == 0 ? 1e-3 : 1e-4);
+    vector end = nearby(start, random, k % 2 == 0 ? 1e-3 : 1e-4);
     end[4] = -start[4];
     const screw_path path{ur5e.pose(start), ur5e.pose(end)};
-    const auto way = duet_test::complete_search(ur5e, path)(start);
+    const auto verdict = duet_test::complete_search(ur5e, path)(start);
     const auto plan = plan_to(ur5e, start, end);
-    CHECK((plan.reason == stop_reason::reached) == (way.why == stop_reason::reached));
+    CHECK((plan.reason == stop_reason::reached) == (verdict.why == stop_reason::reached));
     reached += plan.reason == stop_reason::reached;
     CHECK(worst(ur5e, plan, end) < 1.1e-5);
   }
   CHECK(reached >= 4);
 }
 
-TEST_CASE("plans stop only where all solutions end, for the reason by which they do") {
+TEST_CASE("plans stop only where all solutions end, with the same reason") {
   duet_test::random_source random(9);
   const chain narrow =
       with_limits(puma, vector(vector::Constant(-2.5)), vector(vector::Constant(2.5)));
@@ -274,7 +275,7 @@ TEST_CASE("plans stop only where all solutions end, for the reason by which they
   for (const chain& arm : {ur5e, narrow}) {
     for (int k = 0; k < 30; ++k) {
       vector start = configuration(random, 2);
-      vector end = beside(start, random, .5);
+      vector end = nearby(start, random, .5);
       if (k % 3 == 0) {
         end = start;
         end[4] = -start[4] + random.uniform(-.01, .01);
@@ -283,11 +284,11 @@ TEST_CASE("plans stop only where all solutions end, for the reason by which they
         start[2] = arm.limits(2).upper > 3 ? 0 : start[2]; // the UR5e's elbow is stretched
       }
       const screw_path path{arm.pose(start), arm.pose(end)};
-      const auto way = duet_test::complete_search(arm, path)(start);
+      const auto verdict = duet_test::complete_search(arm, path)(start);
       const auto plan = plan_to(arm, start, end);
       CAPTURE(k);
-      CHECK(plan.reason == way.why);
-      CHECK(plan.tau.back() > way.end - 1e-4);
+      CHECK(plan.reason == verdict.why);
+      CHECK(plan.tau.back() > verdict.end - 1e-4);
       joint_limit += plan.reason == stop_reason::joint_limit;
       singular += plan.reason == stop_reason::singular;
     }
@@ -298,7 +299,7 @@ TEST_CASE("plans stop only where all solutions end, for the reason by which they
 
 /// A stretched elbow bends by ±s n, and that moves the tip inwards by s². Beside that it bends to
 /// the one side as it is asked to, and to the other by as much more as it is bent.
-TEST_CASE("how far a stretched elbow bends for the tip to go inwards") {
+TEST_CASE("singular_point: steps_for bends a stretched elbow by the right angle") {
   const detail::chain_model<chain> model(ur5e);
   duet_test::random_source random(10);
   for (int k = 0; k < 5; ++k) {
@@ -309,15 +310,15 @@ TEST_CASE("how far a stretched elbow bends for the tip to go inwards") {
     const auto n = detail::self_motion_space(stretched.jacobian).any_direction();
     for (const double bent : {0., .002, -.001}) {
       const auto at = model.at(stretched.theta + bent * n);
-      const detail::singular_point here(at.jacobian);
+      const detail::singular_point singular(at.jacobian);
       for (const double bend : {.01, -.02}) {
         const auto e = detail::error_twist(at.tip, model.at(at.theta + bend * n).tip);
-        const auto [first, second] = here.steps_for(e);
+        const auto [first, second] = singular.steps_for(e);
         const double near = dot(first, n) * bend > 0 ? dot(first, n) : dot(second, n);
         const double far = dot(first + second, n) - near;
         CHECK(std::abs(near - bend) < .05 * std::abs(bend));
         CHECK(std::abs(far + bend + 2 * bent) < .1 * std::abs(bend));
-        const auto [none, no_other] = here.steps_for(-1 * e);
+        const auto [none, no_other] = singular.steps_for(-1 * e);
         CHECK(norm(none) == 0);
         CHECK(norm(no_other) == 0);
       }
@@ -327,7 +328,7 @@ TEST_CASE("how far a stretched elbow bends for the tip to go inwards") {
 
 using seven = duet_test::coordinates<7>;
 
-TEST_CASE("a curve of self-motion keeps its orientation") {
+TEST_CASE("orientation: is constant along a self-motion curve") {
   const auto arm = robots::panda().table();
   const detail::chain_model<serial_chain<7>> model(arm);
   duet_test::random_source random(11);
@@ -365,7 +366,7 @@ void check_is_planned(const serial_chain<N>& arm, const duet_test::coordinates<N
 }
 
 /// Each has a way, by Newton's method from its end and in place to its start.
-TEST_CASE("seven joints keep to their way where another curve of self-motion comes near") {
+TEST_CASE("seven joints stay on their self-motion curve where another comes near") {
   const auto panda = robots::panda().table(), iiwa = robots::iiwa14().table(),
              baxter = robots::baxter_left().table();
   seven start, end;
@@ -384,7 +385,7 @@ TEST_CASE("seven joints keep to their way where another curve of self-motion com
 }
 
 /// By a complete search each has a way, with the elbow to one side but not to the other.
-TEST_CASE("from a stretched elbow beside the wrist's singularity, to the side that leads on") {
+TEST_CASE("plans leave a stretched elbow near the wrist singularity on the feasible side") {
   const auto degrees = [](std::array<double, 6> x) {
     return vector(Eigen::Map<const vector>(x.data()) * (pi / 180));
   };
@@ -403,15 +404,15 @@ TEST_CASE("from a stretched elbow beside the wrist's singularity, to the side th
 }
 
 /// It would tell of a way where there is none, or of none where there is one.
-TEST_CASE("the complete search itself, where the answer is known") {
+TEST_CASE("complete_search: verdict for paths with known results") {
   const vector theta = (vector() << .3, -1.1, 1.4, -.5, .9, .2).finished();
-  const auto turning = [&](double u) {
+  const auto rotating = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u)), vector3<double>(0, 0, 0)) * ur5e.pose(theta);
   };
-  CHECK(duet_test::complete_search(ur5e, turning)(theta).why == stop_reason::reached);
+  CHECK(duet_test::complete_search(ur5e, rotating)(theta).why == stop_reason::reached);
   // The base turns by 2u.
   const chain limited = with_limits(ur5e, 0, {-1, theta[0] + .5});
-  const auto stopped = duet_test::complete_search(limited, turning)(theta);
+  const auto stopped = duet_test::complete_search(limited, rotating)(theta);
   CHECK(stopped.why == stop_reason::joint_limit);
   CHECK(stopped.end == doctest::Approx(.25).epsilon(1e-6));
   const auto out = [&](double u) {

@@ -83,7 +83,7 @@ inline std::vector<arm<7>> redundant_arm() {
           {"Baxter", robots::baxter_left().table()}};
 }
 
-enum class family { across, beside, past, from_elbow, from_wrist, structured };
+enum class family { across, near_wrist, past, from_elbow, from_wrist, structured };
 constexpr std::array families{"across the wrist", "across, all joints",
                               "beside the wrist", "from a stretched elbow",
                               "from the wrist",   "multiples of 15 deg"};
@@ -100,13 +100,13 @@ double stretched(const serial_chain<N>& chain, joints_of<N> theta, int elbow) {
   const auto square = [&](double x) {
     theta[elbow] = x;
     const auto shoulder = chain.pose(theta, N == 6 ? 1 : 2);
-    const Eigen::Vector3d way =
+    const Eigen::Vector3d offset =
         translation(chain.pose(theta, N == 6 ? 4 : 5)) - translation(shoulder);
     const Eigen::Vector3d axis = rotate(rotation(shoulder), Eigen::Vector3d(0, 0, 1));
-    return N == 6 ? (way - axis.dot(way) * axis).squaredNorm() : way.squaredNorm();
+    return N == 6 ? (offset - axis.dot(offset) * axis).squaredNorm() : offset.squaredNorm();
   };
-  const double middle = (square(0) + square(pi)) / 2;
-  return std::atan2(square(pi / 2) - middle, square(0) - middle);
+  const double centre = (square(0) + square(pi)) / 2;
+  return std::atan2(square(pi / 2) - centre, square(0) - centre);
 }
 
 /// Starts in the inner 80 % of the joints' ranges. Across: joint 5 (of seven joints 6; of the Panda
@@ -125,16 +125,17 @@ problem<N> make(const arm<N>& a, family kind, random_source& random) {
     p.start[elbow] = std::clamp(stretched(a.chain, p.start, elbow), a.chain.limits(elbow).lower,
                                 a.chain.limits(elbow).upper);
   } else {
-    const double most = .8 * std::min(-a.chain.limits(wrist).lower, a.chain.limits(wrist).upper);
-    p.start[wrist] = kind == family::from_wrist ? 0 : random.sign() * random.uniform(.1, most);
+    const double max_angle =
+        .8 * std::min(-a.chain.limits(wrist).lower, a.chain.limits(wrist).upper);
+    p.start[wrist] = kind == family::from_wrist ? 0 : random.sign() * random.uniform(.1, max_angle);
   }
   p.end = p.start;
-  const double near = kind == family::across       ? 0
-                      : kind == family::past       ? random.log_uniform(1e-6, 1e-2)
-                      : kind >= family::from_wrist ? 1
-                                                   : .5;
+  const double spread = kind == family::across       ? 0
+                        : kind == family::past       ? random.log_uniform(1e-6, 1e-2)
+                        : kind >= family::from_wrist ? 1
+                                                     : .5;
   for (int i = 0; i < N; ++i) {
-    p.end[i] = std::clamp(p.end[i] + near * random.uniform(-1, 1), a.chain.limits(i).lower,
+    p.end[i] = std::clamp(p.end[i] + spread * random.uniform(-1, 1), a.chain.limits(i).lower,
                           a.chain.limits(i).upper);
   }
   if (kind < family::from_elbow) {

@@ -38,7 +38,7 @@ constexpr std::size_t ur5e = 0, puma = 1, irb = 2, kr = 3, mate = 4;
 template <int N>
 struct planned {
   motion_plan<N> plan;
-  duet_test::path_verdict way;
+  duet_test::path_verdict verdict;
 };
 
 /// The plan, which keeps to its screw, and what a complete search says.
@@ -48,8 +48,8 @@ planned<N> solve(const arm<N>& a, const case_of_bench& which) {
   const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
   auto plan = plan_screw_motion(a.chain, p.start, path.last);
   CHECK(duet_test::largest_deviation(a.chain, plan, path) < 1.01e-5);
-  const auto way = duet_test::complete_way(a.chain, path, plan);
-  return {std::move(plan), way};
+  const auto verdict = duet_test::complete_path_verdict(a.chain, path, plan);
+  return {std::move(plan), verdict};
 }
 planned<6> solve_six(const case_of_bench& which) { return solve(six_joints()[which.arm], which); }
 
@@ -57,27 +57,27 @@ void check_ends_at_limit(const std::vector<case_of_bench>& all) {
   for (const auto& each : all) {
     CAPTURE(each.arm);
     CAPTURE(each.number);
-    const auto [plan, way] = solve_six(each);
-    CHECK(way.why == stop_reason::joint_limit);
-    CHECK(plan.reason == way.why);
-    CHECK(plan.tau.back() > way.end - 1e-4);
+    const auto [plan, verdict] = solve_six(each);
+    CHECK(verdict.why == stop_reason::joint_limit);
+    CHECK(plan.reason == verdict.why);
+    CHECK(plan.tau.back() > verdict.end - 1e-4);
   }
 }
 
 } // namespace
 
 /// Their smallest singular values are 2e-7 to 4e-7.
-TEST_CASE("a limit ends a swing that passes a singularity by less than a micrometre") {
-  check_ends_at_limit({{puma, family::past, 1, 27}, {kr, family::beside, 3, 11}});
+TEST_CASE("a limit ends a rapid reorientation within a micrometre of a singularity") {
+  check_ends_at_limit({{puma, family::past, 1, 27}, {kr, family::near_wrist, 3, 11}});
 }
 
 /// Without that limit the joints would go on by 3e-7 of the path.
-TEST_CASE("a limit ends the way just before a singularity does") {
-  check_ends_at_limit({{mate, family::beside, 3, 53}});
+TEST_CASE("a limit ends the path just before a singularity does") {
+  check_ends_at_limit({{mate, family::near_wrist, 3, 53}});
 }
 
 /// Joints 2, 3, 4 and 6 turn in place, their limits end that before the way on begins.
-TEST_CASE("limits end the motion in place at the UR5e's singular wrist") {
+TEST_CASE("limits end the self-motion at the UR5e's singular wrist") {
   check_ends_at_limit({{ur5e, family::from_wrist, 1, 94},
                        {ur5e, family::from_wrist, 2, 9},
                        {ur5e, family::from_wrist, 2, 42},
@@ -86,19 +86,19 @@ TEST_CASE("limits end the motion in place at the UR5e's singular wrist") {
 }
 
 /// Through poses that are out of reach by less than its tolerance, to a limit farther on.
-TEST_CASE("a plan that gets farther than the exact way stops for the reason that is there") {
+TEST_CASE("a plan beyond the end of the exact path reports the reason at its own end") {
   check_ends_at_limit({{kr, family::from_elbow, 3, 33}});
 }
 
 /// The elbow, 1.5 milliradians from where it is stretched, may bend to either side.
-TEST_CASE("beside a stretched elbow both ways on are looked at") {
-  const auto [plan, way] = solve_six({kr, family::beside, 2, 86});
-  CHECK(way.why == stop_reason::reached);
+TEST_CASE("both continuations near a stretched elbow are searched") {
+  const auto [plan, verdict] = solve_six({kr, family::near_wrist, 2, 86});
+  CHECK(verdict.why == stop_reason::reached);
   CHECK(plan.reason == stop_reason::reached);
 }
 
 /// A limit is in the way of the swing, but the tip passes the singularity straight on 9.6e-6 off.
-TEST_CASE("past a singularity as near as the deviation allows") {
+TEST_CASE("a path may pass a singularity within the admissible deviation") {
   CHECK(solve_six({ur5e, family::past, 4, 32}).plan.reason == stop_reason::reached);
 }
 
@@ -113,21 +113,21 @@ duet_test::path_verdict layered(const serial_chain<7>& arm,
 }
 
 /// It would tell of a way where there is none, or of none where there is one.
-TEST_CASE("the layered search itself, where the answer is known") {
+TEST_CASE("layered_search: verdict for paths with known results") {
   const auto panda = robots::panda().table();
   const seven start = (seven() << .3, -.8, .2, -2.1, .1, 1.6, .8).finished();
   // The base turns by 2u, the others have next to no room.
-  const auto turning = [&](double u) {
+  const auto rotating = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u)), vector3<double>(0, 0, 0)) * panda.pose(start);
   };
   const seven room = (seven() << .1, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3).finished();
   const auto stopped =
-      layered(with_limits(panda, seven(start - room), seven(start + room)), turning, start);
+      layered(with_limits(panda, seven(start - room), seven(start + room)), rotating, start);
   CHECK(stopped.why == stop_reason::joint_limit);
   CHECK(std::abs(stopped.end - .05) < .005);
   // Outwards, without limits to speak of: as far as the arm reaches.
-  const seven turn = seven::Constant(3.1);
-  const auto far = with_limits(panda, seven(-turn), turn);
+  const seven range = seven::Constant(3.1);
+  const auto far = with_limits(panda, seven(-range), range);
   const auto out = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(4 * u, 0, 0)) * panda.pose(start);
   };
@@ -143,38 +143,38 @@ planned<7> solve_seven(const case_of_bench& which) {
 constexpr std::size_t panda = 0, iiwa = 1, baxter = 2;
 
 /// Pieces get small there: whole steps of the search end 2e-5 to 2e-4 of the path before.
-TEST_CASE("ways of seven joints are followed to where they end") {
+TEST_CASE("plans of seven joints end within 2e-5 of where the path ends") {
   for (const case_of_bench& each : {case_of_bench{baxter, family::from_elbow, 1, 59},
                                     {baxter, family::from_wrist, 2, 91},
                                     {panda, family::from_wrist, 3, 99},
-                                    {baxter, family::beside, 3, 91},
+                                    {baxter, family::near_wrist, 3, 91},
                                     {baxter, family::from_wrist, 3, 58},
                                     {baxter, family::from_wrist, 3, 66},
-                                    {baxter, family::beside, 4, 41},
+                                    {baxter, family::near_wrist, 4, 41},
                                     {baxter, family::from_wrist, 4, 32}}) {
     CAPTURE(each.arm);
     CAPTURE(each.number);
-    const auto [plan, way] = solve_seven(each);
-    CHECK(way.why == stop_reason::singular);
-    CHECK(plan.reason == way.why);
-    CHECK(plan.tau.back() > way.end - 2e-5);
+    const auto [plan, verdict] = solve_seven(each);
+    CHECK(verdict.why == stop_reason::singular);
+    CHECK(plan.reason == verdict.why);
+    CHECK(plan.tau.back() > verdict.end - 2e-5);
   }
 }
 
 /// Whole steps of the search end 5e-4 and 4e-3 of the path before.
-TEST_CASE("ways of six joints are followed to where they end") {
+TEST_CASE("plans of six joints end within 1e-5 of where the path ends") {
   for (const case_of_bench& each :
        {case_of_bench{mate, family::from_wrist, 3, 30}, {kr, family::from_elbow, 4, 74}}) {
     CAPTURE(each.arm);
-    const auto [plan, way] = solve_six(each);
-    CHECK(plan.reason == way.why);
-    CHECK(plan.tau.back() > way.end - 1e-5);
+    const auto [plan, verdict] = solve_six(each);
+    CHECK(plan.reason == verdict.why);
+    CHECK(plan.tau.back() > verdict.end - 1e-5);
   }
 }
 
 /// Where the exact way ends at a limit, within the deviation one leads on past the singularity:
 /// from where whole steps of the search end, no longer from as near to it as shorter ones get.
-TEST_CASE("following a way to its end loses no plan that passes beside it") {
+TEST_CASE("following a continuation to its end keeps plans that pass near its end") {
   for (const case_of_bench& each : {case_of_bench{puma, family::past, 2, 59},
                                     {irb, family::past, 2, 1},
                                     {kr, family::past, 2, 62},
@@ -188,41 +188,41 @@ TEST_CASE("following a way to its end loses no plan that passes beside it") {
 
 /// Whole steps of the search pass the singularity of the wrist or of the shoulder so near that the
 /// joints are led to another side of it.
-TEST_CASE("a way that the search finds and steps do not follow is looked for by shorter ones") {
+TEST_CASE("a continuation that steps do not follow is searched with shorter steps") {
   for (const case_of_bench& each :
-       {case_of_bench{iiwa, family::across, 4, 98}, {iiwa, family::beside, 4, 74}}) {
+       {case_of_bench{iiwa, family::across, 4, 98}, {iiwa, family::near_wrist, 4, 74}}) {
     CAPTURE(each.number);
-    const auto [plan, way] = solve_seven(each);
-    CHECK(way.why == stop_reason::reached);
+    const auto [plan, verdict] = solve_seven(each);
+    CHECK(verdict.why == stop_reason::reached);
     CHECK(plan.reason == stop_reason::reached);
   }
 }
 
 /// A piece leaves the limits between points 0.4 apart. Nor does a way lead beyond 0.605 by closed
 /// forms at 4000 angles of the elbow, each followed from one 200th of the path to the next.
-TEST_CASE("the layered search sees where limits cut a piece") {
-  const auto [plan, way] = solve_seven({iiwa, family::past, 2, 77});
-  CHECK(way.why == stop_reason::joint_limit);
-  CHECK(std::abs(way.end - .6043) < 1e-4);
-  CHECK(plan.reason == way.why);
+TEST_CASE("layered_search: detects limits that cut a self-motion component") {
+  const auto [plan, verdict] = solve_seven({iiwa, family::past, 2, 77});
+  CHECK(verdict.why == stop_reason::joint_limit);
+  CHECK(std::abs(verdict.end - .6043) < 1e-4);
+  CHECK(plan.reason == verdict.why);
 }
 
 /// Without limits the way would lead on by 4e-5 and 2e-5 of the path.
-TEST_CASE("limits end a way less than 1e-4 of the path before a singularity would") {
+TEST_CASE("limits end a path less than 1e-4 before a singularity would") {
   for (const case_of_bench& each :
        {case_of_bench{baxter, family::from_wrist, 3, 42}, {panda, family::from_elbow, 3, 88}}) {
     CAPTURE(each.number);
-    const auto [plan, way] = solve_seven(each);
-    CHECK(way.why == stop_reason::joint_limit);
-    CHECK(way.is_both);
+    const auto [plan, verdict] = solve_seven(each);
+    CHECK(verdict.why == stop_reason::joint_limit);
+    CHECK(verdict.is_both);
     CHECK((plan.reason == stop_reason::singular || plan.reason == stop_reason::joint_limit));
-    CHECK(plan.tau.back() > way.end - 1e-5);
+    CHECK(plan.tau.back() > verdict.end - 1e-5);
   }
 }
 
 /// Where none of the steps of a search led to its next parameter, what they had reached on the way
 /// counted at positive parameters alone: this plan ended 5e-3 too early.
-TEST_CASE("where a plan ends does not depend on where its parameter begins") {
+TEST_CASE("the end of a plan does not depend on the first parameter") {
   const auto a = redundant_arm()[panda];
   const auto p = make(a, family::from_wrist, 1, 42);
   const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
@@ -234,15 +234,15 @@ TEST_CASE("where a plan ends does not depend on where its parameter begins") {
 }
 
 /// Without limits another way, which parts from it long before, would lead on.
-TEST_CASE("a way of the Baxter ends where no motion in place leads on, limits or not") {
+TEST_CASE("a path of the Baxter ends where no self-motion continues it, with or without limits") {
   const auto a = redundant_arm()[2];
   const auto p = make(a, family::from_elbow, 3, 84);
   const screw path{a.chain.pose(p.start), a.chain.pose(p.end)};
   const auto plan = plan_screw_motion(a.chain, p.start, path.last);
-  const auto way = duet_test::complete_way(a.chain, path, plan);
-  CHECK(way.why == stop_reason::singular);
-  CHECK(plan.reason == way.why);
-  CHECK(plan.tau.back() > way.end - 2e-4);
+  const auto verdict = duet_test::complete_path_verdict(a.chain, path, plan);
+  CHECK(verdict.why == stop_reason::singular);
+  CHECK(plan.reason == verdict.why);
+  CHECK(plan.tau.back() > verdict.end - 2e-4);
 }
 
 } // namespace test_planning_stop_reasons

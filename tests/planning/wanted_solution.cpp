@@ -40,9 +40,9 @@ std::vector<chain> arms() {
           robots::baxter_left().table(), duet_test::every_joint()};
 }
 
-vector nearby(const chain& arm, vector theta, double most, duet_test::random_source& random) {
+vector nearby(const chain& arm, vector theta, double max_change, duet_test::random_source& random) {
   for (int i = 0; i < arm.size(); ++i) {
-    theta[i] = std::clamp(theta[i] + random.uniform(-most, most), arm.limits(i).lower,
+    theta[i] = std::clamp(theta[i] + random.uniform(-max_change, max_change), arm.limits(i).lower,
                           arm.limits(i).upper);
   }
   return theta;
@@ -57,17 +57,17 @@ double distance(const chain& arm, const vector& theta, const vector3<double>& p)
 
 /// Of a slope what the tip, held at a position, and joints at limits leave: zero where nothing
 /// nearby is lower. (The sign of what limits hold is looked at, too.)
-double projected_gradient(const chain& arm, const vector& theta, vector slope) {
-  std::vector<vector> held;
+double projected_gradient(const chain& arm, const vector& theta, vector gradient) {
+  std::vector<vector> active_rows;
   const auto j = jacobian(arm, theta, frame::hybrid);
   const auto hold = [&](vector row) {
     for (int twice = 0; twice < 2; ++twice) {
-      for (const vector& other : held) {
+      for (const vector& other : active_rows) {
         row -= other.dot(row) * other;
       }
     }
     if (row.norm() > 1e-6) {
-      held.push_back(row / row.norm());
+      active_rows.push_back(row / row.norm());
     }
   };
   for (int i = 0; i < 3; ++i) {
@@ -78,10 +78,10 @@ double projected_gradient(const chain& arm, const vector& theta, vector slope) {
       hold(vector::Unit(arm.size(), i));
     }
   }
-  for (const vector& row : held) {
-    slope -= row.dot(slope) * row;
+  for (const vector& row : active_rows) {
+    gradient -= row.dot(gradient) * row;
   }
-  return slope.norm();
+  return gradient.norm();
 }
 
 /// The chain's bodies: a capsule along each link but the first two.
@@ -99,7 +99,7 @@ void put_spheres(scene& around, const chain& arm, const vector& known, const vec
                  duet_test::random_source& random) {
   around.obstacles.clear();
   for (int i = 3; i < arm.size() + 6; ++i) {
-    const auto x = [&](double least, double most) { return random.uniform(least, most); };
+    const auto x = [&](double lower, double upper) { return random.uniform(lower, upper); };
     const vector3<double> at = i < arm.size() ? vector3<double>(translation(arm.pose(other, i)))
                                               : vector3<double>(x(-.8, .8), x(-.8, .8), x(0, 1.2));
     around.obstacles.push_back(sphere<double>{at, x(.05, .2)});
@@ -111,7 +111,8 @@ void put_spheres(scene& around, const chain& arm, const vector& known, const vec
 
 } // namespace
 
-TEST_CASE("a preferred posture: no known solution is nearer to it, nor any nearby") {
+TEST_CASE(
+    "preferred_posture: the result is a local minimum and not worse than the known solution") {
   duet_test::random_source random(81);
   const auto all = arms();
   for (const chain& arm : all) {
@@ -120,21 +121,22 @@ TEST_CASE("a preferred posture: no known solution is nearer to it, nor any nearb
     for (int k = 0; k < 10; ++k) {
       const vector known = configuration(arm, random);
       const vector3<double> p = translation(arm.pose(known));
-      const preferred_posture wish{nearby(arm, known, .4, random)};
-      const auto found = inverse_kinematics(arm, position_goal(p), wish.posture, {}, wish);
+      const preferred_posture preference{nearby(arm, known, .4, random)};
+      const auto found =
+          inverse_kinematics(arm, position_goal(p), preference.posture, {}, preference);
       CHECK(is_within_limits(arm, found.joints));
       solved += found.reason == stop_reason::reached && distance(arm, found.joints, p) < 1e-6 &&
-                wish(found.joints) <= wish(known);
-      flat += projected_gradient(arm, found.joints, wish.gradient(found.joints)) < 1e-6;
+                preference(found.joints) <= preference(known);
+      flat += projected_gradient(arm, found.joints, preference.gradient(found.joints)) < 1e-6;
     }
     CHECK(solved == 10);
     CHECK(flat == 10);
   }
 }
 
-TEST_CASE("an objective, differentiated by duals, among the branches of a pose") {
+TEST_CASE("objective: the best branch of a pose is found, with derivatives by dual numbers") {
   // The last three joints as small as can be; the gradient has no help.
-  const auto wish = [](const auto& theta) {
+  const auto preference = [](const auto& theta) {
     using std::cos;
     std::decay_t<decltype(theta[0])> sum(0);
     for (Eigen::Index i = 3; i < 6; ++i) {
@@ -148,19 +150,21 @@ TEST_CASE("an objective, differentiated by duals, among the branches of a pose")
     for (int k = 0; k < 10; ++k) {
       const vector known = configuration(arm, random), start = configuration(arm, random);
       const auto goal = arm.pose(known);
-      const auto found = inverse_kinematics(arm, goal, start, {.candidates = 20}, wish);
-      const auto left = pose_error_between(arm.pose(found.joints), goal);
-      solved += found.reason == stop_reason::reached && left.translation <= 1e-6 * (1 + 1e-9) &&
-                left.rotation <= 1e-6 * (1 + 1e-9) && is_within_limits(arm, found.joints);
-      better += wish(found.joints) <= wish(known) + 1e-6;
-      CHECK(wish(found.joints) <= wish(inverse_kinematics(arm, goal, start).joints) + 1e-6);
+      const auto found = inverse_kinematics(arm, goal, start, {.candidates = 20}, preference);
+      const auto deviation = pose_error_between(arm.pose(found.joints), goal);
+      solved += found.reason == stop_reason::reached &&
+                deviation.translation <= 1e-6 * (1 + 1e-9) &&
+                deviation.rotation <= 1e-6 * (1 + 1e-9) && is_within_limits(arm, found.joints);
+      better += preference(found.joints) <= preference(known) + 1e-6;
+      CHECK(preference(found.joints) <=
+            preference(inverse_kinematics(arm, goal, start).joints) + 1e-6);
     }
     CHECK(solved == 10);
     CHECK(better >= 9); // another branch may have been missed
   }
 }
 
-TEST_CASE("in a region the objective goes as far as the edge, and not on where it is least") {
+TEST_CASE("objective: minimum at the boundary or in the interior of a region") {
   const chain arm = robots::iiwa14().table();
   const vector start = (vector(7) << .3, .6, -.2, -1.3, .4, .9, .1).finished();
   const vector3<double> p = translation(arm.pose(start));
@@ -172,35 +176,35 @@ TEST_CASE("in a region the objective goes as far as the edge, and not on where i
   CHECK(low.reason == stop_reason::reached);
   CHECK(height(low.joints) - p[2] == doctest::Approx(-.1).epsilon(1e-4));
   // Within the box it is not held.
-  const auto middle = [&](const auto& theta) {
+  const auto distance_to_centre = [&](const auto& theta) {
     return (translation(arm.pose(theta)) - (p + vector3<double>(.02, -.03, .01))).squaredNorm();
   };
-  const auto inside = inverse_kinematics(arm, box, start, {}, middle);
+  const auto inside = inverse_kinematics(arm, box, start, {}, distance_to_centre);
   CHECK(inside.reason == stop_reason::reached);
-  CHECK(middle(inside.joints) < 1e-8);
+  CHECK(distance_to_centre(inside.joints) < 1e-8);
 }
 
-TEST_CASE("a bound for each joint, about the start") {
+TEST_CASE("with_limits_about: solutions stay within the bounds about the start") {
   duet_test::random_source random(83);
   for (const chain& arm : arms()) {
     int solved = 0;
     for (int k = 0; k < 40; ++k) {
       const vector known = configuration(arm, random);
-      vector most(arm.size());
-      for (double& x : most) {
+      vector max_change(arm.size());
+      for (double& x : max_change) {
         x = random.uniform(.01, .5);
       }
       vector start = known;
       for (int i = 0; i < arm.size(); ++i) {
-        start[i] = std::clamp(known[i] + random.uniform(-most[i], most[i]), arm.limits(i).lower,
-                              arm.limits(i).upper);
+        start[i] = std::clamp(known[i] + random.uniform(-max_change[i], max_change[i]),
+                              arm.limits(i).lower, arm.limits(i).upper);
       }
       const auto goal = arm.pose(known);
-      const auto found = inverse_kinematics(with_limits_about(arm, start, most), goal, start);
-      const auto left = pose_error_between(arm.pose(found.joints), goal);
+      const auto found = inverse_kinematics(with_limits_about(arm, start, max_change), goal, start);
+      const auto deviation = pose_error_between(arm.pose(found.joints), goal);
       const double rounding = 1e-14;
-      solved += found.reason == stop_reason::reached && left.translation <= 1.001e-6 &&
-                ((found.joints - start).cwiseAbs() - most).maxCoeff() <= rounding &&
+      solved += found.reason == stop_reason::reached && deviation.translation <= 1.001e-6 &&
+                ((found.joints - start).cwiseAbs() - max_change).maxCoeff() <= rounding &&
                 is_within_limits(arm, found.joints);
     }
     CHECK(solved == 40);
@@ -208,14 +212,15 @@ TEST_CASE("a bound for each joint, about the start") {
   // What would have to go farther says so.
   const chain panda = robots::panda().table();
   const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
-  vector there = start;
-  there[0] += .6;
+  vector distant = start;
+  distant[0] += .6;
   const auto bounded = with_limits_about(panda, start, vector(vector::Constant(7, .1)));
-  CHECK(inverse_kinematics(bounded, position_goal(translation(panda.pose(there))), start).reason ==
-        stop_reason::joint_limit);
+  CHECK(
+      inverse_kinematics(bounded, position_goal(translation(panda.pose(distant))), start).reason ==
+      stop_reason::joint_limit);
 }
 
-TEST_CASE("among obstacles solutions keep the margin") {
+TEST_CASE("inverse_kinematics: solutions among obstacles respect the margin") {
   duet_test::random_source random(84);
   const auto all = arms();
   int without = 0;
@@ -246,7 +251,7 @@ TEST_CASE("among obstacles solutions keep the margin") {
   CHECK(without > 10); // else it was no test
 }
 
-TEST_CASE("a solution too close to an obstacle moves aside, without another start") {
+TEST_CASE("inverse_kinematics: a solution too close to an obstacle is moved without a restart") {
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << .1, -.4, .2, -2, .1, 1.7, .6).finished();
   scene around;
@@ -266,7 +271,7 @@ TEST_CASE("a solution too close to an obstacle moves aside, without another star
   }
 }
 
-TEST_CASE("a goal within an obstacle is refused for that reason") {
+TEST_CASE("inverse_kinematics: a goal inside an obstacle reports obstacle") {
   const chain arm = robots::ur5e().table();
   const vector known = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   scene around = bodies(arm);
@@ -285,39 +290,40 @@ TEST_CASE("a goal within an obstacle is refused for that reason") {
   CHECK(beyond.joints == inverse_kinematics(arm, far, known, {.max_restarts = 2}).joints);
 }
 
-TEST_CASE("joints that turn all round are turned to where the objective is lower") {
+TEST_CASE("objective: revolute joints move by full turns that lower it") {
   const chain arm = robots::ur5e().table();
   const vector known = (vector(6) << 3, -1.1, 1.4, -.5, .9, -3).finished();
-  vector wish = known;
-  wish[0] -= 2 * pi;
-  wish[5] += 2 * pi;
-  const auto found =
-      inverse_kinematics(arm, arm.pose(known), known, {.candidates = 1}, preferred_posture{wish});
+  vector preference = known;
+  preference[0] -= 2 * pi;
+  preference[5] += 2 * pi;
+  const auto found = inverse_kinematics(arm, arm.pose(known), known, {.candidates = 1},
+                                        preferred_posture{preference});
   CHECK(found.reason == stop_reason::reached);
-  CHECK((found.joints - wish).cwiseAbs().maxCoeff() < 1e-5);
+  CHECK((found.joints - preference).cwiseAbs().maxCoeff() < 1e-5);
 }
 
 /// The least of a preferred posture's values among all solutions, whatever full turns limits allow.
-double least_value(const chain& arm, const dual_quaternion<double>& goal, const vector& posture) {
-  double least = std::numeric_limits<double>::infinity();
+double min_preference(const chain& arm, const dual_quaternion<double>& goal,
+                      const vector& posture) {
+  double minimum = std::numeric_limits<double>::infinity();
   for (const auto& each : all_inverse_kinematics(arm, goal).solutions) {
     double sum = 0;
     for (int i = 0; i < 6; ++i) {
       double nearest = std::numeric_limits<double>::infinity();
-      for (int turns = -3; turns <= 3; ++turns) {
-        const double x = each.joints[i] + 2 * pi * turns, d = x - posture[i];
+      for (int full_turns = -3; full_turns <= 3; ++full_turns) {
+        const double x = each.joints[i] + 2 * pi * full_turns, d = x - posture[i];
         if (x >= arm.limits(i).lower - 1e-9 && x <= arm.limits(i).upper + 1e-9) {
           nearest = std::min(nearest, d * d);
         }
       }
       sum += nearest / 2;
     }
-    least = std::min(least, sum);
+    minimum = std::min(minimum, sum);
   }
-  return least;
+  return minimum;
 }
 
-TEST_CASE("six joints: the posture nearest among all solutions, full turns included") {
+TEST_CASE("preferred_posture: nearest of all six-joint solutions, including full turns") {
   duet_test::random_source random(88);
   const chain ur5e = robots::ur5e().table();
   const vector far = vector::Constant(6, 3 * pi);
@@ -332,18 +338,18 @@ TEST_CASE("six joints: the posture nearest among all solutions, full turns inclu
         known[4] = known[4] < 0 ? -pi / 3 : pi / 3;
         known[2] = known[2] < 0 ? -pi / 3 : pi / 3;
       }
-      const preferred_posture wish{posture};
+      const preferred_posture preference{posture};
       const auto goal = arm.pose(known);
-      const auto found = inverse_kinematics(arm, goal, posture, {}, wish);
+      const auto found = inverse_kinematics(arm, goal, posture, {}, preference);
       CHECK(is_within_limits(arm, found.joints));
       nearest += found.reason == stop_reason::reached &&
-                 wish(found.joints) <= least_value(arm, goal, posture) + 1e-6;
+                 preference(found.joints) <= min_preference(arm, goal, posture) + 1e-6;
     }
     CHECK(nearest == count);
   }
 }
 
-TEST_CASE("six joints: a solution at a limit, and several turns beyond it") {
+TEST_CASE("preferred_posture: a solution at a limit, several full turns away") {
   const chain ur5e = robots::ur5e().table();
   vector known = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   vector lower = vector::Constant(6, -2 * pi), upper = vector::Constant(6, 2 * pi);
@@ -352,15 +358,16 @@ TEST_CASE("six joints: a solution at a limit, and several turns beyond it") {
   lower[5] = -std::numeric_limits<double>::infinity();
   upper[5] = std::numeric_limits<double>::infinity();
   const chain arm = with_limits(ur5e, lower, upper);
-  vector wish = known;
-  wish[0] += 4 * pi;
-  wish[5] += 22 * pi;
-  const auto found = inverse_kinematics(arm, ur5e.pose(known), wish, {}, preferred_posture{wish});
+  vector preference = known;
+  preference[0] += 4 * pi;
+  preference[5] += 22 * pi;
+  const auto found =
+      inverse_kinematics(arm, ur5e.pose(known), preference, {}, preferred_posture{preference});
   CHECK(found.reason == stop_reason::reached);
-  CHECK((found.joints - wish).cwiseAbs().maxCoeff() < 1e-9);
+  CHECK((found.joints - preference).cwiseAbs().maxCoeff() < 1e-9);
 }
 
-TEST_CASE("where joints slide solutions do not depend on the unit of length") {
+TEST_CASE("solutions with prismatic joints do not depend on the unit of length") {
   const auto& stanford = duet_test::stanford_arm;
   const auto solution = [&](double unit, int k) {
     const chain arm = stanford(unit);
@@ -386,17 +393,18 @@ TEST_CASE("where joints slide solutions do not depend on the unit of length") {
     around.obstacles = {
         sphere<double>{translation(tip) + unit * vector3<double>(.05, .1, 0), .05 * unit}};
     // The distance of a point beside the tip, and the angle to the way from the base to the tip.
-    const auto own = [&](const auto& a) {
+    const auto features = [&](const auto& a) {
       using S = std::decay_t<decltype(translation(a)[0])>;
       const vector3<S> p = translation(a), y(S(0), S(.3 * unit), S(0)), axis(S(0), S(0), S(1));
       return std::array<S, 2>{(p + rotate(rotation(a), y)).norm(),
                               rotate(rotation(a), axis).dot(p) / p.norm()};
     };
-    const auto wanted = own(tip);
+    const auto required = features(tip);
     const equation_goal equations{[&](const auto& a) {
-      const auto value = own(a);
-      using S = std::decay_t<decltype(value[0] - wanted[0])>;
-      return std::array<S, 6>{value[0] - wanted[0], S(0), S(0), value[1] - wanted[1], S(0), S(0)};
+      const auto value = features(a);
+      using S = std::decay_t<decltype(value[0] - required[0])>;
+      return std::array<S, 6>{value[0] - required[0], S(0), S(0),
+                              value[1] - required[1], S(0), S(0)};
     }};
     const inverse_kinematics_options options{.tolerance = {1e-6 * unit, 1e-6}};
     auto found = k % 2 == 0 ? inverse_kinematics(arm, goal, start, options, squares, around)
@@ -419,7 +427,7 @@ TEST_CASE("where joints slide solutions do not depend on the unit of length") {
   CHECK(reached >= 8);
 }
 
-TEST_CASE("what is refused") {
+TEST_CASE("preferences: invalid options, bounds and postures are rejected") {
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
   CHECK_THROWS_WITH_AS(
@@ -431,9 +439,9 @@ TEST_CASE("what is refused") {
   CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {},
                                                        no_objective{}, none)),
                   invalid_input);
-  vector most = vector::Constant(7, .1);
-  most[2] = std::nan("");
-  CHECK_THROWS_WITH_AS(static_cast<void>(with_limits_about(arm, start, most)),
+  vector max_change = vector::Constant(7, .1);
+  max_change[2] = std::nan("");
+  CHECK_THROWS_WITH_AS(static_cast<void>(with_limits_about(arm, start, max_change)),
                        "duet: with_limits_about: joint 2: the interval 0 ± nan is not a number",
                        invalid_input);
   vector beyond = start;
@@ -449,30 +457,30 @@ TEST_CASE("what is refused") {
                   invalid_input);
   vector unknown = start;
   unknown[2] = std::nan("");
-  const auto says = [&](const auto& wish, const char* what) {
+  const auto check_message = [&](const auto& preference, const char* what) {
+    CHECK_THROWS_WITH_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}),
+                                                              start, {}, preference)),
+                         what, invalid_input);
     CHECK_THROWS_WITH_AS(
-        static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {}, wish)),
-        what, invalid_input);
-    CHECK_THROWS_WITH_AS(
-        static_cast<void>(inverse_kinematics(arm, arm.pose(start), start, {}, wish)), what,
+        static_cast<void>(inverse_kinematics(arm, arm.pose(start), start, {}, preference)), what,
         invalid_input);
   };
-  says(preferred_posture{few},
-       "duet: preferred_posture: 3 coordinates (expected 7, one per joint)");
-  says(preferred_posture{vector(vector::Zero(8))},
-       "duet: preferred_posture: 8 coordinates (expected 7, one per joint)");
-  says(preferred_posture{unknown},
-       "duet: preferred_posture: joint 2 is nan (expected a finite number)");
-  says(preferred_posture{start, unknown[2]},
-       "duet: preferred_posture: weight is nan (expected a finite number)");
+  check_message(preferred_posture{few},
+                "duet: preferred_posture: 3 coordinates (expected 7, one per joint)");
+  check_message(preferred_posture{vector(vector::Zero(8))},
+                "duet: preferred_posture: 8 coordinates (expected 7, one per joint)");
+  check_message(preferred_posture{unknown},
+                "duet: preferred_posture: joint 2 is nan (expected a finite number)");
+  check_message(preferred_posture{start, unknown[2]},
+                "duet: preferred_posture: weight is nan (expected a finite number)");
 }
 
-TEST_CASE("what is nan is told where it is so everywhere, and else is no solution") {
+TEST_CASE("nan objectives and goals: an error if nan everywhere, otherwise not a solution") {
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << 0, -.75, 0, -2.5, 0, 1.5, .75).finished();
-  const auto message = [&](const auto& goal, const auto& wish) {
+  const auto message = [&](const auto& goal, const auto& preference) {
     return duet_test::message_of<invalid_input>([&] {
-      static_cast<void>(inverse_kinematics(arm, goal, start, {.max_restarts = 5}, wish));
+      static_cast<void>(inverse_kinematics(arm, goal, start, {.max_restarts = 5}, preference));
     });
   };
   const std::string at_start = " joints (0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
