@@ -26,7 +26,7 @@
 namespace {
 
 using namespace duet;
-/// Of any number of joints: all is compiled once.
+/// Chains of any number of joints, so that all is compiled once.
 using arm_chain = bounded_chain<16>;
 using joints = detail::joint_vector<double, -16>;
 using result = inverse_kinematics_result<-16>;
@@ -81,8 +81,8 @@ joints rounded(const arm_chain& arm, joints theta, double angle) {
   }
   return theta;
 }
-/// Is the solution that is found for the pose of a configuration no farther from the posture than
-/// that configuration and, of six joints, than any solution with any full turns within limits?
+/// True if the solution for the pose of a configuration is no farther from the posture than that
+/// configuration and, for six joints, than any solution with any full turns within limits.
 bool is_nearest(const arm_chain& arm, const joints& known,
                 const preferred_posture<joints>& preference) {
   const auto goal = arm.pose(known);
@@ -112,7 +112,7 @@ vector3<double> direction(random_source& random) {
   return {n[0], n[1], n[2]};
 }
 
-/// One case: a configuration, and whether what was found for it is as wanted.
+/// One case: a configuration, and whether its result is as required.
 using attempt = std::function<bool(const arm_chain&, const joints&, random_source&)>;
 
 void row(const char* what, int count, std::uint64_t seed, const attempt& is_solved) {
@@ -236,7 +236,7 @@ void preferences(int count, std::uint64_t seed) {
 }
 
 void starts(int count, std::uint64_t seed) {
-  // The tip's path while the joints go half the way to another configuration.
+  // Path of the tip while the joints move halfway to another configuration.
   const auto solve = [](bool is_any, bool is_structured = false) {
     return [=](const arm_chain& arm, const joints& unrounded, random_source& random) {
       const joints other = anywhere(arm, random);

@@ -59,7 +59,7 @@ std::vector<problem<C::joints>> problems(const C& chain, start from) {
   return result;
 }
 
-/// Is the tip there, the joints within limits?
+/// True if the tip is at the goal and the joints are within limits.
 template <class C, class X>
 bool is_solution(const C& chain, const X& theta, const dual_quaternion<double>& goal) {
   const pose_error deviation = pose_error_between(chain.pose(theta), goal);

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Plans of a Panda along screws, freely and beside a ball: how many of some hundreds of random
+/// Plans of a Panda along screws, freely and near a ball: how many of some hundreds of random
 /// problems are solved, and how long one takes. A program of its own:
 /// build/bench/bench/duet_planning_bench
 
@@ -131,8 +131,8 @@ std::vector<problem_near_ball> problems_near_balls(unsigned seed) {
   return result;
 }
 
-/// One iteration plans all problems; `reached` and the least clearance, at waypoints and half way
-/// between them, are of the first.
+/// One iteration plans all problems; `reached` and the smallest clearance, at waypoints and half
+/// way between them, are of the first.
 void plan_near_balls(benchmark::State& state, unsigned seed) {
   const auto all = problems_near_balls(seed);
   stopwatch times;

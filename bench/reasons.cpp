@@ -24,9 +24,9 @@ using namespace singular_problems;
 
 struct score {
   int failed = 0;       ///< plans that do not reach their goals
-  int given_up = 0;     ///< though there is a way
-  int before_end = 0;   ///< though a way leads on by more than 1e-4 of the path
-  int other_reason = 0; ///< than what ends the way there
+  int given_up = 0;     ///< although the path has a continuation
+  int before_end = 0;   ///< although the path continues by more than 1e-4 of the path
+  int other_reason = 0; ///< than the one that ends the path
   int both = 0;         ///< singular, limits being in the way within 1e-4 of the path before that
   int unknown = 0;      ///< the search could not tell
 };

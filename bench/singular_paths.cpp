@@ -45,7 +45,7 @@ double pose_distance(const goal_pose& a, const goal_pose& b) {
   return std::max(d.translation, d.rotation);
 }
 
-/// Newton's method to a pose by least steps; singular values below 1e-7 are left out.
+/// Newton's method to a pose by least-norm steps; singular values below 1e-7 are left out.
 template <int N>
 std::optional<joints_of<N>> newton(const serial_chain<N>& chain, joints_of<N> theta,
                                    const goal_pose& goal) {
@@ -86,8 +86,8 @@ std::optional<joints_of<N>> tracked(const serial_chain<N>& chain, joints_of<N> t
   return theta;
 }
 
-/// Do the joints get from one configuration of a pose to another with the tip in place, each
-/// step as straight as may be?
+/// True if the joints get from one configuration of a pose to another by a self-motion, each step
+/// as straight as possible.
 template <int N>
 bool are_connected(const serial_chain<N>& chain, joints_of<N> from, const joints_of<N>& to) {
   const goal_pose pose_at_end = chain.pose(to);

@@ -27,7 +27,7 @@ namespace {
 using namespace duet;
 using point = Eigen::Vector3d;
 
-/// How far a point is outside a capsule.
+/// Signed distance of a point from the surface of a capsule.
 double outside(const capsule<>& c, const point& x) {
   return closest_points(sphere<>{x, 0}, c).distance;
 }
@@ -36,7 +36,7 @@ point corner(const collision_box& b, int k) {
   return {(k % 2 - .5) * b.size[0], (k / 2 % 2 - .5) * b.size[1], (k / 4 - .5) * b.size[2]};
 }
 
-/// Is the most of `outside` over these points 0, but for rounding? So the points touch, too.
+/// Checks that the largest distance of the points is 0 up to round-off: they are inside and touch.
 template <class Points>
 void check_touches(const capsule<>& c, const Points& points, double scale) {
   double max_outside = -INFINITY;
@@ -239,7 +239,7 @@ TEST_CASE("bounding_capsules: shapes of trees and chains have the poses of their
   }
   CHECK(of_tree.volume_ratios[3] ==
         doctest::Approx(volume_of(meshed.shape) / (4. / 3 * .006)).epsilon(1e-12));
-  // Bodies of links that are fixed to each other, or beside each other, are no pairs.
+  // Bodies of links that are fixed to each other or adjacent form no pairs.
   CHECK(self_collision_pairs(tree, of_tree.bodies).size() == 2); // hand and base
   CHECK(self_collision_pairs(chain, of_chain.bodies).size() == 2);
 

@@ -15,7 +15,7 @@ namespace duet_test {
 using any_chain = duet::bounded_chain<16>;
 using any_joints = duet::detail::joint_vector<double, -16>;
 
-/// Uniform within the limits and a turn.
+/// Uniform within the limits and one full turn.
 inline any_joints configuration(const any_chain& arm, random_source& random) {
   using std::numbers::pi;
   any_joints theta(arm.size());
@@ -34,7 +34,7 @@ inline bool is_within_limits(const any_chain& arm, const any_joints& theta) {
   return is_inside;
 }
 
-/// An arm whose third joint slides, with a metre of `unit` units.
+/// Arm with a prismatic third joint, with a metre of `unit` units.
 inline duet::serial_chain<6> stanford_arm(double unit) {
   using std::numbers::pi;
   return duet::from_dh(std::array<duet::dh_row<>, 6>{

@@ -26,7 +26,7 @@ using vector = duet_test::any_joints;
 using duet_test::configuration;
 using std::numbers::pi;
 
-/// Is it a plan along all of the path, from a start within limits?
+/// True if it is a plan along the complete path, from a start within limits.
 template <class Path>
 bool is_complete_plan(const chain& arm, const start_search_result<-16>& found, const Path& path,
                       double first, double last) {
@@ -73,7 +73,7 @@ TEST_CASE("find_start_configuration: finds a start for every path of a known joi
 
 TEST_CASE("find_start_configuration: finds the only feasible branch and full turn") {
   const chain arm = robots::ur5e().table();
-  // The last joint turns by two and a half turns: it has to begin near a limit.
+  // The last joint rotates by two and a half full turns, so it must begin near a limit.
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, -6).finished();
   const auto path = [&](double u) {
     vector x = theta;
@@ -83,7 +83,7 @@ TEST_CASE("find_start_configuration: finds the only feasible branch and full tur
   const auto found = find_start_configuration(arm, path, 0, 1);
   CHECK(is_complete_plan(arm, found, path, 0, 1));
   CHECK(found.plan.joints.front()[5] < -4);
-  // Nowhere near are two turns and a half more.
+  // A further two and a half full turns do not fit into the limits.
   const auto more = [&](double u) {
     vector x = theta;
     x[5] += 14 * u;
@@ -149,18 +149,18 @@ TEST_CASE("find_start_configuration: reports the first pose without a solution a
   REQUIRE(far.unsolved);
   CHECK(far.is_certain);
   CHECK((far.reason == stop_reason::out_of_reach || far.reason == stop_reason::no_solution));
-  // There it is just not reached any more.
+  // At this parameter the pose is just out of reach.
   CHECK(all_inverse_kinematics(arm, out(*far.unsolved)).solutions.empty());
   CHECK(!all_inverse_kinematics(arm, out(*far.unsolved - 2e-6)).solutions.empty());
   CHECK(far.plan.tau.back() > .9 * *far.unsolved);
-  // From where there is none at all.
+  // At this first pose there is no solution at all.
   const auto none = find_start_configuration(arm, out, .9, 1);
   REQUIRE(none.unsolved);
   CHECK(*none.unsolved == .9);
   CHECK(none.reason == stop_reason::out_of_reach);
   CHECK(none.plan.joints.empty());
 
-  // Limits: the base turns by no more than 1, and the wrist not to its other solution.
+  // Limits: the base rotates by at most 1 rad, and the wrist cannot reach its other solution.
   auto limited = arm;
   for (int i = 0; i < 6; ++i) {
     limited = with_limits(limited, i, {theta[i] - .5, theta[i] + .5});
@@ -174,7 +174,7 @@ TEST_CASE("find_start_configuration: reports the first pose without a solution a
   CHECK(bounded.is_certain);
   CHECK(*bounded.unsolved == doctest::Approx(.5).epsilon(1e-5));
 
-  // Obstacles: a wall on the way of the flange.
+  // Obstacles: a wall on the path of the flange.
   scene around;
   around.bodies = {{6, {vector3<double>(0, 0, 0), vector3<double>(0, 0, -.05), .04}}};
   around.obstacles = {box<double>{
@@ -254,7 +254,7 @@ TEST_CASE("inverse kinematics and starts respect self-collision pairs") {
   const auto found = find_start_configuration(arm, path, 0, 1, {}, preference, around);
   REQUIRE(is_complete_plan(arm, found, path, 0, 1));
   CHECK(found.plan.smallest_clearance >= around.margin - 1e-6);
-  // Nothing is far enough apart.
+  // No configuration keeps this distance.
   around.margin = *farthest_pair + .3;
   around.influence_distance_offset = 1;
   const auto none = find_start_configuration(arm, path, 0, 1, {}, preference, around);

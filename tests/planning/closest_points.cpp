@@ -32,7 +32,7 @@ dual_quaternion<double> random_pose(duet_test::random_source& random) {
   return pose(from_rotation_vector(point(random, 3)), point(random, 1));
 }
 
-// Signed distances of a point, each written another way than in the library.
+// Signed distances of a point, each by another formula than in the library.
 
 double reference(const sphere<>& s, const vector& x) { return (x - s.centre).norm() - s.radius; }
 double reference(const half_space<>& h, const vector& x) {
@@ -45,7 +45,7 @@ double reference(const box<>& b, const vector& x) {
   if (inside != local) {
     return (local - inside).norm();
   }
-  // To the planes of the six faces.
+  // Distances to the planes of the six faces.
   return -std::min((b.half_extents - local).minCoeff(), (b.half_extents + local).minCoeff());
 }
 
@@ -55,7 +55,7 @@ double reference(const capsule<>& c, const vector& x) {
   return (c.from + std::clamp(t, 0.0, 1.0) * along - x).norm() - c.radius;
 }
 
-/// The least of a convex function on [0, 1], by ternary search.
+/// Minimum of a convex function on [0, 1], by ternary search.
 template <class F>
 double minimum(F&& f) {
   double low = 0, high = 1;
@@ -98,7 +98,7 @@ capsule<real_50> with_50_digits(const capsule<>& c) {
 }
 
 /// Two capsules both ways round: as far from each other as at 50 digits, where at no parameters of
-/// a grid, nor beside those that were found, anything is nearer.
+/// a grid, nor near the computed ones, any pair of points is nearer.
 void check_with_50_digits(const capsule<>& a, const capsule<>& b) {
   const double scale = 1 + a.from.norm() + a.to.norm() + b.from.norm() + b.to.norm();
   const auto c = with_50_digits(a), d = with_50_digits(b);
@@ -213,8 +213,8 @@ TEST_CASE("closest_points: pairs of capsules agree with results in 50 digits") {
   run(o, x, vector(2 * x), vector(3 * x));               // in line, apart
   run(o, vector(3 * x), x, vector(2 * x));               // one in the other
   run(o, x, o, x);                                       // the same
-  run(o, x, y, vector(x + y));                           // beside each other
-  run(o, x, vector(5 * x + y), vector(9 * x + y));       // parallel, not beside each other
+  run(o, x, y, vector(x + y));                           // side by side
+  run(o, x, vector(5 * x + y), vector(9 * x + y));       // parallel, without overlap
   run(o, x, vector(.5 * x + y), vector(.5 * x + 3 * y)); // an end above the middle
   run(o, o, x, x);                                       // points
   run(o, o, o, o);                                       // one point
@@ -297,7 +297,7 @@ TEST_CASE("closest_points: the gradient by dual numbers is the normal, weighted 
       CHECK(std::abs(distance_gradient.value - p.distance) < 1e-15 + duet_test::if_fused(1e-15));
       const vector first = distance_gradient.gradient.template head<3>(),
                    second = distance_gradient.gradient.template tail<3>();
-      // In a box where one face takes over from another the gradient is that of the edge.
+      // Inside a box, where the nearest face changes, the gradient is that of the edge.
       CHECK((first + second).norm() <= 1 + 1e-12);
       if (p.distance + c.radius > 0) {
         CHECK((first - (1 - t) * p.normal).norm() < 1e-9);

@@ -21,17 +21,17 @@
 #include <vector>
 
 /// \file
-/// How far an arm of six joints can follow a path at all.
+/// Complete search for the parameter up to which an arm of six joints can follow a path.
 
 namespace duet_test {
 
-/// How far, and what ends it: `reached`, `joint_limit` where a solution goes on beyond limits,
-/// `singular` where it ends, `no_progress` where the search cannot tell.
+/// Parameter at which a path ends, and the reason: `joint_limit` if a solution continues beyond the
+/// limits, `singular` if it ends, `no_progress` if the search cannot decide.
 struct path_verdict {
   double end = 0;
   duet::stop_reason why = duet::stop_reason::no_progress;
-  /// Do limits end it where without them it would end within 1e-4 of the path as well? Then both
-  /// reasons are true. Of six joints it is not looked for.
+  /// True if limits end the path, and without them it would end within 1e-4 as well: both reasons
+  /// are true. Not determined for six joints.
   bool is_both = false;
 };
 
@@ -39,7 +39,8 @@ struct path_verdict {
 /// finds at parameters as close as need be: 1/128 of the path, or 2⁻³⁰ of it where solutions do not
 /// go on. Two of them are connected where joints that move straight on from one to the other keep
 /// the tip within 1e-5 of the path. At the start and where a determinant changes its sign the
-/// joints may also move with the tip in place. Joints keep their limits and do not jump by turns.
+/// joints may also move with the tip fixed. Joints respect their limits and do not jump by full
+/// turns.
 class complete_search {
 public:
   using joints = Eigen::Matrix<double, 6, 1>;
@@ -62,7 +63,7 @@ public:
     return verdict_;
   }
 
-  /// The configuration next to one that is nearly at u, where there is one within limits.
+  /// Exact configuration at u nearest to an approximate one; nothing if none is within limits.
   [[nodiscard]] std::optional<joints> exact(double u, const joints& x) const {
     const joints y = at(u, x);
     const auto deviation = duet::pose_error_between(arm_.pose(y), path_(u));
@@ -84,7 +85,7 @@ private:
     return true;
   }
 
-  /// By Newton's method.
+  /// Configuration at u by Newton's method.
   [[nodiscard]] joints at(double u, joints x) const {
     const auto current = duet::detail::to_tip_pose(path_(u));
     for (int round = 0; round < 5; ++round) {
@@ -96,8 +97,8 @@ private:
     return x;
   }
 
-  /// All solutions at u, each turned next to x, and what Newton's method finds from there: of some
-  /// that are singular but for rounding `all_inverse_kinematics` does not tell.
+  /// All solutions at u, each moved next to x by full turns, and the result of Newton's method from
+  /// x: `all_inverse_kinematics` may miss solutions that are singular up to round-off.
   [[nodiscard]] std::vector<joints> solutions(double u, const joints& x) {
     if (u != known_at_ || known_.empty()) {
       known_at_ = u;
@@ -147,7 +148,7 @@ private:
     }
   }
 
-  /// Where the joints can be at b that are at one of `from` at a.
+  /// Configurations at b that can be reached from those of `from` at a.
   [[nodiscard]] std::vector<joints> advance(const std::vector<joints>& from, double a, double b,
                                             int halvings) {
     std::vector<joints> result;
@@ -193,8 +194,8 @@ private:
     return result;
   }
 
-  /// Where the joints can be at b that get from x to y through a singularity, in which they may
-  /// move with the tip in place.
+  /// Configurations at b that can be reached from x through a singularity between x and y, with
+  /// self-motions in the singularity.
   [[nodiscard]] std::vector<joints> cross(joints x, double a, const joints& y, double b) {
     const double end = b;
     joints z = y;
@@ -224,7 +225,7 @@ private:
     return reached.empty() ? reached : advance(reached, next, end, 20);
   }
 
-  /// The configurations `near_offset` behind u that joints get to if they may first move in place.
+  /// Configurations at u + `near_offset` that can be reached after a self-motion at u.
   [[nodiscard]] std::vector<joints> leave(const joints& from, double u) {
     const auto all = fibre(from, path_(u), true);
     if (all.size() < 3) {
@@ -254,7 +255,7 @@ private:
     return result;
   }
 
-  /// What a singular configuration gets to with the tip in place, in small steps.
+  /// Configurations that a singular one reaches by self-motions, in small steps.
   [[nodiscard]] std::vector<joints>
   fibre(const joints& from, const duet::dual_quaternion<double>& pose, bool keeps_limits) const {
     std::vector<joints> result{from};
@@ -302,8 +303,8 @@ private:
   std::vector<joints> known_;
 };
 
-/// How far a way leads from the start of a plan or from a waypoint: a tolerance may have let the
-/// plan pass where no pose of the path is exactly within reach.
+/// Verdict from the start of a plan, and from its waypoints: within its tolerance the plan may have
+/// passed poses of the path that are not exactly within reach.
 template <class Plan>
 [[nodiscard]] path_verdict complete_path_verdict(const duet::serial_chain<6>& arm,
                                                  const complete_search::path_function& path,

@@ -43,8 +43,8 @@ TEST_CASE("cholesky: solves systems; an unknown without a positive pivot is 0") 
     using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 10, 10>;
     const matrix root = random_matrix(random, matrix(n, n));
     const vector x = random_matrix(random, vector(n));
-    // Of a = root rootᵀ + 1/100 only the lower half counts. The last unknown has a pivot of zero or
-    // below in `cut`.
+    // Only the lower half of a = root rootᵀ + 1/100 is used. The last unknown has a pivot of zero
+    // or below in `cut`.
     matrix a(n, n), lower(n, n), cut(n, n);
     for (int i = 0; i < n; ++i) {
       for (int j = 0; j < n; ++j) {
@@ -149,7 +149,8 @@ TEST_CASE("constrained_step: satisfies twist, limits and inequalities and is nea
       inequalities.push_back({random_matrix(random, joints()), .3 * random.normal()});
     }
     const auto step = detail::constrained_step(j, e, preferred, lower, upper, inequalities).step;
-    // The one self-motion; where on some + y z everything is kept, and the wish.
+    // One degree of redundancy: the steps some + y z that satisfy all constraints, and the y
+    // nearest to the preferred step.
     const joints any = random_matrix(random, joints());
     const joints z = detail::self_motion<joints>(j)(any).normalized();
     CHECK((j * z).norm() < 1e-14);

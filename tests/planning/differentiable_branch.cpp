@@ -42,7 +42,7 @@ TEST_CASE("differentiable_branch: derivatives with respect to the goal, for ever
           pose(from_rotation_vector(vector3<S>(S(0), t, S(0))), vector3<S>(t, 2 * t, 3 * t)) *
           goal);
     };
-    // In space: the point of the body that is in the base's origin moves by (1, 2, 3).
+    // Spatial twist: the point of the body that is in the base's origin moves by (1, 2, 3).
     const Eigen::Vector3d omega(0, 1, 0);
     six twist;
     twist << Eigen::Vector3d(1, 2, 3) + omega.cross(translation(goal)), omega;

@@ -65,8 +65,8 @@ bool is_within_limits(const chain& arm, const vector& theta) {
   return is_inside;
 }
 
-/// By matrices, to 50 digits: where the origin of the tip is in a region's frame, how far the axis
-/// is tilted, and by how much the tip is turned about it once it is tilted back.
+/// Reference by matrices in 50 digits: position of the tip in the frame of a region, tilt of its
+/// axis, and rotation angle about the axis once the tilt is removed.
 struct region_coordinates {
   wide_vector at;
   real_50 tilt, angle;
@@ -81,7 +81,7 @@ struct region_coordinates {
     const wide_vector tilted = r * n;
     const wide_vector across = n.cross(tilted);
     tilt = atan2(across.norm(), n.dot(tilted));
-    // By Rodrigues: the least turn that takes n to where it is.
+    // Rodrigues' formula: the smallest rotation that takes n to its tilted direction.
     wide_matrix k;
     k << 0, -across[2], across[1], across[2], 0, -across[0], -across[1], across[0], 0;
     const wide_matrix tilting = wide_matrix::Identity() + k + k * k / real_50(1 + n.dot(tilted));
@@ -94,7 +94,7 @@ struct region_coordinates {
   }
 };
 
-/// How far a tip is outside: of lengths and angles.
+/// Violation of a region by a tip, in length and angle.
 pose_error outside(const chain& arm, const vector& theta, const task_space_region& region) {
   const Eigen::Matrix<real_50, Eigen::Dynamic, 1> exact = theta.cast<real_50>();
   const region_coordinates coordinates(arm.pose(exact), region);
@@ -125,7 +125,7 @@ std::vector<made_goal> goals_at(const dual_quaternion<double>& tip,
   const vector3<double> n = direction(random), p = translation(tip);
   const vector3<double> d = rotate(rotation(tip), n);
   const auto up_to = [&](double maximum) { return random.uniform(0, maximum); };
-  // A region whose frame is tilted and turned away from the tip, which still is within it.
+  // A region whose frame is tilted and rotated relative to the tip, which still is within it.
   const vector3<double> axis = direction(random);
   const vector3<double> across = axis.cross(direction(random)).normalized();
   const double tilt = up_to(.3), angle = random.uniform(-3, 3);
@@ -225,13 +225,13 @@ TEST_CASE("task_space_region: rows of the constraint are derivatives of the erro
 TEST_CASE("task_space_region: constraints at bounds and for opposite axes") {
   const quaternion<double> one(1);
   const vector3<double> x(1, 0, 0), z(0, 0, 1), zero(0, 0, 0);
-  // The axis is where it should not be at all: any way is as good, but there is one.
+  // The axis is opposite to its goal: every direction of rotation is equivalent, one is chosen.
   const auto opposite = pointing_goal(z, -z).constraint(pose(one, zero));
   CHECK(opposite.lower.norm() == doctest::Approx(pi));
   CHECK(opposite.matrix.allFinite());
   const auto aligned = pointing_goal(z, z).constraint(pose(one, zero));
   CHECK(aligned.lower.norm() < 1e-15);
-  // Nothing is wanted but three lengths, in the region's axes.
+  // Only three lengths are constrained, along the axes of the region.
   const auto position = position_goal(x).constraint(pose(one, zero));
   CHECK(position.lower.head<3>() == x);
   CHECK(position.matrix.topLeftCorner<3, 3>() == Eigen::Matrix3d::Identity());
@@ -296,7 +296,7 @@ TEST_CASE("inverse_kinematics: unreachable partial goals report the reason") {
   box.lower = {2.5, 2.5, 0};
   CHECK(inverse_kinematics(panda, box, centre).reason == stop_reason::out_of_reach);
 
-  // A slide that is too short for the height.
+  // A prismatic joint whose range is too short for the height.
   const std::array<dh_row<>, 4> rows{{{.a = .4, .d = .2},
                                       {.a = .3, .alpha = pi},
                                       {.limits = {0, .2}, .kind = joint_kind::prismatic},

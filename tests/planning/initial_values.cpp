@@ -33,9 +33,9 @@
 #include <new>
 #include <type_traits>
 
-// No public aggregate holds what memory held before it: each is default-initialized, as in `T x;`,
-// on memory that is filled with a pattern. house/initial_values finds those that are missing here;
-// equation_goal holds the user's function alone.
+// No public aggregate keeps the previous contents of memory: each is default-initialized, as in `T
+// x;`, on memory that is filled with a pattern. house/initial_values finds those that are missing
+// here; equation_goal holds the user's function alone.
 
 namespace test_planning_initial_values {
 
@@ -63,7 +63,7 @@ consteval int field_count() {
   }
 }
 
-/// Is any number in x, or in a field of x, as memory was?
+/// True if any number in x, or in a field of x, has the previous contents of memory.
 template <class T>
 bool is_uninitialized(T& x) {
   const auto any = [](auto&... field) { return (is_uninitialized(field) || ...); };

@@ -21,7 +21,7 @@ namespace {
 using namespace duet;
 using duet_test::configuration;
 using duet_test::is_within_limits;
-/// Of any number of joints, so that the search is compiled once.
+/// Chain of any number of joints, so that the search is compiled once.
 using chain = bounded_chain<16>;
 using result = inverse_kinematics_result<-16>;
 using vector = detail::joint_vector<double, -16>;
@@ -32,7 +32,7 @@ std::vector<chain> arms() {
           robots::baxter_left().table()};
 }
 
-/// How far the tip is from the goal, by matrices: of a turn by φ, |R − 1| = 2√2 |sin φ/2|.
+/// Error of the tip by matrices: for a rotation by φ, |R − 1| = 2√2 |sin φ/2|.
 pose_error deviation_by_matrices(const chain& arm, const vector& theta,
                                  const dual_quaternion<double>& goal) {
   const Eigen::Matrix4d max_abs_difference =
@@ -41,7 +41,7 @@ pose_error deviation_by_matrices(const chain& arm, const vector& theta,
   return {max_abs_difference.topRightCorner<3, 1>().norm(), 2 * std::asin(std::min(1.0, chord))};
 }
 
-/// Is this a solution, and what it says about itself true?
+/// True if this is a solution whose reported deviation is correct.
 bool is_solution(const chain& arm, const result& found, const dual_quaternion<double>& goal,
                  double tolerance = 1e-6) {
   const pose_error deviation = deviation_by_matrices(arm, found.joints, goal);
@@ -59,7 +59,7 @@ bool are_identical(const result& a, const result& b) {
          a.restarts == b.restarts && a.reason == b.reason;
 }
 
-/// Three sliding and three turning joints, all through one point.
+/// Three prismatic and three revolute joints whose axes meet in one point.
 chain gantry(double lower, double upper) {
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -123,7 +123,7 @@ TEST_CASE("inverse_kinematics: independent of the sign of the goal; separate sma
   CHECK(are_identical(found, inverse_kinematics(arm, -goal, start)));
   const auto close = inverse_kinematics(arm, goal, start, {.tolerance = 1e-13});
   CHECK(is_solution(arm, close, goal, 1e-13));
-  // Each for itself.
+  // Separate tolerances of length and angle.
   const auto moved = at(.01, 0, 0) * arm.pose(start);
   CHECK(inverse_kinematics(arm, moved, start, {.tolerance = {.011, 1e-9}}).iterations == 0);
   CHECK(inverse_kinematics(arm, moved, start, {.tolerance = {.009, 1}}).iterations > 0);
@@ -179,7 +179,7 @@ TEST_CASE("inverse_kinematics: results do not depend on the unit of length") {
 }
 
 TEST_CASE("inverse_kinematics: independent of the unit with prismatic joints and out of reach") {
-  // In units that are powers of two apart results are equal to the last bit.
+  // With units whose ratio is a power of two, results are equal to the last bit.
   const auto stanford = [](double unit) {
     const std::array<dh_row<>, 6> rows{
         {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
@@ -261,7 +261,7 @@ TEST_CASE("inverse_kinematics: unreachable goals report the reason") {
   CHECK(far.restarts == 100);
   CHECK(is_within_limits(panda, far.joints));
 
-  // Three tenths of the way are missing.
+  // Three tenths of the distance cannot be reached.
   const chain stretched = gantry(-1, .5);
   const vector zero = vector::Zero(6);
   const auto slid = inverse_kinematics(stretched, at(.8, 0, .3), zero);
@@ -272,7 +272,7 @@ TEST_CASE("inverse_kinematics: unreachable goals report the reason") {
   CHECK(is_within_limits(stretched, slid.joints));
 
   const chain ur5e = robots::ur5e().table();
-  // The hand turned away from the base, where it would have to be stretched to it.
+  // The hand points away from the base, which would require the arm to stretch beyond its reach.
   const auto rotated = inverse_kinematics(ur5e, at(.85, .2, .1, {0, -pi / 2, 0}), zero);
   CHECK(rotated.reason == stop_reason::singular);
 
@@ -298,7 +298,7 @@ TEST_CASE("inverse_kinematics: unreachable goals report the reason") {
 }
 
 TEST_CASE("inverse_kinematics: out of reach, the result is the nearest pose") {
-  // Of three slides it is known, and their limits hold at once.
+  // For three prismatic joints the solution is known, with several limits active at once.
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {
     joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
@@ -316,7 +316,7 @@ TEST_CASE("inverse_kinematics: out of reach, the result is the nearest pose") {
   CHECK(slid.deviation.rotation < 1e-11);
   CHECK(slid.restarts == 0);
 
-  // Of arms: nothing near is nearer, to first order by duals, nor anything of thousands elsewhere.
+  // For arms: the gradient by dual numbers vanishes, and no random configuration is nearer.
   duet_test::random_source random(42);
   for (const chain& arm : arms()) {
     double scale = detail::length_of(detail::components(arm.tip().offset.translation));

@@ -24,13 +24,13 @@
 #include <vector>
 
 /// \file
-/// How far an arm of seven joints can follow a path that may be left for motions in place.
+/// Search for the parameter up to which an arm of seven joints can follow a path with self-motions.
 
 namespace duet_test {
 
-/// Layer by layer along a path: all curves of self-motion, cut into pieces by limits, and which
-/// pieces joints get to from those before, from any of their points. Ranges of joints are less than
-/// a turn, so configurations are told apart by their angles.
+/// All self-motion curves, layer by layer along a path, cut into components by limits, and the
+/// components that can be reached from those of the layer before. Ranges of joints are less than a
+/// full turn, so angles identify configurations.
 class layered_search {
 public:
   using joints = Eigen::Matrix<double, 7, 1>;
@@ -81,7 +81,7 @@ private:
     std::vector<point> points;
     int component_count = 0;
     std::set<int> reached;
-    std::vector<joints> isolated; ///< what is reached and on no piece that points show
+    std::vector<joints> isolated; ///< reached configurations on no component with points
   };
 
   [[nodiscard]] bool is_within_limits(const joints& x) const {
@@ -135,7 +135,7 @@ private:
     return result;
   }
 
-  /// Newton's method by least steps of the joints that limits do not hold; nothing where it leads
+  /// Newton's method by least-norm steps of the joints that are not at limits; nothing if it leads
   /// far away.
   [[nodiscard]] std::optional<joints> at(double u, const joints& from, bool keeps_limits) const {
     const auto goal = duet::detail::to_tip_pose(path_(u));
@@ -188,7 +188,7 @@ private:
     return x;
   }
 
-  /// What is next to a configuration is reached with it.
+  /// Marks the component of a configuration as reached.
   void reach(layer& at, const joints& x) const {
     double nearest = .05;
     int component = none;
@@ -261,7 +261,7 @@ private:
   std::function<std::optional<joints>(double)> known_;
 };
 
-/// How far a way leads that may leave a plan anywhere.
+/// Verdict of the search, which may leave a plan at any of its waypoints.
 template <class Plan>
 [[nodiscard]] path_verdict complete_path_verdict(const duet::serial_chain<7>& arm,
                                                  const layered_search::path_function& path,

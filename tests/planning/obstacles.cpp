@@ -97,7 +97,7 @@ TEST_CASE("plan_screw_motion: distant obstacles do not change the plan") {
 
 TEST_CASE("plan_screw_motion: limits are not reported as obstacles; invalid scenes are rejected") {
   const auto start = gripper_down();
-  // Farther than the elbow can be stretched, beside a wall that is near but not in the way.
+  // A goal beyond the reach of the elbow, near a wall that does not block the path.
   const auto far = pose(rotation(arm.pose(start)), point(.87, 0, .3));
   const scene wall = arm_among({half_space<>{{0, 0, 1}, .2}});
   const auto stopped = plan_screw_motion(arm, start, far, {.search_step = 0}, {}, wall);
@@ -105,7 +105,7 @@ TEST_CASE("plan_screw_motion: limits are not reported as obstacles; invalid scen
   CHECK(stopped.reason != stop_reason::obstacle);
   CHECK(stopped.reason != stop_reason::out_of_reach);
   CHECK(stopped.tau.back() > .5);
-  // Where no arm of that length comes nothing is tried.
+  // If the goal is certainly out of reach, no step is tried.
   const auto farther = pose(rotation(arm.pose(start)), point(2, 0, .3));
   const auto stayed = plan_screw_motion(arm, start, farther, {}, {}, wall);
   CHECK(stayed.reason == stop_reason::out_of_reach);

@@ -13,7 +13,7 @@
 #include <limits>
 
 /// \file
-/// What tests ask of every plan.
+/// Checks of plans that all tests share.
 
 namespace duet_test {
 

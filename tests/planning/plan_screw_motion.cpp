@@ -51,7 +51,7 @@ problem random_problem(unsigned seed, int number, bool is_near) {
   return result;
 }
 
-/// By inverse iteration.
+/// Smallest singular value by inverse iteration.
 double smallest_singular_value(const vector& theta) {
   const auto m = jacobian(arm, theta, frame::hybrid);
   const Eigen::LLT<matrix6<double>> gram(matrix6<double>(m * m.transpose()));
@@ -166,7 +166,7 @@ TEST_CASE("N24: the planner of the notes reaches near goals but drifts from the 
   CHECK(plan.reason == stop_reason::reached);
   const pose_error deviation = pose_error_between(plan.poses.back(), goal);
   CHECK(std::max(deviation.translation, deviation.rotation) <= 1e-4);
-  // Each step goes one hundredth of what is left.
+  // Each step covers one hundredth of the remaining motion.
   CHECK(plan.iterations > 300);
   double drift = 0;
   for (const pose_error& d : plan.deviations) {
@@ -188,7 +188,7 @@ TEST_CASE("plan_screw_motion: reports the termination reason") {
   CHECK(
       plan_screw_motion(arm, gripper_down(), far, {.max_iterations = plan.iterations + 9}).reason ==
       stop_reason::iteration_limit);
-  // A joint's limit, and no other joint to go the same way.
+  // A joint at its limit, without another joint of the same effect.
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {
     joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
@@ -231,7 +231,7 @@ TEST_CASE("plan_screw_motion: reports the termination reason") {
       0, 1);
   CHECK(jump.reason == stop_reason::no_progress);
   CHECK(jump.tau.back() == doctest::Approx(.3).epsilon(1e-4));
-  // Nothing to do.
+  // The goal is the pose at the start.
   const auto nothing = plan_screw_motion(gantry, zero, gantry.pose(zero));
   CHECK(nothing.reason == stop_reason::reached);
 }

@@ -80,7 +80,7 @@ TEST_CASE("N24: each step leaves about 1 − βτ of the motion") {
             doctest::Approx(std::log(remaining_part) / std::log1p(-beta * tau)).epsilon(.06));
     }
   }
-  // Where 1 − βτ is not between −1 and 1, nothing comes closer.
+  // If 1 − βτ is not between −1 and 1, the error does not decrease.
   CHECK(printed_screw_plan(arm, gripper_down(), goal, {.tau = 1, .beta = 2.5}).reason !=
         stop_reason::reached);
 }
@@ -99,7 +99,7 @@ TEST_CASE("N25, note 2: inverse kinematics depends on the start") {
   }
   CHECK((answers[0] - answers[1]).norm() > .1);
   CHECK((answers[0] - answers[2]).norm() > .1);
-  // From the answer itself there is nothing to do.
+  // Started from the result, no step is made.
   CHECK(printed_screw_plan(arm, answers[0], goal).iterations == 0);
 }
 

@@ -30,7 +30,7 @@ TEST_CASE("N22: B γ̇ moves the tip by γ̇ with least-norm joint rates") {
     const Eigen::Matrix<double, 7, 7> projection = by_gamma * b;
     CHECK(max_abs_difference(projection * projection, projection) < 1e-10);
     CHECK(max_abs_difference(projection * by_gamma, by_gamma) < 1e-10);
-    // Least: B has nothing of the motion that leaves the tip in place, of which m knows one.
+    // Least norm: the rates B have no component in the null space of m, which has one dimension.
     Eigen::Matrix<double, 7, 1> in_place;
     for (int k = 0; k < 7; ++k) { // minors, with alternating signs
       Eigen::Matrix<double, 6, 6> minor;

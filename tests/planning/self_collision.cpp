@@ -141,7 +141,7 @@ TEST_CASE("self_collision_pairs: links of a tree that are fixed to each other co
     return has(s.pairs, std::min(i, k), std::max(i, k));
   };
   CHECK(!is_pair("hand", "tool"));    // fixed to it
-  CHECK(!is_pair("elbow", "tool"));   // beside it, the joint is the hand's
+  CHECK(!is_pair("elbow", "tool"));   // adjacent, by the joint of the hand
   CHECK(!is_pair("finger", "tool"));  // on the hand
   CHECK(!is_pair("world", "flange")); // fixed to it
   CHECK(!is_pair("flange", "cart"));

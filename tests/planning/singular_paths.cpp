@@ -177,7 +177,8 @@ TEST_CASE("escape_direction: increases the smallest singular value fastest") {
   }
 }
 
-/// Of a general arm w and n are single, and the way out is the gradient of the determinant.
+/// For a general arm w and n are unique, and the escape direction is the gradient of the
+/// determinant.
 TEST_CASE("escape_direction: is the gradient of the determinant by dual numbers") {
   const chain general = from_dh(std::array<dh_row<>, 6>{{{.a = .3, .d = .1, .alpha = .7},
                                                          {.a = .5, .d = -.2, .alpha = -1.1},
@@ -365,7 +366,7 @@ void check_is_planned(const serial_chain<N>& arm, const duet_test::coordinates<N
   CHECK(duet_test::largest_deviation(arm, plan, path) < 1.1e-5);
 }
 
-/// Each has a way, by Newton's method from its end and in place to its start.
+/// Each problem has a solution, by Newton's method from its end and a self-motion to its start.
 TEST_CASE("seven joints stay on their self-motion curve where another comes near") {
   const auto panda = robots::panda().table(), iiwa = robots::iiwa14().table(),
              baxter = robots::baxter_left().table();
@@ -384,7 +385,7 @@ TEST_CASE("seven joints stay on their self-motion curve where another comes near
   check_is_planned(baxter, start, end);
 }
 
-/// By a complete search each has a way, with the elbow to one side but not to the other.
+/// By a complete search each problem has a solution with the elbow on one side only.
 TEST_CASE("plans leave a stretched elbow near the wrist singularity on the feasible side") {
   const auto degrees = [](std::array<double, 6> x) {
     return vector(Eigen::Map<const vector>(x.data()) * (pi / 180));
@@ -403,14 +404,14 @@ TEST_CASE("plans leave a stretched elbow near the wrist singularity on the feasi
   check_is_planned(limited, start, end);
 }
 
-/// It would tell of a way where there is none, or of none where there is one.
+/// Both verdicts are checked: a path with a continuation and one without.
 TEST_CASE("complete_search: verdict for paths with known results") {
   const vector theta = (vector() << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto rotating = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u)), vector3<double>(0, 0, 0)) * ur5e.pose(theta);
   };
   CHECK(duet_test::complete_search(ur5e, rotating)(theta).why == stop_reason::reached);
-  // The base turns by 2u.
+  // The base rotates by 2u.
   const chain limited = with_limits(ur5e, 0, {-1, theta[0] + .5});
   const auto stopped = duet_test::complete_search(limited, rotating)(theta);
   CHECK(stopped.why == stop_reason::joint_limit);

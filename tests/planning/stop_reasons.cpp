@@ -76,7 +76,7 @@ TEST_CASE("a limit ends the path just before a singularity does") {
   check_ends_at_limit({{mate, family::near_wrist, 3, 53}});
 }
 
-/// Joints 2, 3, 4 and 6 turn in place, their limits end that before the way on begins.
+/// The self-motion of joints 2, 3, 4 and 6 ends at limits before the continuation begins.
 TEST_CASE("limits end the self-motion at the UR5e's singular wrist") {
   check_ends_at_limit({{ur5e, family::from_wrist, 1, 94},
                        {ur5e, family::from_wrist, 2, 9},
@@ -85,7 +85,8 @@ TEST_CASE("limits end the self-motion at the UR5e's singular wrist") {
                        {ur5e, family::from_wrist, 3, 72}});
 }
 
-/// Through poses that are out of reach by less than its tolerance, to a limit farther on.
+/// The plan passes poses that are out of reach by less than its tolerance and ends at a later
+/// limit.
 TEST_CASE("a plan beyond the end of the exact path reports the reason at its own end") {
   check_ends_at_limit({{kr, family::from_elbow, 3, 33}});
 }
@@ -97,14 +98,15 @@ TEST_CASE("both continuations near a stretched elbow are searched") {
   CHECK(plan.reason == stop_reason::reached);
 }
 
-/// A limit is in the way of the swing, but the tip passes the singularity straight on 9.6e-6 off.
+/// A limit blocks the rapid reorientation, but the tip passes the singularity at a distance
+/// of 9.6e-6.
 TEST_CASE("a path may pass a singularity within the admissible deviation") {
   CHECK(solve_six({ur5e, family::past, 4, 32}).plan.reason == stop_reason::reached);
 }
 
 using seven = Eigen::Matrix<double, 7, 1>;
 
-/// By all curves of self-motion, from the start alone.
+/// Verdict by all self-motion curves, from the start alone.
 duet_test::path_verdict layered(const serial_chain<7>& arm,
                                 const duet_test::layered_search::path_function& path,
                                 const seven& start) {
@@ -112,11 +114,11 @@ duet_test::path_verdict layered(const serial_chain<7>& arm,
   return duet_test::layered_search(arm, path, nothing)(start);
 }
 
-/// It would tell of a way where there is none, or of none where there is one.
+/// Both verdicts are checked: a path with a continuation and one without.
 TEST_CASE("layered_search: verdict for paths with known results") {
   const auto panda = robots::panda().table();
   const seven start = (seven() << .3, -.8, .2, -2.1, .1, 1.6, .8).finished();
-  // The base turns by 2u, the others have next to no room.
+  // The base rotates by 2u, the ranges of the others are almost zero.
   const auto rotating = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u)), vector3<double>(0, 0, 0)) * panda.pose(start);
   };
@@ -172,8 +174,8 @@ TEST_CASE("plans of six joints end within 1e-5 of where the path ends") {
   }
 }
 
-/// Where the exact way ends at a limit, within the deviation one leads on past the singularity:
-/// from where whole steps of the search end, no longer from as near to it as shorter ones get.
+/// The exact path ends at a limit, but within the deviation it continues past the singularity: from
+/// where full steps of the search end, not from nearer to the singularity, where shorter ones end.
 TEST_CASE("following a continuation to its end keeps plans that pass near its end") {
   for (const case_of_bench& each : {case_of_bench{puma, family::past, 2, 59},
                                     {irb, family::past, 2, 1},
@@ -198,8 +200,9 @@ TEST_CASE("a continuation that steps do not follow is searched with shorter step
   }
 }
 
-/// A piece leaves the limits between points 0.4 apart. Nor does a way lead beyond 0.605 by closed
-/// forms at 4000 angles of the elbow, each followed from one 200th of the path to the next.
+/// A component leaves the limits between points 0.4 apart. The path does not continue beyond 0.605
+/// by closed forms at 4000 angles of the elbow, each followed from one 200th of the path to the
+/// next.
 TEST_CASE("layered_search: detects limits that cut a self-motion component") {
   const auto [plan, verdict] = solve_seven({iiwa, family::past, 2, 77});
   CHECK(verdict.why == stop_reason::joint_limit);
@@ -207,7 +210,7 @@ TEST_CASE("layered_search: detects limits that cut a self-motion component") {
   CHECK(plan.reason == verdict.why);
 }
 
-/// Without limits the way would lead on by 4e-5 and 2e-5 of the path.
+/// Without limits the path would continue by 4e-5 and 2e-5.
 TEST_CASE("limits end a path less than 1e-4 before a singularity would") {
   for (const case_of_bench& each :
        {case_of_bench{baxter, family::from_wrist, 3, 42}, {panda, family::from_elbow, 3, 88}}) {
@@ -233,7 +236,7 @@ TEST_CASE("the end of a plan does not depend on the first parameter") {
   CHECK(std::abs(shifted.tau.back() + 5 - plan.tau.back()) < 1e-5);
 }
 
-/// Without limits another way, which parts from it long before, would lead on.
+/// Without limits another continuation, which separates much earlier, would go further.
 TEST_CASE("a path of the Baxter ends where no self-motion continues it, with or without limits") {
   const auto a = redundant_arm()[2];
   const auto p = make(a, family::from_elbow, 3, 84);

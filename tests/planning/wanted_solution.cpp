@@ -48,15 +48,15 @@ vector nearby(const chain& arm, vector theta, double max_change, duet_test::rand
   return theta;
 }
 
-/// How far the tip is from a position, to 50 digits.
+/// Distance of the tip from a position, in 50 digits.
 double distance(const chain& arm, const vector& theta, const vector3<double>& p) {
   using duet_test::real_50;
   const Eigen::Matrix<real_50, Eigen::Dynamic, 1> exact = theta.cast<real_50>();
   return double((translation(arm.pose(exact)) - p.cast<real_50>()).norm());
 }
 
-/// Of a slope what the tip, held at a position, and joints at limits leave: zero where nothing
-/// nearby is lower. (The sign of what limits hold is looked at, too.)
+/// Norm of the gradient projected onto the motions with the tip at a fixed position and joints
+/// within limits: zero at a local minimum. Active limits are identified by the sign, too.
 double projected_gradient(const chain& arm, const vector& theta, vector gradient) {
   std::vector<vector> active_rows;
   const auto j = jacobian(arm, theta, frame::hybrid);
@@ -135,7 +135,7 @@ TEST_CASE(
 }
 
 TEST_CASE("objective: the best branch of a pose is found, with derivatives by dual numbers") {
-  // The last three joints as small as can be; the gradient has no help.
+  // The last three joints as small as possible; without a member gradient.
   const auto preference = [](const auto& theta) {
     using std::cos;
     std::decay_t<decltype(theta[0])> sum(0);
@@ -175,7 +175,7 @@ TEST_CASE("objective: minimum at the boundary or in the interior of a region") {
   const auto low = inverse_kinematics(arm, box, start, {}, height);
   CHECK(low.reason == stop_reason::reached);
   CHECK(height(low.joints) - p[2] == doctest::Approx(-.1).epsilon(1e-4));
-  // Within the box it is not held.
+  // Inside the box no bound is active.
   const auto distance_to_centre = [&](const auto& theta) {
     return (translation(arm.pose(theta)) - (p + vector3<double>(.02, -.03, .01))).squaredNorm();
   };
@@ -209,7 +209,7 @@ TEST_CASE("with_limits_about: solutions stay within the bounds about the start")
     }
     CHECK(solved == 40);
   }
-  // What would have to go farther says so.
+  // A goal beyond the bounds is reported as such.
   const chain panda = robots::panda().table();
   const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
   vector distant = start;
@@ -282,7 +282,7 @@ TEST_CASE("inverse_kinematics: a goal inside an obstacle reports obstacle") {
   CHECK(found.reason == stop_reason::obstacle);
   CHECK(found.restarts == 20);
   CHECK(found.deviation.translation <= 1e-6);
-  // Out of reach is that, with obstacles or not, and the nearest pose is told.
+  // A goal out of reach is reported with or without obstacles, with the nearest pose.
   const auto far = pose(quaternion<double>(1), vector3<double>(3, 0, 0));
   const auto beyond =
       inverse_kinematics(arm, far, known, {.max_restarts = 2}, no_objective{}, around);
@@ -302,7 +302,7 @@ TEST_CASE("objective: revolute joints move by full turns that lower it") {
   CHECK((found.joints - preference).cwiseAbs().maxCoeff() < 1e-5);
 }
 
-/// The least of a preferred posture's values among all solutions, whatever full turns limits allow.
+/// Smallest value of a preferred posture among all solutions, with any full turns within limits.
 double min_preference(const chain& arm, const dual_quaternion<double>& goal,
                       const vector& posture) {
   double minimum = std::numeric_limits<double>::infinity();
@@ -392,7 +392,7 @@ TEST_CASE("solutions with prismatic joints do not depend on the unit of length")
     around.bodies = {{5, {vector3<double>(0, 0, 0), vector3<double>(0, 0, 0), .04 * unit}}};
     around.obstacles = {
         sphere<double>{translation(tip) + unit * vector3<double>(.05, .1, 0), .05 * unit}};
-    // The distance of a point beside the tip, and the angle to the way from the base to the tip.
+    // The distance of a point near the tip, and the angle to the vector from the base to the tip.
     const auto features = [&](const auto& a) {
       using S = std::decay_t<decltype(translation(a)[0])>;
       const vector3<S> p = translation(a), y(S(0), S(.3 * unit), S(0)), axis(S(0), S(0), S(1));
@@ -486,7 +486,7 @@ TEST_CASE("nan objectives and goals: an error if nan everywhere, otherwise not a
   const std::string at_start = " joints (0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
   const std::string all = "duet: inverse_kinematics: the objective is nan at all solutions found, "
                           "for example at the";
-  // A value that is nan with a slope that is 0, and one of which all is nan.
+  // An objective with value nan and gradient 0, and one with both nan.
   const auto constant = [](const auto& x) { return 0 * x[0] + std::nan(""); };
   const auto root = [](const auto& x) {
     using std::sqrt;
@@ -495,7 +495,7 @@ TEST_CASE("nan objectives and goals: an error if nan everywhere, otherwise not a
   CHECK(message(arm.pose(start), constant) == all + at_start);
   CHECK(message(arm.pose(start), root) == all + at_start);
   CHECK(message(position_goal({.5, 0, .5}), root).starts_with(all + " joints ("));
-  // Nothing is found: the objective was not asked.
+  // Without a solution the objective is not evaluated.
   CHECK(
       inverse_kinematics(arm, position_goal({3, 0, 0}), start, {.max_restarts = 1}, root).reason ==
       stop_reason::out_of_reach);
@@ -512,7 +512,7 @@ TEST_CASE("nan objectives and goals: an error if nan everywhere, otherwise not a
           inverse_kinematics(arm, std::vector{nowhere, nowhere}, start, out);
         }) == "duet: inverse_kinematics: goal 0" + goal);
 
-  // Nan on one side: from there, too, the other one is found.
+  // Nan on one side: the solution on the other side is found from a start on this one.
   vector other = start;
   other[0] = -.5;
   const auto half = [](const auto& x) {
