@@ -33,9 +33,9 @@
 #include <new>
 #include <type_traits>
 
-// No public aggregate keeps the previous contents of memory: each is default-initialized, as in `T
-// x;`, on memory that is filled with a pattern. house/initial_values finds those that are missing
-// here; equation_goal holds the user's function alone.
+// No public aggregate keeps the previous contents of memory: each is default-initialized, as by
+// `T x;`, on memory that is filled with a pattern. house/initial_values finds those that are
+// missing here; equation_goal holds the user's function alone.
 
 namespace test_planning_initial_values {
 
@@ -116,9 +116,9 @@ bool is_initialized() {
   alignas(T) static unsigned char memory[sizeof(T)];
   std::memset(memory, pattern, sizeof(T));
   T* const x = new (memory) T;
-  const bool is_initialized = !is_uninitialized(*x);
+  const bool has_values = !is_uninitialized(*x);
   x->~T();
-  return is_initialized;
+  return has_values;
 }
 
 struct without_value {
