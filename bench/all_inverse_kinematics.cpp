@@ -1,11 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// All solutions of random arms of every kind, for goals made from random joint coordinates, and of
-/// right-angled and public arms for goals made from round ones: whether these are among the
-/// solutions, with those that are beside the solutions of a goal next to it, how many solutions
-/// there are, and the processor's time for a goal. Arguments: the number of goals of each kind
-/// (1000), the seed (1).
+/// All solutions of random arms of every kind for goals of random configurations, and of
+/// right-angled and public arms for goals of configurations with round numbers: whether these
+/// configurations and the solutions of a nearby goal are among the solutions, the number of
+/// solutions, and the processor time per goal. Arguments: number of goals of each kind (1000), seed
+/// (1).
 
 #include <duet/core/random_source.hpp>
 #include <duet/mechanism/denavit_hartenberg.hpp>
@@ -31,7 +31,7 @@ using namespace duet;
 using std::numbers::pi;
 using joints_of_arm = std::array<joint<>, 6>;
 
-/// Joints in random places: any axes, points in a cube of side 2.
+/// Joints with random axes and points in a cube of side 2.
 joints_of_arm anywhere(random_source& random) {
   joints_of_arm joints;
   for (auto& j : joints) {
@@ -52,7 +52,7 @@ struct kind {
   std::function<void(joints_of_arm&, random_source&)> specialise;
 };
 
-/// Parameters of Denavit and Hartenberg, half of which are 0, angles right ones.
+/// Denavit–Hartenberg parameters with right angles and half of the lengths 0.
 void by_halves(joints_of_arm& joints, random_source& random) {
   for (auto& j : joints) {
     const auto length = [&] { return random.integer(0, 1) * random.uniform(.1, 1); };
@@ -73,7 +73,7 @@ double distance(const serial_chain<6>& arm, const Eigen::Matrix<double, 6, 1>& a
   return largest;
 }
 
-/// An arm, the coordinates that a goal is made of, and what was found.
+/// An arm, the configuration of a goal, and the solutions.
 struct task {
   serial_chain<6> arm;
   Eigen::Matrix<double, 6, 1> theta;
@@ -119,7 +119,7 @@ serial_chain<6> arm_of(const table& rows, int prismatic = -1) {
   return from_dh(all);
 }
 
-/// Arms in use whose wrists are general, and some that are not easy.
+/// Public arms without spherical wrist, and difficult ones.
 serial_chain<6> known_arm(random_source& random) {
   constexpr double q = pi / 2;
   constexpr std::array<table, 10> tables{
@@ -161,7 +161,7 @@ serial_chain<6> known_arm(random_source& random) {
   return arm_of(tables[std::size_t(random.integer(0, int(tables.size()) - 1))]);
 }
 
-/// Angles are multiples of a part of a half turn, lengths of 1/100, one in `zeros` of either 0.
+/// Arm with angles that are multiples of π / `parts`, and lengths of 1/100; one in `zeros` is 0.
 serial_chain<6> round_arm(random_source& random, int parts, int zeros, bool is_prismatic = false) {
   table rows;
   for (auto& row : rows) {
@@ -177,7 +177,7 @@ serial_chain<6> round_arm(random_source& random, int parts, int zeros, bool is_p
   return arm_of(rows, is_prismatic ? random.integer(0, 5) : -1);
 }
 
-/// The solutions beside those of a goal next to it that are not among those found, but regular.
+/// Number of regular solutions near those of a nearby goal that are missing.
 int lost_near_goal(const task& t, random_source& random) {
   const auto rotation = random.direction<3>(), direction = random.direction<3>();
   constexpr double size = 1e-6;
@@ -205,7 +205,7 @@ using make_task = std::function<task(random_source&)>;
 
 void report(const char* name, int count, random_source& random, bool is_structured,
             const make_task& make) {
-  constexpr int together = 100; // as asking for the time takes some itself
+  constexpr int together = 100; // because reading the clock takes time
   constexpr double singular = 1e-6;
   int regular = 0, missed = 0, unseen = 0, uncertain = 0, singular_count = 0, solutions = 0,
       max_solutions = 0, complex = 0;
@@ -273,11 +273,11 @@ int main(int argc, char** argv) {
          meet(j, 3);
        }},
       {"right angles, half of all lengths 0", by_halves},
-      {"one joint slides",
+      {"one prismatic joint",
        [](auto& j, auto& random) {
          j[std::size_t(random.integer(0, 5))].kind = joint_kind::prismatic;
        }},
-      {"two neighbours slide",
+      {"two adjacent prismatic joints",
        [](auto& j, auto& random) {
          const auto i = std::size_t(random.integer(0, 4));
          j[i].kind = j[i + 1].kind = joint_kind::prismatic;
@@ -299,19 +299,19 @@ int main(int argc, char** argv) {
          align(j, 1);
          align(j, 2);
        }},
-      {"two that are no neighbours slide",
+      {"two separate prismatic joints",
        [](auto& j, auto& random) {
          const auto i = std::size_t(random.integer(0, 3));
          const auto other = std::size_t(random.integer(int(i) + 2, 5));
          j[i].kind = j[other].kind = joint_kind::prismatic;
        }},
-      {"right angles, half of all lengths 0, two slide",
+      {"right angles, half of all lengths 0, two prismatic joints",
        [](auto& j, auto& random) {
          by_halves(j, random);
          const auto i = std::size_t(random.integer(0, 4));
          j[i].kind = j[std::size_t(random.integer(int(i) + 1, 5))].kind = joint_kind::prismatic;
        }},
-      {"three joints slide", [](auto& j, auto& random) {
+      {"three prismatic joints", [](auto& j, auto& random) {
          std::array<std::size_t, 6> order{0, 1, 2, 3, 4, 5};
          for (std::size_t i = 5; i > 0; --i) {
            std::swap(order[i], order[std::size_t(random.integer(0, int(i)))]);
@@ -344,6 +344,6 @@ int main(int argc, char** argv) {
   structured("right and no angles, zeros, round goals", [](auto& r) { return round_arm(r, 2, 3); });
   structured("multiples of 30 degrees, zeros, round goals",
              [](auto& r) { return round_arm(r, 6, 3); });
-  structured("right angles, zeros, one joint slides, round goals",
+  structured("right angles, zeros, one prismatic joint, round goals",
              [](auto& r) { return round_arm(r, 2, 3, true); });
 }

@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// How near `time_optimal_trajectory` with limits of jerk comes to the quickest motion. Durations
-/// are compared with the closed form on straight lines, and on curves with those of a search of
-/// another kind: over time in 300 equal steps of constant s⃛, limits at three moments of each.
-/// Prints the table of docs/time_parametrisation.md; how many seeds of each family may be said:
+/// Durations of `time_optimal_trajectory` with jerk limits relative to the minimum time. They are
+/// compared with the closed form on straight lines, and on curves with those of another method: a
+/// search over time in 300 equal steps of constant s⃛, with limits at three moments of each. Prints
+/// the table of docs/time_parametrisation.md. Argument: number of seeds of each family (20);
 /// build/bench/bench/duet_jerk_limits_bench 10
 
 #include "timing_families.hpp"
@@ -28,7 +28,7 @@ namespace {
 using namespace timing_bench;
 using curve = std::vector<duet::detail::joint_cubic<vector>>;
 
-/// The shortest time from rest to rest on a straight line.
+/// Minimum time from rest to rest on a straight line.
 double seven_phases(double distance, double v, double a, double j) {
   const auto rise = [&](double speed) {
     return speed > a * a / j ? speed / a + a / j : 2 * std::sqrt(speed / j);
@@ -44,8 +44,8 @@ double seven_phases(double distance, double v, double a, double j) {
   return 2 * rise(high);
 }
 
-/// The shortest time along a curve of a cubic B-spline s over n steps of time, by Newton's method
-/// with logarithms of what is left of limits. Only at three moments of each step are these kept.
+/// Minimum time along a curve for a cubic B-spline s over n steps of time, by a primal log-barrier
+/// method with Newton steps. Limits are satisfied at three moments of each step only.
 class reference {
 public:
   reference(const curve& path, const problem& limits, const vector& jerk,
@@ -74,7 +74,8 @@ public:
   }
 
 private:
-  /// f(limit, its derivative by the step, x, first coefficient, derivatives, order)
+  /// Calls f(limit, its derivative with respect to the step, x, first coefficient, derivatives of
+  /// x, order) for each constraint |x| ≤ limit.
   void for_each_bound(const Eigen::VectorXd& c, double h, const auto& f) const {
     std::size_t edge = 0;
     double begin = 0;
@@ -113,8 +114,8 @@ private:
       }
     }
   }
-  /// The third derivative and its slope, from edge to edge linear over a tenth of both: moments
-  /// would never come past a knot at which it jumps.
+  /// Third derivative and its derivative. The former is interpolated linearly over a tenth of both
+  /// edges at a knot, because the search could not move a moment past a jump.
   [[nodiscard]] std::pair<vector, vector> third(std::size_t edge, double s) const {
     const auto& q = path_[edge];
     for (const bool is_end : {false, true}) {
@@ -139,9 +140,11 @@ private:
     });
     return is_inside && h > 0 ? sum : std::numeric_limits<double>::infinity();
   }
-  /// By how much the model falls.
+  /// Takes a Newton step.
+  ///
+  /// \return the decrease that the model predicts
   double improve(double weight) {
-    const int n = n_ + 4; // the last is the step
+    const int n = n_ + 4; // the last variable is the step
     Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
     Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
     gradient[n - 1] = weight;
@@ -189,8 +192,9 @@ private:
 };
 
 void compare(unsigned seeds) {
-  std::printf("| | without | other search | worst (seed) | 2400 parts | worst (seed) | straight "
-              "| worst (seed) | ms |\n|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| | without | other search | worst (seed) | 2400 intervals | worst (seed) | straight "
+      "| worst (seed) | ms |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const family& kind : families) {
     statistics longer, sampled, finer, straight;
     stopwatch watch;
@@ -211,7 +215,7 @@ void compare(unsigned seeds) {
           duet::time_optimal_trajectory(p.waypoints, p.velocity, p.acceleration,
                                         {.curve = duet::waypoint_interpolation::natural_cubic});
       longer.add(motion.duration() / without.duration(), seed);
-      // Where both are at equal times is where the searches start.
+      // The searches start from the arc lengths of both motions at equal times.
       const auto problem =
           duet::detail::validated_input(p.waypoints, p.velocity, p.acceleration,
                                         duet::time_parametrisation_options{.jerk = limits});

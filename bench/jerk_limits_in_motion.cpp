@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// Whether `time_optimal_trajectory` with limits of jerk finds motions that are known to exist,
-/// with rates at both ends: along middle pieces of motions from rest to rest, with the rates that
-/// these have there. Prints the table of docs/time_parametrisation.md; how many seeds of each
-/// family, of four pieces each, may be said: build/bench/bench/duet_jerk_limits_in_motion_bench 50
+/// Whether `time_optimal_trajectory` with jerk limits finds motions that are known to exist, with
+/// velocities at both ends: along segments of motions from rest to rest, with the velocities of
+/// these motions. Prints the table of docs/time_parametrisation.md. Argument: number of seeds of
+/// each family, with four segments each (50); build/bench/bench/duet_jerk_limits_in_motion_bench 50
 
 #include "timing_families.hpp"
 
@@ -24,7 +24,7 @@ using namespace timing_bench;
 using timing = duet::detail::time_parametrisation_input<-16>;
 using motion = duet::detail::timed_path<vector>;
 
-/// Where a motion is at a time, and how fast.
+/// Arc length and path velocity of a motion at a time.
 std::array<double, 2> state_at(const motion& path, double t) {
   double s = 0;
   std::size_t i = 0;
@@ -35,7 +35,7 @@ std::array<double, 2> state_at(const motion& path, double t) {
   return {s + state.s, state.speed};
 }
 
-/// The largest share of a limit at 1000 times.
+/// Largest fraction of a limit that is used, at 1000 times.
 double max_fraction(const duet::joint_trajectory<-16>& q, const timing& limits) {
   double result = 0;
   for (int i = 0; i <= 1000; ++i) {
@@ -48,7 +48,7 @@ double max_fraction(const duet::joint_trajectory<-16>& q, const timing& limits) 
   return result;
 }
 
-/// The problem of a piece from one time to another, whose curve becomes that of the piece.
+/// Input for the segment of a motion between two times; `path` becomes the curve of the segment.
 timing part_of(timing problem, curve& path, const motion& complete, double from, double to) {
   const bool starts = from <= 0, ends = to >= complete.duration;
   auto& s = problem.polygon.s;

@@ -3,8 +3,8 @@
 /// \file
 /// Components of the self-motion of seven joints at random and at structured poses, against random
 /// restarts: solutions of inverse kinematics from 100 random configurations without limits that are
-/// on no component. Arguments: the number of poses of each family (50), the seed (1), and anything
-/// to list the poses at which something is not as it should be.
+/// on no component. Arguments: number of poses of each family (50), seed (1), and any third one to
+/// list the poses with open curves or missed solutions.
 /// build/bench/bench/duet_self_motion_bench
 
 #include <duet/core/random_source.hpp>
@@ -41,8 +41,8 @@ struct robot {
   arm_chain arm;
 };
 
-/// Shoulder and wrist spherical, or not: `shoulder` between axes 1 and 3, `elbow` and `wrist`
-/// across.
+/// Arm with a spherical shoulder and wrist, except for offsets: `shoulder` between axes 1 and 3,
+/// `elbow` and `wrist` perpendicular to the links.
 arm_chain redundant_arm(double shoulder, double elbow, double wrist) {
   constexpr double quarter_turn = pi / 2;
   const std::array<dh_row<>, 7> rows{{{.d = .3, .alpha = -quarter_turn},
@@ -73,10 +73,11 @@ bool is_on_curve(const component& curve, const joints& x) {
     min_distance = std::min(min_distance, (to_x - fraction * chord).norm());
   }
   return min_distance <
-         resolution * resolution; // a chord is nearer, and what singularities leave as well
+         resolution * resolution; // error bound of chords, which exceeds that of singular points
 }
 
-/// Straight lines between angles are on the tori of coaxial joints; of others it is not tried.
+/// True if a straight line in joint space leads to a point of the sample on the component, as on
+/// the tori of coaxial joints; other components are not tested.
 bool is_on_torus(const arm_chain& arm, const component& torus, const joints& x) {
   const auto goal = arm.pose(x);
   return std::any_of(torus.joints.begin(), torus.joints.end(), [&](const joints& s) {

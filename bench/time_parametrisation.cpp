@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 /// \file
-/// How near `time_optimal_trajectory` comes to the quickest motion. Durations are compared with
-/// those that sampled limits allow on 20 000 parts and more of the same curve, and of natural
-/// splines. Prints the table of docs/time_parametrisation.md; how many seeds of each family may be
-/// said: build/bench/bench/duet_time_parametrisation_bench 10
+/// Durations of `time_optimal_trajectory` relative to the minimum time with limits sampled on 20
+/// 000 segments or more of the same curve, and of natural cubic splines. Prints the table of
+/// docs/time_parametrisation.md. Argument: number of seeds of each family (100);
+/// build/bench/bench/duet_time_parametrisation_bench 10
 
 #include "timing_families.hpp"
 
@@ -30,7 +30,7 @@ curve pchip_curve(const problem& p) {
   return duet::detail::hermite_curve(polygon, duet::detail::pchip_slopes(polygon));
 }
 
-/// The natural spline over the length of the polygon, by its second derivatives.
+/// Natural cubic spline over the length of the polygon, by its second derivatives.
 curve natural_cubic_curve(const problem& p) {
   std::vector<vector> points;
   for (const vector& each : p.waypoints) {
@@ -62,8 +62,8 @@ curve natural_cubic_curve(const problem& p) {
   return result;
 }
 
-/// The shortest time along a curve with the limits sampled at both ends of each of 20 000 parts or
-/// more, 400 between waypoints, by bisection.
+/// Minimum time along a curve with the limits sampled at both ends of each of 20 000 segments or
+/// more, at least 400 between waypoints, by bisection.
 double reference(const curve& path, const vector& velocity, const vector& acceleration) {
   double length = 0;
   for (const auto& edge : path) {
@@ -133,9 +133,9 @@ double reference(const curve& path, const vector& velocity, const vector& accele
 }
 
 void compare(unsigned seeds) {
-  std::printf(
-      "| | same curve | worst (seed) | natural spline | worst (seed) | `smooth` | worst (seed) "
-      "| µs |\n|---|---|---|---|---|---|---|---|\n");
+  std::printf("| | same curve | worst (seed) | natural spline | worst (seed) | `natural_cubic` | "
+              "worst (seed) "
+              "| µs |\n|---|---|---|---|---|---|---|---|\n");
   for (const family& kind : families) {
     statistics same, spline, smooth;
     stopwatch watch;

@@ -26,7 +26,7 @@ namespace {
 
 using namespace duet;
 using std::numbers::pi;
-/// Of any number of joints, so that all is compiled once.
+/// Chain with its number of joints at run time, so that templates are compiled once.
 using chain = bounded_chain<16>;
 using vector = detail::joint_vector<double, -16>;
 using result = all_inverse_kinematics_result<-16>;
@@ -35,20 +35,20 @@ struct arm_kind {
   const char* name;
   bool parallel_2_3 = false, meet_1_2 = false, meet_4_5 = false, right_angles = false;
   std::vector<std::size_t> prismatic = {};
-  int meeting = -1, parallel = -1; ///< the first of three axes
+  int meeting = -1, parallel = -1; ///< first of three axes that meet or are parallel; −1: none
   solution_method method = solution_method::elimination;
-  int max_solutions = 16; ///< solutions
-  bool is_certain = true; ///< is their number?
+  int max_solutions = 16; ///< maximum number of solutions
+  bool is_certain = true; ///< true if the number of solutions is certain
 };
 
-/// Joints in random places, and in special ones to each other.
+/// Arm with random joint frames, except for the special geometry of a kind.
 chain random_arm(const arm_kind& kind, duet_test::random_source& random) {
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {
     const auto a = random.direction<4>();
     const auto at = [&] { return random.uniform(-1, 1); };
     joints[i].origin = {quaternion<double>(a[0], a[1], a[2], a[3]), {at(), at(), at()}};
-    if (kind.right_angles) { // each axis at right angles to the one before
+    if (kind.right_angles) { // each axis perpendicular to the previous one
       joints[i].origin = {quaternion<double>(std::sqrt(.5), random.sign() * std::sqrt(.5), 0, 0),
                           {at(), at(), at()}};
     }
@@ -66,7 +66,7 @@ chain random_arm(const arm_kind& kind, duet_test::random_source& random) {
     if (kind.meeting >= 0) {
       joints[std::size_t(kind.meeting + k)].origin.translation = {0, 0, 0};
     }
-    if (kind.parallel >= 0) { // or against each other
+    if (kind.parallel >= 0) { // or antiparallel
       joints[std::size_t(kind.parallel + k)].origin.rotation =
           k == 1 ? quaternion<double>(1) : quaternion<double>(0, 1, 0, 0);
     }
@@ -88,7 +88,7 @@ vector configuration(const chain& arm, duet_test::random_source& random) {
   return theta;
 }
 
-/// The largest difference, whole turns left out.
+/// Largest difference of a coordinate, modulo full turns.
 double distance(const chain& arm, const vector& a, const vector& b) {
   double largest = 0;
   for (int i = 0; i < arm.size(); ++i) {
@@ -109,12 +109,12 @@ double smallest_singular_value(const chain& arm, const vector& theta) {
   return Eigen::JacobiSVD<Eigen::MatrixXd>(j).singularValues().minCoeff();
 }
 
-/// How far the tip is from the goal, by matrices.
+/// Distance of the tip from the goal, by homogeneous matrices.
 double matrix_distance(const chain& arm, const vector& theta, const dual_quaternion<double>& goal) {
   return (transform_matrix(arm.pose(theta)) - transform_matrix(goal)).norm();
 }
 
-/// Is what is said of every solution true, are all different and in order?
+/// Checks the fields of every solution, and that solutions are distinct and in order.
 void check_solutions(const chain& arm, const result& found, const dual_quaternion<double>& goal) {
   for (std::size_t k = 0; k < found.solutions.size(); ++k) {
     const auto& s = found.solutions[k];
@@ -149,7 +149,7 @@ chain manseur_doty() {
   return from_dh(rows);
 }
 
-TEST_CASE("an arm with sixteen solutions") {
+TEST_CASE("all_inverse_kinematics: an arm with sixteen real solutions yields all of them") {
   Eigen::Matrix3d rotation;
   rotation << -.760117, -.641689, .102262, .133333, 0, .991071, -.635959, .766965, .085558;
   const auto goal =
@@ -185,7 +185,8 @@ void check_kind(const arm_kind& kind, int count) {
   }
 }
 
-TEST_CASE("the coordinates that the goal is made of are found") {
+TEST_CASE(
+    "all_inverse_kinematics: the configuration of a goal is among the solutions of general arms") {
   check_kind({"general"}, 40);
   check_kind({.name = "2 and 3 parallel", .parallel_2_3 = true}, 20);
   check_kind({.name = "1 and 2 meet", .meet_1_2 = true}, 20);
@@ -196,14 +197,14 @@ TEST_CASE("the coordinates that the goal is made of are found") {
               .meet_4_5 = true,
               .right_angles = true},
              20);
-  check_kind({.name = "1 slides", .prismatic = {0}}, 10);
-  check_kind({.name = "3 slides", .prismatic = {2}}, 10);
-  check_kind({.name = "6 slides", .prismatic = {5}}, 10);
+  check_kind({.name = "1 prismatic", .prismatic = {0}}, 10);
+  check_kind({.name = "3 prismatic", .prismatic = {2}}, 10);
+  check_kind({.name = "6 prismatic", .prismatic = {5}}, 10);
   for (std::size_t i = 0; i < 6; ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       CAPTURE(i);
       CAPTURE(j);
-      check_kind({.name = "two slide",
+      check_kind({.name = "two prismatic",
                   .prismatic = {i, j},
                   .method = solution_method::two_prismatic,
                   .max_solutions = 8},
@@ -212,7 +213,7 @@ TEST_CASE("the coordinates that the goal is made of are found") {
   }
 }
 
-TEST_CASE("closed forms") {
+TEST_CASE("all_inverse_kinematics: arms of special geometry are solved in closed form") {
   for (const int first : {0, 1, 2, 3}) {
     CAPTURE(first);
     check_kind({.name = "three axes meet",
@@ -237,7 +238,7 @@ TEST_CASE("closed forms") {
   for (const auto& prismatic :
        {std::vector<std::size_t>{0, 1, 2}, std::vector<std::size_t>{0, 2, 4},
         std::vector<std::size_t>{2, 3, 5}}) {
-    check_kind({.name = "three slide",
+    check_kind({.name = "three prismatic",
                 .prismatic = prismatic,
                 .method = solution_method::three_prismatic,
                 .max_solutions = 2},
@@ -245,8 +246,9 @@ TEST_CASE("closed forms") {
   }
 }
 
-/// Nothing has a length but the ways along the slides.
-TEST_CASE("axes that all meet in a point, two of them of slides") {
+/// Only the prismatic displacements have a length.
+TEST_CASE(
+    "all_inverse_kinematics: two prismatic joints and four axes through one point are solved") {
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {
     joints[i].origin = {quaternion<double>(std::sqrt(.5), std::sqrt(.5), 0, 0), {0, 0, 0}};
@@ -262,8 +264,9 @@ TEST_CASE("axes that all meet in a point, two of them of slides") {
   check_solutions(arm, found, goal);
 }
 
-/// Rounding takes such a tip as far from its goal as the ways are long.
-TEST_CASE("slides thousands of times as long as the arm") {
+/// Round-off in the position of the tip is proportional to the displacements.
+TEST_CASE("all_inverse_kinematics: prismatic displacements up to 1e6 arm lengths keep their "
+          "relative accuracy") {
   duet_test::random_source random(9);
   for (const auto& prismatic :
        {std::vector<std::size_t>{0, 4}, std::vector<std::size_t>{3, 5},
@@ -295,9 +298,9 @@ TEST_CASE("slides thousands of times as long as the arm") {
   }
 }
 
-/// In the first order that is tried twelve zeros are so close to each other that rounding moves
-/// each by as much as that, and most off the circle.
-TEST_CASE("zeros that crowd in one order") {
+/// In the first order of the joints twelve zeros are so close to each other that round-off
+/// displaces each by their distance, and most of them off the unit circle.
+TEST_CASE("all_inverse_kinematics: clustered zeros in one order of the joints lose no solutions") {
   struct crowded {
     std::array<std::array<double, 3>, 6> rows; ///< sign of α = ±π/2, a, d
     std::array<double, 6> theta;
@@ -346,8 +349,8 @@ TEST_CASE("zeros that crowd in one order") {
   }
 }
 
-/// Arms of right angles at quarter turns, where many solutions agree in each of the angles.
-TEST_CASE("goals made of quarter turns") {
+/// Arms with right angles in configurations of quarter turns, where many solutions share angles.
+TEST_CASE("all_inverse_kinematics: solutions that share angles are all found") {
   constexpr double q = pi / 2;
   const chain a = from_dh(std::array<dh_row<>, 6>{{{.a = .36, .d = .01, .alpha = q},
                                                    {.a = -.36, .d = .42, .alpha = q},
@@ -380,7 +383,7 @@ TEST_CASE("goals made of quarter turns") {
                                                    {0, 0, -1, .0775, 0, -.3425},
                                                    {0, 1, 0, 0, 0, 0},
                                                    {0, 0, -1, .076, 0, -.097}}};
-  for (std::size_t i = 0; i < 6; ++i) { // each point from the one before
+  for (std::size_t i = 0; i < 6; ++i) { // each point relative to the previous one
     const auto& [x, y, z, px, py, pz] = axes[i];
     xarm6[i].axis = {x, y, z};
     xarm6[i].origin = {quaternion<double>(1), {px, py, pz}};
@@ -388,8 +391,8 @@ TEST_CASE("goals made of quarter turns") {
   check(serial_chain<6>(xarm6), {1, 24, -24, -1, 25, 19}, .125, 8);
 }
 
-/// What a goal is made of is found where that is singular, or it is not certain that nothing is.
-TEST_CASE("singular goals are not called unreachable") {
+/// At a singular goal a solution is found, or the result is not called complete.
+TEST_CASE("all_inverse_kinematics: singular goals are not reported as certainly unreachable") {
   constexpr double q = pi / 2;
   const chain arm = from_dh(std::array<dh_row<>, 6>{{{.d = .4, .alpha = q},
                                                      {.a = .35},
@@ -423,7 +426,7 @@ struct arm_at {
   chain arm;
   vector theta;
 };
-/// \param angle  of the numbers in the task, by multiplication first: its round-off decides
+/// \param angle  maps numbers of the task to angles; the round-off of its product matters
 arm_at arm_of(const dh_task& task, const auto& angle, const auto& coordinate) {
   std::array<dh_row<>, 6> rows;
   vector theta(6);
@@ -438,7 +441,8 @@ arm_at arm_of(const dh_task& task, const auto& angle, const auto& coordinate) {
 double twelfths(double x) { return x * pi / 12; }
 double halves(double x) { return x * pi / 2; }
 
-TEST_CASE("closed forms do not call a singular goal unreachable") {
+TEST_CASE(
+    "all_inverse_kinematics: closed forms do not report a singular goal as certainly unreachable") {
   const std::array<dh_task, 3> tasks{
       {{{{{-.48, .47, -6}, {.48, 0, -6}, {-.27, -.43, -6}, {.2}, {-.18, -.2}, {-.28, 0, -6}}},
         {-3, 0, -7, -4, -2, 4}},
@@ -450,13 +454,13 @@ TEST_CASE("closed forms do not call a singular goal unreachable") {
     const auto [arm, theta] = arm_of(task, twelfths, twelfths);
     const result found = all_inverse_kinematics(arm, arm.pose(theta));
     CHECK_FALSE((found.solutions.empty() && found.is_complete));
-    // The equations of the first vanish identically: they decide nothing.
+    // The equations of the first one vanish identically, so that elimination is used.
     CHECK((&task != tasks.data() || found.method == solution_method::elimination));
   }
 }
 
-/// Of loops that are displaced by 1e-5 these pairs are complex.
-TEST_CASE("pairs of solutions beside singular ones") {
+/// In loops displaced by 1e-5 these pairs of solutions are complex.
+TEST_CASE("all_inverse_kinematics: pairs of solutions near a singular one are found") {
   const auto check = [](const arm_at& at, std::size_t count) {
     const result found = all_inverse_kinematics(at.arm, at.arm.pose(at.theta));
     CHECK(found.is_complete);
@@ -476,7 +480,7 @@ TEST_CASE("pairs of solutions beside singular ones") {
   CHECK(contains(at.arm, found, at.theta, 1e-5));
 }
 
-TEST_CASE("angles within a turn") {
+TEST_CASE("wrap_angle: angles are wrapped into half a turn as by std::remainder") {
   const double rotation = 2 * pi;
   for (const double start : {0., .3, -2., pi, 3 * pi, 5 * pi, 1e5}) {
     for (const double x : {start, -start, std::nextafter(start, 0), std::nextafter(start, 1e9)}) {
@@ -486,9 +490,8 @@ TEST_CASE("angles within a turn") {
   }
 }
 
-/// What the elimination finds is a part of what the closed form does: it loses solutions of special
-/// arms, never makes any up.
-TEST_CASE("closed forms and elimination") {
+/// Elimination finds a subset of the solutions of the closed form, without spurious ones.
+TEST_CASE("all_inverse_kinematics: closed forms and elimination agree") {
   duet_test::random_source random(11);
   int all = 0, both = 0;
   for (int k = 0; k < 10; ++k) {
@@ -508,7 +511,7 @@ TEST_CASE("closed forms and elimination") {
   CHECK(both == all);
 }
 
-/// Unimation's PUMA 560, in metres.
+/// PUMA 560 of Unimation, in metres.
 chain puma() {
   const std::array<dh_row<>, 6> rows{{{.alpha = pi / 2},
                                       {.a = .4318},
@@ -519,7 +522,7 @@ chain puma() {
   return from_dh(rows);
 }
 
-TEST_CASE("arms in use") {
+TEST_CASE("all_inverse_kinematics: UR5e and PUMA 560 have eight solutions in closed form") {
   const chain ur5e = robots::ur5e().table();
   vector theta(6);
   theta << .3, -1.1, 1.4, -.5, .9, .2;
@@ -536,8 +539,9 @@ TEST_CASE("arms in use") {
         solution_method::spherical_wrist);
 }
 
-/// The outer joints of a wrist turn against each other with the tip in place.
-TEST_CASE("configurations of which there are infinitely many") {
+/// The outer joints of a straight wrist have a self-motion.
+TEST_CASE("all_inverse_kinematics: a straight wrist yields a singular solution and an incomplete "
+          "result") {
   const chain arm = puma();
   vector theta(6);
   theta << .3, .4, -.7, .6, 0, .5;
@@ -555,15 +559,16 @@ TEST_CASE("configurations of which there are infinitely many") {
   CHECK(is_met);
 }
 
-/// Where two axes are nearly one, angles that count as one leave it open how the joints on them
-/// turn.
-TEST_CASE("beside a singularity what is missing is not called complete") {
+/// If two axes nearly coincide, angles that count as one do not determine their rotations
+/// separately.
+TEST_CASE(
+    "all_inverse_kinematics: near singularities a result with missing solutions is not complete") {
   const chain ur5e = robots::ur5e().table();
   duet_test::random_source random(4);
   for (const chain& arm : {ur5e, puma()}) {
     for (int k = 0; k < 10; ++k) {
       vector theta = configuration(arm, random);
-      for (const int joint : {2, 4}) { // the elbow and the wrist
+      for (const int joint : {2, 4}) { // elbow and wrist
         for (const double offset :
              {1e-1, 1e-2, 1e-4, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-9, 0.}) {
           CAPTURE(joint);
@@ -580,7 +585,8 @@ TEST_CASE("beside a singularity what is missing is not called complete") {
   }
 }
 
-TEST_CASE("whatever a search from random starts finds is among them") {
+TEST_CASE("all_inverse_kinematics: solutions of inverse_kinematics from random guesses are all "
+          "included") {
   duet_test::random_source random(3);
   const chain arm = random_arm({"general"}, random);
   const auto goal = arm.pose(configuration(arm, random));
@@ -599,9 +605,9 @@ TEST_CASE("whatever a search from random starts finds is among them") {
   CHECK(std::all_of(is_met.begin(), is_met.end(), [](bool b) { return b; }));
 }
 
-/// A general arm at a configuration where two branches meet, nearly: along the direction of its
-/// Jacobian that moves the tip least, its determinant changes sign.
-TEST_CASE("branches that meet") {
+/// General arm in a configuration near a branch point, where the determinant of the Jacobian
+/// changes sign.
+TEST_CASE("all_inverse_kinematics: solutions at a branch point have multiplicity 2, near it 1") {
   duet_test::random_source random(5);
   for (int k = 0; k < 5; ++k) {
     const chain arm = random_arm({"general"}, random);
@@ -616,7 +622,7 @@ TEST_CASE("branches that meet") {
       high += .1;
     }
     if (high >= pi) {
-      continue; // no singularity on this way
+      continue; // no singularity in this direction
     }
     low = high - .1;
     for (int i = 0; i < 200; ++i) {
@@ -641,7 +647,8 @@ TEST_CASE("branches that meet") {
   }
 }
 
-TEST_CASE("limits") {
+TEST_CASE(
+    "all_inverse_kinematics: within_limits states whether all joints are within their limits") {
   duet_test::random_source random(8);
   chain arm = random_arm({"general"}, random);
   const vector theta = configuration(arm, random);
@@ -663,29 +670,31 @@ TEST_CASE("limits") {
   CHECK(inside < int(found.solutions.size()));
 }
 
-TEST_CASE("what is no goal, and no arm of six joints") {
+TEST_CASE(
+    "all_inverse_kinematics: invalid goals and chains without six algebraic joints are rejected") {
   const auto goal = pose(quaternion<double>(1), Eigen::Vector3d(.1, .2, .3));
   CHECK_THROWS_WITH_AS(
       static_cast<void>(all_inverse_kinematics(chain(robots::panda().table()), goal)),
-      "duet: all_inverse_kinematics: the chain has 7 moving joints, not 6", invalid_input);
+      "duet: all_inverse_kinematics: the chain has 7 moving joints (expected 6)", invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(puma(), 2 * goal)),
                        "duet: all_inverse_kinematics: the goal is not a unit dual quaternion: "
                        "|p|^2 = 4, p.q = 0 (expected 1 and 0)",
                        invalid_input);
   duet_test::random_source random(1);
-  CHECK_THROWS_WITH_AS(static_cast<void>(all_inverse_kinematics(
-                           random_arm({.name = "", .prismatic = {0, 1, 2, 3}}, random), goal)),
-                       "duet: all_inverse_kinematics: 4 sliding joints, of which 3 are the most",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      static_cast<void>(all_inverse_kinematics(
+          random_arm({.name = "", .prismatic = {0, 1, 2, 3}}, random), goal)),
+      "duet: all_inverse_kinematics: the chain has 4 prismatic joints (expected at most 3)",
+      invalid_input);
   std::array<joint<>, 6> joints;
   joints[4].kind = joint_kind::helical;
   CHECK_THROWS_WITH_AS(
       static_cast<void>(all_inverse_kinematics(chain(serial_chain<6>(joints)), goal)),
-      "duet: all_inverse_kinematics: joint 4 is helical: its equations are not algebraic",
+      "duet: all_inverse_kinematics: joint 4 is helical (expected revolute or prismatic)",
       invalid_input);
 }
 
-TEST_CASE("nothing beyond reach") {
+TEST_CASE("all_inverse_kinematics: a goal beyond reach has no solutions, for certain") {
   const chain arm = manseur_doty();
   const result found =
       all_inverse_kinematics(arm, pose(quaternion<double>(1), Eigen::Vector3d(20, 1, 2)));

@@ -37,8 +37,8 @@ using result = all_inverse_kinematics_result<6>;
 constexpr std::array distances{1e-3,  3e-4,  1e-4,  1e-5,  1e-6,  3e-7,  1e-7,  1e-8, 1e-9,
                                1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16, 0.};
 
-/// A shoulder whose axes do not meet, an elbow, and a wrist whose axes meet: the outer ones are one
-/// where the coordinate of the middle one is 0.
+/// A shoulder whose axes do not meet, an elbow, and a spherical wrist, whose outer axes coincide if
+/// the coordinate of the middle joint is 0.
 chain with_wrist(duet_test::random_source& random, double tilt) {
   const auto length = [&] { return random.uniform(.1, 1); };
   return from_dh(std::array<dh_row<>, 6>{{{.a = length(), .d = length(), .alpha = pi / 2},
@@ -49,7 +49,7 @@ chain with_wrist(duet_test::random_source& random, double tilt) {
                                           {.d = length()}}});
 }
 
-/// Three parallel axes; the sixth is parallel to them where the coordinate of the fifth is 0.
+/// Three parallel axes; the sixth is parallel to them if the coordinate of the fifth joint is 0.
 chain with_parallel_axes(duet_test::random_source& random, bool has_offset) {
   const auto length = [&] { return random.uniform(.1, 1); };
   return from_dh(
@@ -61,8 +61,8 @@ chain with_parallel_axes(duet_test::random_source& random, bool has_offset) {
                                {.d = length()}}});
 }
 
-/// A shoulder whose axes meet, and a forearm as long as the upper arm: folded by a quarter turn of
-/// the third joint, the wrist is in the shoulder, whatever the first two do.
+/// A shoulder whose axes meet, and a forearm as long as the upper arm. Folded by a quarter turn of
+/// the third joint, the wrist is in the shoulder for all angles of the first two joints.
 chain with_folding_elbow(duet_test::random_source& random, double shoulder, double wrist) {
   const double length = random.uniform(.2, 1);
   return from_dh(std::array<dh_row<>, 6>{{{.d = random.uniform(.1, 1), .alpha = shoulder},
@@ -73,18 +73,18 @@ chain with_folding_elbow(duet_test::random_source& random, double shoulder, doub
                                           {.d = random.uniform(.1, 1)}}});
 }
 
-/// The same with axes 2 and 3 not parallel, and offsets of all lengths.
+/// As above with axes 2 and 3 not parallel, and with offsets.
 struct skew_elbow {
   std::array<dh_row<>, 6> rows;
   double fold; ///< the third coordinate that brings the wrist into the shoulder
 };
-/// \param miss  by which it comes no nearer than that
-/// \param apart  how far the axes of the shoulder are
+/// \param miss  smallest distance of the wrist from the shoulder
+/// \param separation  distance between the axes of the shoulder
 skew_elbow with_skew_elbow(duet_test::random_source& random, double miss, double separation = 0) {
   const auto angle = [&] { return random.uniform(.6, 1.5); };
   const double a2 = random.uniform(.2, 1), d2 = random.uniform(-.5, .5), alpha2 = angle(),
                alpha3 = angle(), across = d2 * std::sin(alpha2), wrist = angle();
-  // From the third axis the shoulder is as far as the wrist, and at the same height.
+  // Shoulder and wrist are at the same distance from the third axis, and at the same height.
   const double distance = std::hypot(a2, across), a3 = random.uniform(-.9, .9) * distance,
                normal = std::sqrt(distance * distance - a3 * a3), d4 = normal / std::sin(alpha3),
                d3 = -d2 * std::cos(alpha2) - d4 * std::cos(alpha3);
@@ -97,7 +97,7 @@ skew_elbow with_skew_elbow(duet_test::random_source& random, double miss, double
           std::atan2(-across, -a2) - std::atan2(-normal, a3)};
 }
 
-/// The arm from its tip to its base: coordinates are in the other order, times −1.
+/// The arm from its tip to its base: coordinates are in reverse order, with opposite signs.
 std::array<dh_row<>, 6> mirrored(const std::array<dh_row<>, 6>& rows) {
   std::array<dh_row<>, 6> result;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -123,7 +123,7 @@ double distance(const joints& a, const joints& b) {
   return largest;
 }
 
-/// The rotation vector and the way to a goal, to first order.
+/// Error twist to a goal: translation and rotation vector, to first order.
 wide_joints error_twist_to(const dual_quaternion<real_50>& goal,
                            const dual_quaternion<real_50>& tip) {
   const auto relative = rotation(goal) * conj(rotation(tip));
@@ -135,7 +135,7 @@ wide_joints error_twist_to(const dual_quaternion<real_50>& goal,
   return twist;
 }
 
-/// How far before the tip, along its z axis, that of the sixth joint, the fifth axis goes by.
+/// Distance of the fifth axis from the tip along the z axis of the tip, which is the sixth axis.
 double wrist_of(const chain& arm) {
   const detail::chain_screws axes(arm, joints::Zero().eval(), -1);
   const auto to_wrist = axes.size * detail::nearest_point(axes.joints[5], axes.joints[4]) +
@@ -143,8 +143,8 @@ double wrist_of(const chain& arm) {
   return dot(axes.joints[5].axis, to_wrist);
 }
 
-/// The solution in 50 digits that θ is near to, by Newton's method for where the wrist is: of the
-/// tip's way turns of the wrist are a part, whose squares are larger than a fold.
+/// Solution near θ with 50 digits, by Newton's method for the position of the wrist: the position
+/// of the tip depends on rotations of the wrist, whose second-order terms exceed the fold.
 wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goal,
                            const joints& theta) {
   const auto to_wrist = pose(quaternion<real_50>(real_50(1)),
@@ -166,8 +166,8 @@ wide_joints exact_solution(const chain& arm, const dual_quaternion<real_50>& goa
   return exact;
 }
 
-/// \param joint  whose coordinate is how far θ is from a singularity
-/// \param certain  as near as that it has to be certain that there are no others
+/// \param joint  joint whose coordinate is the distance of θ from a singularity
+/// \param certain  smallest distance at which the result has to be complete
 void check_near(const chain& arm, joints theta, int joint, solution_method method,
                 double certain = 1e-12, std::span<const double> offsets = distances) {
   const double singular = theta[joint];
@@ -186,7 +186,7 @@ void check_near(const chain& arm, joints theta, int joint, solution_method metho
       }
       const bool is_certain = offset >= 1e-12;
       CHECK((found.is_complete == is_certain || (is_certain && offset < certain)));
-      if (!is_certain) { // the joints move with the tip in place
+      if (!is_certain) { // the joints have a self-motion
         continue;
       }
       CHECK(count_of(found) == count);
@@ -199,7 +199,7 @@ void check_near(const chain& arm, joints theta, int joint, solution_method metho
         const wide_joints exact = exact_solution(arm, goal, s.joints);
         CHECK(double(error_twist_to(goal, arm.pose(exact)).norm()) < 1e-35);
         CHECK(distance(exact.cast<double>(), s.joints) < rounding);
-        met += distance(theta, s.joints) < std::min(rounding, .05); // others are .1 away
+        met += distance(theta, s.joints) < std::min(rounding, .05); // others differ by more than .1
         for (const auto& other : found.solutions) {
           CHECK((&s == &other || distance(s.joints, other.joints) > .1));
         }
@@ -213,7 +213,7 @@ double smallest_singular_value(const chain& arm, const joints& theta) {
   return detail::smallest_singular_value(jacobian(arm, theta, frame::hybrid));
 }
 
-/// With one coordinate singular, beside which nothing else is.
+/// Random configuration with one singular coordinate, and no other singularity nearby.
 joints configuration(const chain& arm, duet_test::random_source& random, int joint,
                      double singular = 0) {
   constexpr double offset = 2e-3;
@@ -228,7 +228,7 @@ joints configuration(const chain& arm, duet_test::random_source& random, int joi
   return theta;
 }
 
-TEST_CASE("beside the singularity of a wrist") {
+TEST_CASE("all_inverse_kinematics: near a wrist singularity all solutions are accurate") {
   duet_test::random_source random(1);
   for (int k = 0; k < 5; ++k) {
     CAPTURE(k);
@@ -237,7 +237,9 @@ TEST_CASE("beside the singularity of a wrist") {
   }
 }
 
-TEST_CASE("beside the singularity of a wrist after three parallel axes") {
+TEST_CASE("all_inverse_kinematics: near a wrist singularity of an arm with three parallel axes all "
+          "solutions "
+          "are accurate") {
   duet_test::random_source random(2);
   for (int k = 0; k < 5; ++k) {
     CAPTURE(k);
@@ -250,7 +252,7 @@ void check_near_fold(const chain& arm, int elbow, double fold, duet_test::random
   const std::span<const double> down_to_1e_12 = std::span(distances).first(12);
   joints theta = configuration(arm, random, elbow, fold);
   check_near(arm, theta, elbow, solution_method::spherical_wrist, 1e-8, down_to_1e_12);
-  for (const double offset : {1e-14, 1e-16, 0.}) { // the joints move with the tip in place
+  for (const double offset : {1e-14, 1e-16, 0.}) { // the joints have a self-motion
     CAPTURE(offset);
     theta[elbow] = fold + offset;
     const result found = all_inverse_kinematics(arm, arm.pose(theta));
@@ -262,7 +264,8 @@ void check_near_fold(const chain& arm, int elbow, double fold, duet_test::random
   }
 }
 
-TEST_CASE("beside an elbow that is folded onto the shoulder") {
+TEST_CASE(
+    "all_inverse_kinematics: near an elbow folded onto the shoulder all solutions are accurate") {
   duet_test::random_source random(4);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
@@ -272,7 +275,8 @@ TEST_CASE("beside an elbow that is folded onto the shoulder") {
   }
 }
 
-TEST_CASE("beside an elbow that is folded, with axes 2 and 3 not parallel") {
+TEST_CASE("all_inverse_kinematics: near a folded elbow with skew axes 2 and 3 all solutions are "
+          "accurate") {
   duet_test::random_source random(5);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
@@ -281,7 +285,9 @@ TEST_CASE("beside an elbow that is folded, with axes 2 and 3 not parallel") {
   }
 }
 
-TEST_CASE("beside an elbow that folds a wrist of two axes onto a shoulder of three") {
+TEST_CASE("all_inverse_kinematics: near an elbow that folds a wrist of two axes onto a spherical "
+          "shoulder "
+          "all solutions are accurate") {
   duet_test::random_source random(6);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
@@ -290,7 +296,8 @@ TEST_CASE("beside an elbow that folds a wrist of two axes onto a shoulder of thr
   }
 }
 
-TEST_CASE("beside a fold that comes no nearer than 1e-5") {
+TEST_CASE("all_inverse_kinematics: near a fold that misses the shoulder by 1e-5 all solutions are "
+          "accurate") {
   duet_test::random_source random(10);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
@@ -318,8 +325,9 @@ TEST_CASE("beside a fold that comes no nearer than 1e-5") {
   }
 }
 
-/// The less they are apart, the fewer digits the equations have.
-TEST_CASE("beside a fold next to a shoulder whose axes are a little apart") {
+/// The equations lose digits as the separation of the axes decreases.
+TEST_CASE("all_inverse_kinematics: near a fold onto a shoulder with separated axes the solution is "
+          "found") {
   duet_test::random_source random(7);
   for (const double separation : {1e-2, 1e-3}) {
     int met = 0, certain = 0;
@@ -338,7 +346,9 @@ TEST_CASE("beside a fold next to a shoulder whose axes are a little apart") {
   }
 }
 
-TEST_CASE("shoulders whose axes are next to nothing apart: beside the fold nothing is certain") {
+TEST_CASE("all_inverse_kinematics: near a fold onto a shoulder with nearly intersecting axes the "
+          "result is "
+          "not complete") {
   duet_test::random_source random(8);
   for (const double separation : {1e-4, 1e-6, 1e-8}) {
     for (int k = 0; k < 20; ++k) {
@@ -351,8 +361,8 @@ TEST_CASE("shoulders whose axes are next to nothing apart: beside the fold nothi
   }
 }
 
-/// Against 50 digits, as far from the fold as digits go.
-TEST_CASE("where a turning vector has a small length") {
+/// Against 50 digits.
+TEST_CASE("subproblem3: angles at which a rotating vector has a small length are accurate") {
   duet_test::random_source random(9);
   const auto any = [&] {
     const auto x = random.direction<3>();
@@ -362,7 +372,7 @@ TEST_CASE("where a turning vector has a small length") {
     const detail::vector3d n = any(), v = any();
     const detail::rotating_vector fixed(n, v), moved(n, v, -1 * fixed.at(.4));
     for (const double length : {1e-2, 1e-5, 1e-8, 1e-11}) {
-      // By .6 beside it: .8² + .6² = 1.
+      // Displaced by .6 of the length along n: .8² + .6² = 1.
       const detail::rotating_vector perpendicular(n, v, .6 * length * n - fixed.at(.4));
       const auto found = detail::subproblem3(k % 2 == 0 ? moved : perpendicular, length);
       REQUIRE(found.size() == 2);
@@ -383,8 +393,10 @@ TEST_CASE("where a turning vector has a small length") {
   }
 }
 
-/// Whatever else is nearly singular.
-TEST_CASE("in the singularity of a wrist") {
+/// Random configurations, which may be near other singularities, too.
+TEST_CASE("all_inverse_kinematics: in a wrist singularity a singular solution is found and the "
+          "result is not "
+          "complete") {
   duet_test::random_source random(3);
   for (int k = 0; k < 200; ++k) {
     CAPTURE(k);

@@ -25,7 +25,7 @@ duet::detail::three_vector<double> random_vector(duet_test::random_source& rando
   return {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
 }
 
-/// A loop of axes in random places that is closed at θ.
+/// Loop with random axes that is closed at θ.
 loop_equation closed_at(const six_coordinates& theta, const std::vector<std::size_t>& prismatic,
                         duet_test::random_source& random) {
   loop_equation loop;
@@ -53,9 +53,11 @@ double difference(const loop_equation& loop, const six_coordinates& a, const six
 
 } // namespace
 
-/// Newton's method would make up for a start that is none, in another order of the joints too.
+/// Elimination is tested alone, because Newton's method and other orders of the joints would hide
+/// wrong initial guesses.
 TEST_CASE(
-    "the determinant vanishes at the angle of a solution, where all its coordinates come out") {
+    "elimination: the determinant vanishes at the angle of a solution, and all coordinates of the "
+    "solution result from it") {
   duet_test::random_source random(1);
   for (const std::vector<std::size_t>& prismatic :
        {std::vector<std::size_t>{}, {0}, {1}, {3}, {4}}) {

@@ -27,10 +27,10 @@ using vector = Eigen::Matrix<double, 3, 1>;
 using one = Eigen::Matrix<double, 1, 1>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The shortest time from rest to rest on a straight line: seven phases with constant jerk, fewer
-/// where the largest velocity or acceleration is not reached.
+/// Minimum time from rest to rest on a straight line: seven phases with constant jerk, fewer if the
+/// velocity or acceleration limit is not reached.
 double seven_phases(double distance, double v, double a, double j) {
-  // How long it takes to a speed.
+  // Duration of the acceleration from rest to a speed.
   const auto rise = [&](double speed) {
     return speed > a * a / j ? speed / a + a / j : 2 * std::sqrt(speed / j);
   };
@@ -45,7 +45,7 @@ double seven_phases(double distance, double v, double a, double j) {
   return 2 * rise(high);
 }
 
-/// The largest share of a limit at many times, between which that can't change by much.
+/// Largest fraction of a limit that is used, sampled at equidistant times.
 template <class Trajectory, class V>
 double max_fraction(const Trajectory& q, const V& v, const V& a, const V& j, int count) {
   double result = 0;
@@ -61,7 +61,8 @@ double max_fraction(const Trajectory& q, const V& v, const V& a, const V& j, int
 
 std::vector<double> numbers(const vector& x) { return {x.begin(), x.end()}; }
 
-/// Steps of all joints, of one at a time, of very different lengths, and back and forth.
+/// Random waypoints with, by `kind`: steps of all joints, of one joint at a time, of very different
+/// lengths, and back and forth.
 std::vector<vector> random_waypoints(duet_test::random_source& random, int kind) {
   std::vector<vector> result{vector(0, 0, 0)};
   for (int i = random.integer(2, 8); i > 0; --i) {
@@ -80,7 +81,8 @@ std::vector<vector> random_waypoints(duet_test::random_source& random, int kind)
 
 } // namespace
 
-TEST_CASE("one joint: the seven phases of the closed form, and fewer") {
+TEST_CASE(
+    "time_optimal_trajectory: one joint with a jerk limit takes the time of the closed form") {
   for (const double distance : {1e-3, .1, 1.0, 30.0}) {
     for (const double v : {2.0, infinity}) {
       for (const double j : {.5, 10.0, 400.0}) {
@@ -97,7 +99,7 @@ TEST_CASE("one joint: the seven phases of the closed form, and fewer") {
       }
     }
   }
-  // Backwards, by way of a waypoint, and in other units: the same motion.
+  // The same motion backwards, through a waypoint, and in other units.
   const auto time = [](double scale, double units) {
     const std::vector<one> line{one(0.0), one(-.3 * scale), one(-1 * scale)};
     return units * time_optimal_trajectory(line, std::array{2 * scale * units},
@@ -110,20 +112,22 @@ TEST_CASE("one joint: the seven phases of the closed form, and fewer") {
   CHECK(time(1e-6, 1e-3) == doctest::Approx(time(1, 1)).epsilon(1e-3));
 }
 
-TEST_CASE("straight on, the slowest joint sets the pace") {
+TEST_CASE("time_optimal_trajectory: on a line with jerk limits the slowest joint determines the "
+          "duration") {
   const std::vector<vector> ends{vector(0, 1, 0), vector(1, .5, 0)};
   const vector v(1, 1, 1e-3), a(4, .5, 1e-3);
   for (const double j : {1.0, 20.0}) {
     const vector jerk(3 * j, j, 1e-3);
     const auto q = time_optimal_trajectory(ends, v, a, {.jerk = numbers(jerk)});
-    // The second joint goes half as far.
+    // The second joint moves half as far.
     const double exact = seven_phases(1, 1, 1, std::min(3 * j, 2 * j));
     CHECK(q.duration() >= exact * (1 - 1e-12));
     CHECK(q.duration() < exact * 1.02);
   }
 }
 
-TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends") {
+TEST_CASE(
+    "time_optimal_trajectory: random curves satisfy all jerk limits and are at rest at both ends") {
   duet_test::random_source random(3);
   for (int k = 0; k < 120; ++k) {
     CAPTURE(k);
@@ -150,7 +154,7 @@ TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends")
     for (std::size_t i = 0; i < waypoints.size(); ++i) {
       CHECK((q(q.times()[i]).value - waypoints[i]).norm() < 1e-9);
     }
-    // Never quicker than without limits of jerk.
+    // Jerk limits do not shorten the motion.
     CHECK(q.duration() >
           .99 * time_optimal_trajectory(waypoints, v, a,
                                         {.curve = waypoint_interpolation::natural_cubic})
@@ -159,7 +163,8 @@ TEST_CASE("on many curves no limit is exceeded, and it is at rest at both ends")
 }
 
 TEST_CASE(
-    "a path's parameter rises, also where it is in motion at ends, and begins and ends there") {
+    "reference_parametrisation: s increases from the first to the last arc length, at rest or "
+    "in motion at its ends") {
   duet_test::random_source random(8);
   for (int k = 0; k < 200; ++k) {
     CAPTURE(k);
@@ -187,8 +192,11 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("one joint from rate to rate: the phases of the closed form") {
-  // From v0 with the largest acceleration at once, which then falls to none at the largest rate.
+TEST_CASE("time_optimal_trajectory: one joint in motion at both ends takes the time of the closed "
+          "form with "
+          "jerk limits") {
+  // From `from` with the maximum acceleration at once, which decreases to 0 at the maximum
+  // velocity.
   const auto rise = [](double from, double v, double a, double j) {
     const double constant = (v - from - a * a / (2 * j)) / a, ramp = a / j;
     REQUIRE(constant >= 0);
@@ -209,14 +217,15 @@ TEST_CASE("one joint from rate to rate: the phases of the closed form") {
             ends, std::array{v}, std::array{a},
             {.initial_velocities = {sign * first}, .final_velocities = {sign * last}, .jerk = {j}});
         CHECK(q.duration() >= exact * (1 - 1e-12));
-        CHECK(q.duration() < exact * (first < .1 ? 1.03 : 1.01)); // nearly at rest: by coarse steps
+        CHECK(q.duration() <
+              exact * (first < .1 ? 1.03 : 1.01)); // nearly at rest: intervals are coarse
         CHECK(max_fraction(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
         CHECK(q(0).velocity[0] == doctest::Approx(sign * first).epsilon(1e-12));
         CHECK(q(q.duration()).velocity[0] == doctest::Approx(sign * last).epsilon(1e-9));
       }
     }
   }
-  // At its limit at both ends: as fast all the way.
+  // At the velocity limit at both ends: constant velocity.
   const std::vector<one> ends{one(0.0), one(0.0), one(1.0), one(2.0)};
   for (const double v : {.3, 1.0, 7.0}) {
     const auto q =
@@ -226,7 +235,7 @@ TEST_CASE("one joint from rate to rate: the phases of the closed form") {
     CHECK(q.duration() < 2 / v * 1.002);
     CHECK(max_fraction(q, one(v), one(2.0), one(5.0), 3000) <= 1 + 1e-12);
   }
-  // Away from the goal at first, and back from beyond it.
+  // It moves away from the goal at first, and back to it from beyond.
   const std::vector<one> line{one(0.0), one(1.0)};
   const auto q = time_optimal_trajectory(
       line, std::array{1.0}, std::array{2.0},
@@ -237,7 +246,9 @@ TEST_CASE("one joint from rate to rate: the phases of the closed form") {
   CHECK(q(q.duration() - .01).value[0] > 1);
 }
 
-TEST_CASE("from rates of motions that are known, along a middle piece, none is refused") {
+TEST_CASE(
+    "time_optimal_trajectory: a segment of a feasible motion, with its velocities at the ends, is "
+    "feasible") {
   duet_test::random_source random(9);
   for (int k = 0; k < 24; ++k) {
     CAPTURE(k);
@@ -252,7 +263,7 @@ TEST_CASE("from rates of motions that are known, along a middle piece, none is r
     auto& polygon = problem.polygon;
     const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
     const auto complete = detail::timed_within_jerks(problem, curve);
-    // Where and how fast it is at two times.
+    // Arc lengths and path velocities at two times.
     double from = random.uniform(0, .8) * complete.duration;
     const double to =
         std::min(complete.duration, from + random.uniform(.02, 1) * complete.duration);
@@ -293,14 +304,15 @@ TEST_CASE("from rates of motions that are known, along a middle piece, none is r
 }
 
 TEST_CASE(
-    "from and to any rates limits are kept, or a part of the rates is named that is possible") {
+    "time_optimal_trajectory: with random velocities at the ends the jerk limits are satisfied, or "
+    "the message states a feasible fraction") {
   duet_test::random_source random(10);
   const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30), rest(0, 0, 0);
   int infeasible = 0;
   for (int k = 0; k < 16; ++k) {
     CAPTURE(k);
     const auto waypoints = random_waypoints(random, k % 4);
-    // In any direction: where it is not that of the way, the curve turns.
+    // Velocities in random directions, which the curve has at its ends.
     const double size = k % 6 == 5 ? .6 : .1;
     vector first = size * vector(random.normal(), random.normal(), .2);
     vector last = size * vector(random.normal(), random.normal(), .2);
@@ -313,7 +325,7 @@ TEST_CASE(
                                       .jerk = numbers(j)});
     };
     std::string message = duet_test::message_of([&] { (void)timed(); });
-    if (message.find("beyond its limit") != std::string::npos) {
+    if (message.find("in absolute value") != std::string::npos) {
       const double max_ratio = std::max(first.cwiseQuotient(v).cwiseAbs().maxCoeff(),
                                         last.cwiseQuotient(v).cwiseAbs().maxCoeff());
       CHECK(max_ratio > 1);
@@ -323,13 +335,13 @@ TEST_CASE(
     }
     if (!message.empty()) {
       ++infeasible;
-      const bool is_first = message.find("from the initial rates, only from ") != std::string::npos;
-      const auto at = message.find(is_first ? "only from " : "only up to ");
+      const std::string before = "(expected at most ";
+      const auto at = message.find(before);
       REQUIRE(at != std::string::npos);
-      const double fraction = std::stod(message.substr(at + (is_first ? 10 : 11)));
+      const double fraction = std::stod(message.substr(at + before.size()));
       CHECK(fraction > 0);
       CHECK(fraction < 1);
-      CHECK(message.find(" of them, by reason of joint ") != std::string::npos);
+      CHECK(message.find(" times as large; joint ") != std::string::npos);
       first *= .95 * fraction;
       last *= .95 * fraction;
     }
@@ -343,7 +355,9 @@ TEST_CASE(
   CHECK(infeasible < 8);
 }
 
-TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
+TEST_CASE(
+    "time_optimal_trajectory: seven joints in motion at the start satisfy their jerk limits, and a "
+    "joint that cannot stop in time is rejected") {
   using seven = Eigen::Matrix<double, 7, 1>;
   duet_test::random_source random(11);
   const auto random_vector = [&] {
@@ -366,7 +380,7 @@ TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
     CHECK(max_fraction(q, v, a, j, 500) <= 1 + 1e-10);
     CHECK((q(0).velocity - first).norm() < 1e-12);
   }
-  // From 1 to rest over way without acceleration there: way ≥ √(2 / j) / 3.
+  // From velocity 1 to rest, without acceleration at the end: distance ≥ √(2 / j) / 3.
   const double min_length = std::sqrt(2.0 / 8) / 3;
   const auto stop = [&](double distance) {
     const std::vector<one> line{one(0.0), one(distance)};
@@ -378,13 +392,16 @@ TEST_CASE("seven joints in motion at ends, and one that has no way to stop") {
   CHECK(stop(min_length * 1.01) == "");
   const std::string message = stop(min_length * .9);
   CAPTURE(message);
-  CHECK(message.find(
-            "duet: time_optimal_trajectory: the limits could not be kept from the initial rates, "
-            "only from 0.9") == 0);
-  CHECK(message.find(" of them, by reason of joint 0, whose rate is 1") != std::string::npos);
+  CHECK(message.find("duet: time_optimal_trajectory: no motion from the initial velocities is "
+                     "found within the "
+                     "limits (expected at most 0.9") == 0);
+  CHECK(message.find(" times as large; joint 0, with the velocity 1, is nearest to its limits)") !=
+        std::string::npos);
 }
 
-TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are derivatives") {
+TEST_CASE("joint_trajectory: with jerk limits accelerations are continuous, and velocities, "
+          "accelerations "
+          "and jerks are consistent derivatives") {
   duet_test::random_source random(4);
   const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
   for (int k = 0; k < 4; ++k) {
@@ -403,7 +420,7 @@ TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are
       CHECK(((now.acceleration - before.acceleration) / h).cwiseQuotient(j).cwiseAbs().maxCoeff() <=
             off);
       CHECK(((now.velocity - before.velocity) / h).cwiseQuotient(a).cwiseAbs().maxCoeff() <= off);
-      // Simpson's and the trapezoidal rule, whose errors are of third order at most.
+      // Simpson's rule and the trapezoidal rule, with errors of third order at most.
       const vector rate = (now.velocity + before.velocity) / 2;
       const vector change = (now.acceleration + before.acceleration) / 2;
       CHECK(((now.value - before.value) / h - rate).cwiseQuotient(j).cwiseAbs().maxCoeff() <
@@ -418,12 +435,14 @@ TEST_CASE("accelerations don't jump, and velocities, accelerations and jerks are
       before = now;
       jerk_before = jerk;
     }
-    CHECK(smooth > .9 * count); // not where jerks jump
+    CHECK(smooth > .9 * count); // the others are at jumps of the jerk
   }
 }
 
-TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digits, and are near") {
-  // At u by Bernstein coefficients.
+TEST_CASE("path_velocity_constraints: bounds on a segment enclose velocities, accelerations and "
+          "jerks in 50 "
+          "digits, closely") {
+  // Value at u of a polynomial with these Bernstein coefficients.
   const auto bernstein = [](const auto& at, int degree, double u) {
     double sum = 0, binomial = 1;
     for (int k = 0; k <= degree; ++k) {
@@ -481,7 +500,7 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
               bernstein([&](std::size_t r) { return detail::times(rates[r], c); }, 9, u);
           CHECK(rate * rate * square / (v[joint] * v[joint]) <= square_rate * (1 + 1e-12) + 1e-28);
           const auto check = [&](const real_50& exact, const auto& all, const auto& beyond) {
-            // The middle two coefficients are moved; so it is exact at ends.
+            // Only the middle two coefficients are displaced; the bound is exact at the ends.
             const auto moved = [&](double sign) {
               return bernstein(
                   [&](std::size_t r) {
@@ -505,7 +524,7 @@ TEST_CASE("bounds over pieces enclose rates, accelerations and jerks in 50 digit
   CHECK(max_width < .5);
 }
 
-TEST_CASE("where a knot is next to a node, the piece between them has the same law") {
+TEST_CASE("reference_parametrisation: a knot next to a node does not change the time scaling") {
   std::vector<double> arc_lengths;
   for (int i = 0; i <= 16; ++i) {
     arc_lengths.push_back(i * i * (3 - i / 8.0));
@@ -537,7 +556,7 @@ TEST_CASE("where a knot is next to a node, the piece between them has the same l
       const auto& expected = uncut.pieces[path[i].interval];
       CHECK(scaling.growth == expected.scaling.growth);
       CHECK(scaling.speed ==
-            doctest::Approx(std::sqrt(squared_velocity[0])).epsilon(.2)); // no noise of differences
+            doctest::Approx(std::sqrt(squared_velocity[0])).epsilon(.2)); // no cancellation
       CHECK(std::abs(scaling.acceleration - expected.scaling.acceleration -
                      scaling.growth * path[i].from) < 1e-14);
       CHECK(line.c0[0] == doctest::Approx(length).epsilon(1e-13));
@@ -547,7 +566,8 @@ TEST_CASE("where a knot is next to a node, the piece between them has the same l
   }
 }
 
-TEST_CASE("infinite limits are none; what can't be done is said") {
+TEST_CASE(
+    "time_optimal_trajectory: infinite jerk limits have no effect, and invalid ones are rejected") {
   const std::vector<vector> waypoints{vector(0, 1, 0), vector(1, .5, .3), vector(2, .7, -.2)};
   const vector v(1, 1, 1), a(2, 3, 4);
   const std::vector<double> none(3, infinity), j{20, 20, 20};
@@ -560,28 +580,31 @@ TEST_CASE("infinite limits are none; what can't be done is said") {
     return duet_test::message_of([&] { (void)time_optimal_trajectory(waypoints, v, a, options); });
   };
   CHECK(error_message({.jerk = {1, 2}}) ==
-        "duet: time_optimal_trajectory: 2 jerk limits for 3 joints");
+        "duet: time_optimal_trajectory: 2 jerk limits (expected 3, one per joint)");
   CHECK(error_message({.jerk = {1, 2, 0}}) ==
-        "duet: time_optimal_trajectory: the jerk limit of joint 2 is 0");
+        "duet: time_optimal_trajectory: the jerk limit of joint 2 is 0 (expected positive)");
   CHECK(error_message({.initial_velocities = {.1, 0, -1.5}, .jerk = j}) ==
-        "duet: time_optimal_trajectory: the initial rate of joint 2 is -1.5, beyond its limit 1");
-  CHECK(error_message({.final_velocities = {.1, 1.25, 0}, .jerk = j}) ==
-        "duet: time_optimal_trajectory: the final rate of joint 1 is 1.25, beyond its limit 1");
+        "duet: time_optimal_trajectory: the initial velocity of joint 2 is -1.5 (expected at most "
+        "1 in "
+        "absolute value)");
+  CHECK(
+      error_message({.final_velocities = {.1, 1.25, 0}, .jerk = j}) ==
+      "duet: time_optimal_trajectory: the final velocity of joint 1 is 1.25 (expected at most 1 in "
+      "absolute value)");
   CHECK(time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {0, 0, 0}, .jerk = j})
             .duration() > 0);
   CHECK(error_message({.curve = waypoint_interpolation::pchip, .jerk = j}) ==
-        "duet: time_optimal_trajectory: limits of jerk ask for a curve with continuous second "
-        "derivatives, as waypoint_interpolation::natural_cubic where no joint leaves its range: at "
-        "waypoint 1 that "
-        "of joint 1 jumps");
-  // Straight on every curve is smooth, and all waypoints in one place are no way.
+        "duet: time_optimal_trajectory: the second derivative of joint 1 jumps at waypoint 1 (with "
+        "jerk limits expected continuous, as of waypoint_interpolation::natural_cubic if no joint "
+        "leaves its range)");
+  // On a line every interpolating curve is smooth, and coinciding waypoints are a path of length 0.
   const std::vector<vector> straight{vector(0, 0, 0), vector(1, 2, 3), vector(1, 2, 3),
                                      vector(3, 6, 9)};
   CHECK(time_optimal_trajectory(straight, v, a, {.curve = waypoint_interpolation::pchip, .jerk = j})
             .duration() > 0);
   CHECK(time_optimal_trajectory(std::vector<vector>{v, v}, v, a, {.jerk = j}).duration() == 0);
 
-  // A chain's joint that leaves its range, and with a wider range.
+  // A joint of a chain leaves its range, and does not with a wider one.
   for (const double range : {1.0, 2.0}) {
     std::array<joint<>, 3> joints;
     for (auto& each : joints) {
@@ -592,7 +615,8 @@ TEST_CASE("infinite limits are none; what can't be done is said") {
         [&] { (void)time_optimal_trajectory(serial_chain<3>(joints), back, a, {.jerk = j}); });
     CHECK(message.empty() == (range == 2));
     if (range == 1) {
-      CHECK(message.find("at waypoint 1 that of joint 0 jumps") != std::string::npos);
+      CHECK(message.find("the second derivative of joint 0 jumps at waypoint 1") !=
+            std::string::npos);
     }
   }
 }

@@ -29,7 +29,8 @@ M random_matrix(duet_test::random_source& random, Eigen::Index rows, Eigen::Inde
   return result;
 }
 
-/// J x = e for Jacobians whose last row is nearly the sum of two others, and J n = 0 where x·n = 0.
+/// Checks J x = e for Jacobians whose last row is nearly the sum of two others, and that x is
+/// orthogonal to the null space.
 template <int Joints>
 void check_min_norm_solution() {
   using columns = Eigen::Matrix<double, 6, Joints>;
@@ -44,7 +45,7 @@ void check_min_norm_solution() {
       const Eigen::Matrix<double, 6, 1> e = j * rates;
       const Eigen::Matrix<double, Joints, 1> x = duet::detail::least_solution(j, e);
       CHECK((j * x - e).norm() < 1e-14 * (1 + j.norm() * x.norm()));
-      // What the rates have beyond it moves nothing, and is at right angles to it.
+      // The difference from x is in the null space and orthogonal to x.
       const Eigen::Matrix<double, Joints, 1> rest = rates - x;
       CHECK((j * rest).norm() < 1e-14 * (1 + j.norm() * x.norm()));
       CHECK(std::abs(rest.dot(x)) < 1e-14 / independence * (1 + rates.squaredNorm()) * 100);
@@ -54,7 +55,8 @@ void check_min_norm_solution() {
 
 } // namespace
 
-TEST_CASE("columns become orthonormal, and the same sums of other columns are made") {
+TEST_CASE(
+    "orthonormalise: columns become orthonormal, and the operations are applied to other columns") {
   using square = Eigen::MatrixXcd;
   duet_test::random_source random(3);
   for (Eigen::Index n = 1; n <= 6; ++n) {
@@ -68,7 +70,9 @@ TEST_CASE("columns become orthonormal, and the same sums of other columns are ma
   }
 }
 
-TEST_CASE("the least solution of six equations, near where they depend on each other, too") {
+TEST_CASE("least_solution: minimum-norm solutions of six equations are accurate, also if these are "
+          "nearly "
+          "dependent") {
   check_min_norm_solution<6>();
   check_min_norm_solution<7>();
 }

@@ -18,8 +18,9 @@
 #include <numbers>
 #include <vector>
 
-// Arms of which two joints slide along each other: poses that they reach have infinitely many
-// solutions, of which one stands for each that the turns can make; others have none, for certain.
+// Arms with two prismatic joints that are parallel in every configuration: poses within reach have
+// infinitely many solutions, represented by one per solution of the revolute joints; other poses
+// have none, for certain.
 
 namespace test_planning_parallel_prismatic {
 namespace {
@@ -30,8 +31,8 @@ using chain = duet_test::any_chain;
 using vector = duet_test::any_joints;
 using result = all_inverse_kinematics_result<-16>;
 
-/// Which joints slide, along each other or (with `is_opposite`) against, with all between turning
-/// about that direction.
+/// Indices of the two prismatic joints, parallel or (`is_opposite`) antiparallel; all joints
+/// between them rotate about their direction.
 struct arm_kind {
   int first, second;
   bool is_opposite = false;
@@ -48,7 +49,7 @@ chain random_arm(const arm_kind& kind, duet_test::random_source& random,
     const auto q = random.direction<4>();
     const double angle = random.uniform(-pi, pi);
     each.origin = {quaternion<double>(q[0], q[1], q[2], q[3]), {at(), at(), at()}};
-    if (kind.first < i && i <= kind.second) { // about the axis before, and may be over
+    if (kind.first < i && i <= kind.second) { // about the previous axis
       each.origin.rotation = quaternion<double>(std::cos(angle), 0, 0, std::sin(angle));
       if (kind.is_opposite && i == kind.second) {
         each.origin.rotation = each.origin.rotation * quaternion<double>(0, 1, 0, 0);
@@ -71,7 +72,7 @@ vector configuration(duet_test::random_source& random, const arm_kind& kind) {
   return theta;
 }
 
-/// The largest difference of turns, and of what both slides do together.
+/// Largest difference of rotation angles, and of the sum of both prismatic displacements.
 double distance(const arm_kind& kind, const vector& a, const vector& b) {
   const double sign = kind.is_opposite ? -1 : 1;
   double largest =
@@ -88,7 +89,7 @@ int count_of(const result& all, const arm_kind& kind, const vector& theta) {
                            [&](const auto& s) { return distance(kind, s.joints, theta) < 1e-7; }));
 }
 
-/// By matrices, to 50 digits.
+/// Pose error by homogeneous matrices with 50 digits.
 double max_abs_difference(const chain& arm, const vector& theta,
                           const dual_quaternion<double>& goal) {
   using wide = duet_test::real_50;
@@ -99,7 +100,9 @@ double max_abs_difference(const chain& arm, const vector& theta,
 
 } // namespace
 
-TEST_CASE("the turns that a goal is made of are found, once, and whatever a search finds") {
+TEST_CASE("all_inverse_kinematics: with parallel prismatic joints each solution of the revolute "
+          "joints is "
+          "found once") {
   duet_test::random_source random(311);
   for (const arm_kind& kind : kinds) {
     CAPTURE(kind.first);
@@ -129,11 +132,13 @@ TEST_CASE("the turns that a goal is made of are found, once, and whatever a sear
         }
       }
     }
-    CHECK(others > 20); // else the search has seen nothing
+    CHECK(others > 20); // otherwise the search has tested nothing
   }
 }
 
-TEST_CASE("a goal beyond the five dimensions has no solution, for certain") {
+TEST_CASE("all_inverse_kinematics: with parallel prismatic joints a goal outside the reachable set "
+          "has no "
+          "solution, for certain") {
   duet_test::random_source random(312);
   for (const arm_kind& kind : kinds) {
     int certain = 0;
@@ -156,7 +161,7 @@ TEST_CASE("a goal beyond the five dimensions has no solution, for certain") {
   }
 }
 
-TEST_CASE("of all that the slides can do, what their limits allow") {
+TEST_CASE("all_inverse_kinematics: parallel prismatic joints are moved within their limits") {
   duet_test::random_source random(313);
   for (const arm_kind& kind : kinds) {
     int within = 0;
@@ -164,7 +169,7 @@ TEST_CASE("of all that the slides can do, what their limits allow") {
       const chain arm = random_arm(kind, random);
       const vector theta = configuration(random, kind);
       vector lower = lower_limits(arm), upper = upper_limits(arm);
-      for (const int i : {kind.first, kind.second}) { // a short way around where it is
+      for (const int i : {kind.first, kind.second}) { // a short range around its coordinate
         lower[i] = theta[i] - random.uniform(0, .1);
         upper[i] = theta[i] + random.uniform(0, .1);
       }
@@ -181,7 +186,8 @@ TEST_CASE("of all that the slides can do, what their limits allow") {
   }
 }
 
-TEST_CASE("a slide of the tool along that of the base, for some goals") {
+TEST_CASE(
+    "all_inverse_kinematics: prismatic joints that are parallel for some goals only are solved") {
   duet_test::random_source random(314);
   std::array<joint<>, 6> joints;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -192,7 +198,8 @@ TEST_CASE("a slide of the tool along that of the base, for some goals") {
   joints[0].origin.rotation = quaternion<double>(1);
   joints[0].kind = joints[5].kind = joint_kind::prismatic;
   const chain arm = serial_chain<6>(joints, {});
-  // Goals whose last slide is along the first, where a search for the rotation alone leads.
+  // Goals at which the last prismatic joint is parallel to the first, found by a search for the
+  // rotation alone.
   const arm_kind kind{0, 5};
   const double infinity = std::numeric_limits<double>::infinity();
   int made = 0;

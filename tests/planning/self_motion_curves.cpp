@@ -36,7 +36,7 @@ vector configuration(duet_test::random_source& random) {
   return theta;
 }
 
-/// How far a configuration is from the nearest point of a curve.
+/// Distance of a configuration from the nearest point of a curve.
 double distance(const self_motion_curve<7>& curve, const vector& theta) {
   double min_distance = std::numeric_limits<double>::infinity();
   for (const auto& x : curve.joints) {
@@ -45,8 +45,8 @@ double distance(const self_motion_curve<7>& curve, const vector& theta) {
   return min_distance;
 }
 
-/// Every curve is one, every point on it a solution, and the configuration that the goal was made
-/// from is on just one of them.
+/// Checks that every curve is closed and consists of solutions, and that exactly one contains the
+/// configuration of the goal.
 void check_curves(const chain& arm, const vector& theta,
                   const std::vector<self_motion_curve<7>>& curves, double resolution) {
   const auto goal = arm.pose(theta);
@@ -66,9 +66,9 @@ void check_curves(const chain& arm, const vector& theta,
   CHECK(containing == 1);
 }
 
-/// Shoulder, elbow and wrist of iiwa turn two ways each, and none of them can be changed with the
-/// tip in place where no joint is stretched on the way.
-TEST_CASE("eight components of an arm with spherical shoulder and wrist") {
+/// Shoulder, elbow and wrist of iiwa have two branches each, which a self-motion without
+/// singularities does not connect.
+TEST_CASE("self_motion_curves: an arm with spherical shoulder and wrist has eight components") {
   const chain arm = robots::iiwa14().table();
   duet_test::random_source random(1);
   const vector theta = configuration(random);
@@ -78,7 +78,8 @@ TEST_CASE("eight components of an arm with spherical shoulder and wrist") {
   check_curves(arm, theta, curves, resolution);
 }
 
-TEST_CASE("a general arm; finer curves are as many") {
+TEST_CASE(
+    "self_motion_curves: the number of curves of a general arm does not depend on the resolution") {
   duet_test::random_source random(2);
   std::array<joint<>, 7> joints;
   for (auto& j : joints) {
@@ -94,8 +95,8 @@ TEST_CASE("a general arm; finer curves are as many") {
   CHECK(finer.size() == curves.size());
 }
 
-/// A component is what it says: closed curves without jumps, or samples; all hold the tip, and the
-/// sample of a surface is on no plane of fewer dimensions.
+/// Checks a component: a closed curve without jumps, or a sample of the stated dimension; the tip
+/// is at the goal.
 void check_component(const chain& arm, const self_motion_curve<7>& part,
                      const dual_quaternion<double>& goal, double resolution) {
   for (const auto& x : part.joints) {
@@ -115,7 +116,7 @@ void check_component(const chain& arm, const self_motion_curve<7>& part,
   }
 }
 
-/// Dimensions of the components, in order.
+/// Dimensions of the components, sorted.
 std::vector<int> dimensions(const chain& arm, const vector& theta, double resolution) {
   const auto goal = arm.pose(theta);
   std::vector<int> result;
@@ -127,10 +128,12 @@ std::vector<int> dimensions(const chain& arm, const vector& theta, double resolu
   return result;
 }
 
-/// Where the elbow is straight axes 3 and 5 are one line, where shoulder or wrist is, 1 and 3 or 5
-/// and 7 are: their angles matter by their sum. Else the elbow turns about the line from shoulder
-/// to wrist, and what is straight only at a point of that circle is where two curves cross.
-TEST_CASE("straight elbows, shoulders and wrists: curves and tori of iiwa") {
+/// With a straight elbow axes 3 and 5 coincide, with a straight shoulder or wrist axes 1 and 3 or 5
+/// and 7: only the sum of their angles matters. Otherwise the elbow rotates about the line from
+/// shoulder to wrist; two curves cross where shoulder or wrist are straight at a point of the
+/// circle.
+TEST_CASE(
+    "self_motion_curves: straight elbows, shoulders and wrists of iiwa yield curves and tori") {
   const chain arm = robots::iiwa14().table();
   const vector bent = (vector() << .3, .6, -.2, -1.3, .4, .9, .1).finished();
   const auto straight = [&](std::initializer_list<int> joints) {
@@ -148,12 +151,13 @@ TEST_CASE("straight elbows, shoulders and wrists: curves and tori of iiwa") {
   CHECK(straight({1, 3}) == list{2, 2});
   CHECK(straight({3, 5}) == list{2, 2});
   CHECK(straight({1, 3, 5}) == list{3});
-  // Quarter turns, with everything in a plane.
+  // Quarter turns, with all links in a plane.
   CHECK(dimensions(arm, pi / 2 * (vector() << 0, 1, 0, 1, 0, 1, 0).finished(), .3) ==
         list{1, 1, 1, 1, 1, 1, 1, 1});
 }
 
-TEST_CASE("the upright iiwa moves with three degrees of freedom, and the sample is spread") {
+TEST_CASE(
+    "self_motion_curves: the upright iiwa has one component of three dimensions, evenly sampled") {
   const chain arm = robots::iiwa14().table();
   const vector zero = vector::Zero(), moved = (vector() << .3, 0, -.3, 0, .4, 0, -.4).finished();
   CHECK(pose_error_between(arm.pose(moved), arm.pose(zero)).translation < 1e-12);
@@ -168,15 +172,15 @@ TEST_CASE("the upright iiwa moves with three degrees of freedom, and the sample 
   }
 }
 
-TEST_CASE("Panda at zero: axes 1, 3 and 5 on one line, and curves beside that torus") {
+TEST_CASE("self_motion_curves: Panda in its zero configuration has two curves and a torus") {
   CHECK(dimensions(robots::panda().table(), vector::Zero(), .3) == std::vector<int>{1, 1, 2});
 }
 
-TEST_CASE("what is refused") {
+TEST_CASE("self_motion_curves: other chains and invalid resolutions are rejected") {
   const chain arm = robots::panda().table();
   const auto goal = arm.pose(vector::Zero().eval());
   CHECK_THROWS_WITH_AS(static_cast<void>(self_motion_curves(robots::ur5e().table(), goal)),
-                       "duet: self_motion_curves: the chain has 6 moving joints, not 7",
+                       "duet: self_motion_curves: the chain has 6 moving joints (expected 7)",
                        invalid_input);
   CHECK_THROWS_WITH_AS(static_cast<void>(self_motion_curves(arm, goal, {.resolution = 0})),
                        "duet: self_motion_curves: resolution is 0 (expected within (0, 1])",

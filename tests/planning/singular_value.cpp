@@ -39,8 +39,8 @@ matrix rotation(duet_test::random_source& random) {
   return Eigen::HouseholderQR<matrix>(random_matrix(random)).householderQ();
 }
 
-/// What is hard: units that make rows long or short, singular values next to each other, columns
-/// that nearly agree, nothing to reflect.
+/// Matrices with rows of very different lengths, close singular values, nearly equal columns, and
+/// zero off-diagonal entries.
 std::vector<matrix> ill_conditioned_matrices(duet_test::random_source& random) {
   std::vector<matrix> result;
   for (const double unit : {1., 1e3, 1e-6}) {
@@ -69,8 +69,8 @@ std::vector<matrix> ill_conditioned_matrices(duet_test::random_source& random) {
   return result;
 }
 
-/// How many singular values are smaller than s: pivots of J Jᵀ − s² that are negative, after
-/// Sylvester.
+/// Number of singular values smaller than s: negative pivots of J Jᵀ − s² (Sylvester's law of
+/// inertia).
 int count_below(const matrix& j, const real_50& s) {
   real_50 a[6][6];
   for (int i = 0; i < 6; ++i) {
@@ -94,7 +94,7 @@ int count_below(const matrix& j, const real_50& s) {
   return result;
 }
 
-/// The condition of a matrix with its rows of length 1.
+/// Condition number of a matrix with its rows scaled to length 1.
 double condition(matrix j) {
   j.rowwise().normalize();
   return j.norm() * j.inverse().norm();
@@ -113,7 +113,7 @@ eight values_of(const std::vector<matrix>& all, std::size_t first) {
 
 } // namespace
 
-TEST_CASE("the smallest singular value is what 50 digits say") {
+TEST_CASE("smallest_singular_value: the result agrees with 50 digits") {
   duet_test::random_source random(2);
   for (int round = 0; round < 8; ++round) {
     const auto all = ill_conditioned_matrices(random);
@@ -130,7 +130,8 @@ TEST_CASE("the smallest singular value is what 50 digits say") {
   }
 }
 
-TEST_CASE("of a singular matrix it is zero, whatever its neighbours in other lanes are") {
+TEST_CASE("smallest_singular_value: it is zero for a singular matrix, independently of other SIMD "
+          "lanes") {
   duet_test::random_source random(3);
   std::vector<matrix> all;
   for (int i = 0; i < 8; ++i) {
@@ -146,7 +147,7 @@ TEST_CASE("of a singular matrix it is zero, whatever its neighbours in other lan
     CHECK(after[i] == 0);
     CHECK(smallest_singular_value(all[std::size_t(i)]) == 0);
   }
-  for (const int i : {3, 6}) { // but for rounding
+  for (const int i : {3, 6}) { // zero except for round-off
     CHECK(after[i] >= 0);
     CHECK(after[i] < 1e-14);
   }
@@ -156,7 +157,7 @@ TEST_CASE("of a singular matrix it is zero, whatever its neighbours in other lan
   }
 }
 
-TEST_CASE("it does not depend on the order of rows and columns") {
+TEST_CASE("smallest_singular_value: it does not depend on the order of rows and columns") {
   duet_test::random_source random(4);
   for (int k = 0; k < 20; ++k) {
     const matrix a = random_matrix(random);

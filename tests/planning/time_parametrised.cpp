@@ -24,8 +24,8 @@ namespace {
 using namespace duet;
 using vector = Eigen::Matrix<double, 3, 1>;
 
-/// Limits kept on a fine grid, coordinates between those of the waypoints, and all of it consistent
-/// with itself; returns how much of the limits is used, on the average of the larger share.
+/// Checks limits on a fine grid, coordinates between those of the waypoints, and consistent
+/// derivatives; returns the average fraction of the limits that is used.
 template <class Trajectory>
 double check(const Trajectory& q, const std::vector<vector>& waypoints, const vector& v,
              const vector& a) {
@@ -56,13 +56,13 @@ double check(const Trajectory& q, const std::vector<vector>& waypoints, const ve
       CHECK((m.value - low).minCoeff() > -1e-12);
       CHECK((high - m.value).minCoeff() > -1e-12);
     }
-    // The velocity is that of the coordinates.
+    // The velocity is the derivative of the coordinates.
     if (i > 0) {
       const vector middle = q(t - h / 2).velocity;
       CHECK(((m.value - before) / h - middle).cwiseAbs().cwiseQuotient(a).maxCoeff() < h);
     }
     before = m.value;
-    // The acceleration is that of the velocity, save where it jumps.
+    // The acceleration is the derivative of the velocity, except at jumps.
     const double e = 1e-5 * h;
     if (t > e && t + e < q.duration()) {
       const vector rate = (q(t + e).velocity - q(t - e).velocity) / (2 * e);
@@ -73,7 +73,7 @@ double check(const Trajectory& q, const std::vector<vector>& waypoints, const ve
   return use;
 }
 
-/// No share of a limit above 1 on a fine grid; returns the largest.
+/// Checks limits on a fine grid; returns the largest fraction of a limit that is used.
 template <class Trajectory>
 double check_shares(const Trajectory& q, const vector& v, const vector& a) {
   const int count = 1000;
@@ -87,7 +87,8 @@ double check_shares(const Trajectory& q, const vector& v, const vector& a) {
   return largest;
 }
 
-/// The shortest time with limits at both ends of each of 200 parts of each edge, by bisection.
+/// Minimum time with the limits sampled at both ends of each of 200 segments of each edge, by
+/// bisection.
 double sampled_optimum(const std::vector<detail::joint_cubic<vector>>& curve, const vector& v,
                        const vector& a) {
   struct part {
@@ -146,8 +147,9 @@ double sampled_optimum(const std::vector<detail::joint_cubic<vector>>& curve, co
 
 } // namespace
 
-TEST_CASE("the largest and the least speed of two unknowns: none of a grid is beyond, and they are "
-          "allowed") {
+TEST_CASE(
+    "nearest_speed: extreme squared path velocities are feasible, and no feasible point of a grid "
+    "is beyond") {
   duet_test::random_source random(2);
   for (int k = 0; k < 200; ++k) {
     std::vector<detail::speed_bound> bounds;
@@ -172,7 +174,8 @@ TEST_CASE("the largest and the least speed of two unknowns: none of a grid is be
     const double max_x = detail::nearest_speed(bounds, 1, least, .7);
     const double min_x = detail::nearest_speed(bounds, 0, least, .7);
     if (largest < 0) {
-      // No point of the grid: both, if there is anything between its points, or none.
+      // No point of the grid is feasible: either there is a feasible interval between its points,
+      // or the result is NaN or outside of the range.
       CHECK((max_x >= min_x || (!(max_x == max_x) || max_x < 0 || min_x > 1)));
       continue;
     }
@@ -180,7 +183,7 @@ TEST_CASE("the largest and the least speed of two unknowns: none of a grid is be
     CHECK(max_x >= largest - 1e-12);
     CHECK(min_x >= 0);
     CHECK(min_x <= smallest + 1e-12);
-    // With the next speed that goes with it, all bounds are kept.
+    // With the next velocity that belongs to it, all constraints are satisfied.
     for (const double x : {min_x, max_x}) {
       CHECK(
           is_feasible(x, detail::feasible_path_velocities(bounds, x, least, .7).upper.value, 1e-9));
@@ -188,7 +191,7 @@ TEST_CASE("the largest and the least speed of two unknowns: none of a grid is be
   }
 }
 
-TEST_CASE("one joint: the trapezoid of the closed form") {
+TEST_CASE("time_optimal_trajectory: one joint takes the time of the trapezoidal velocity profile") {
   for (const double distance : {1e-3, .1, 1.0, 30.0}) {
     const double v = 2, a = 5;
     const double exact = distance > v * v / a ? distance / v + v / a : 2 * std::sqrt(distance / a);
@@ -198,14 +201,16 @@ TEST_CASE("one joint: the trapezoid of the closed form") {
     CHECK(q.duration() >= exact * (1 - 1e-12));
     CHECK(q.duration() < exact * (1 + 3e-4));
     CHECK(q.times() == std::vector<double>{0, q.duration()});
-    // No limit of velocity.
+    // Without velocity limit.
     const auto free = time_optimal_trajectory(
         ends, std::array{std::numeric_limits<double>::infinity()}, std::array{a});
     CHECK(free.duration() == doctest::Approx(2 * std::sqrt(distance / a)).epsilon(2e-4));
   }
 }
 
-TEST_CASE("one joint in motion at its ends: the closed form; backwards first it turns on the way") {
+TEST_CASE("time_optimal_trajectory: one joint in motion at its ends takes the time of the closed "
+          "form, and "
+          "reverses if it starts backwards") {
   using one = Eigen::Matrix<double, 1, 1>;
   const double v = 2, a = 5;
   for (const double distance : {.7, 30.0}) {
@@ -241,16 +246,17 @@ TEST_CASE("one joint in motion at its ends: the closed form; backwards first it 
   }
 }
 
-TEST_CASE("straight on, the slowest joint sets the pace") {
+TEST_CASE("time_optimal_trajectory: on a line the slowest joint determines the duration") {
   const std::vector<vector> ends{vector(0, 1, 0), vector(1, .5, 0)};
   const vector v(1, 1, 1), a(4, 1, 1e-3);
-  // The second joint goes half as far at a quarter of the acceleration.
+  // The second joint moves half as far with a quarter of the acceleration.
   const auto q = time_optimal_trajectory(ends, v, a);
   check(q, ends, v, a);
   CHECK(q.duration() == doctest::Approx(1 / 1.0 + 1 / 2.0).epsilon(1e-4));
 }
 
-TEST_CASE("limits are kept on smooth paths, around corners, and however unequal the steps") {
+TEST_CASE("time_optimal_trajectory: limits are satisfied on smooth paths, at corners and with "
+          "unequal steps") {
   duet_test::random_source random(1);
   const vector v(1, 2, .7), a(3, 2, 10);
   for (int k = 0; k < 6; ++k) {
@@ -273,7 +279,8 @@ TEST_CASE("limits are kept on smooth paths, around corners, and however unequal 
   }
 }
 
-TEST_CASE("more waypoints of the same path take no longer, and more parts less time") {
+TEST_CASE("time_optimal_trajectory: more waypoints of one path keep the duration, more intervals "
+          "shorten it") {
   const vector v(1, 1, 1), a(2, 2, 2);
   const auto circle = [](int count) {
     std::vector<vector> points;
@@ -292,7 +299,8 @@ TEST_CASE("more waypoints of the same path take no longer, and more parts less t
   CHECK(few < 1.1 * many);
 }
 
-TEST_CASE("limits hold to rounding between waypoints that nearly repeat") {
+TEST_CASE(
+    "time_optimal_trajectory: limits are satisfied to round-off between nearly equal waypoints") {
   const vector v(1, 2, .5), a(3, 5, 2);
   random_source random(11);
   const auto direction = [&] {
@@ -337,24 +345,25 @@ TEST_CASE("limits hold to rounding between waypoints that nearly repeat") {
   }
 }
 
-TEST_CASE("along a plan; a plan that stays; bad input") {
+TEST_CASE("time_optimal_trajectory: plans and plans of zero length are accepted, invalid input is "
+          "rejected") {
   motion_plan<3> plan;
   plan.joints = {vector(0, 1, 2), vector(1, 1, 3)};
   const vector v(1, 1, 1), a(1, 1, 1);
   const auto q = time_optimal_trajectory(plan, v, a);
   CHECK(q.duration() == doctest::Approx(2).epsilon(1e-4));
-  CHECK_THROWS_WITH_AS((void)q(3), doctest::Contains("t is 3, outside 0 to "), invalid_input);
+  CHECK_THROWS_WITH_AS((void)q(3), doctest::Contains("t is 3 (expected 0 to "), invalid_input);
   CHECK_THROWS_AS((void)q(std::nan("")), invalid_input);
 
-  // The ends are those to rounding.
+  // A time beyond an end by round-off counts as the end.
   const double end = q.duration(), ulp = std::nextafter(end, 9) - end;
   for (const int k : {1, 8}) {
     CHECK(q(end + k * ulp).value == q(end).value);
     CHECK(q(-k * ulp).value == q(0).value);
   }
   const auto exceeding = duet_test::message_of([&] { (void)q(end + 9 * ulp); });
-  CHECK(exceeding == "duet: joint_trajectory: t is " + to_text(end + 9 * ulp) + ", outside 0 to " +
-                         to_text(end) + "; std::clamp makes it stay at its end");
+  CHECK(exceeding == "duet: joint_trajectory: t is " + to_text(end + 9 * ulp) + " (expected 0 to " +
+                         to_text(end) + "; std::clamp gives the state at an end)");
   CHECK_THROWS_AS((void)q(-9 * ulp), invalid_input);
 
   plan.joints = {vector(0, 1, 2), vector(0, 1, 2)};
@@ -365,15 +374,18 @@ TEST_CASE("along a plan; a plan that stays; bad input") {
   CHECK(still.times() == std::vector<double>{0, 0});
 
   plan.joints.clear();
-  CHECK_THROWS_WITH_AS((void)time_optimal_trajectory(plan, v, a),
-                       "duet: time_optimal_trajectory: no waypoints", invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)time_optimal_trajectory(plan, v, a),
+      "duet: time_optimal_trajectory: there are no waypoints (expected at least 1)", invalid_input);
   plan.joints = {vector(0, 1, 2), vector(0, std::nan(""), 2)};
-  CHECK_THROWS_WITH_AS((void)time_optimal_trajectory(plan, v, a),
-                       "duet: time_optimal_trajectory: waypoint 1 is not finite or of another size",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)time_optimal_trajectory(plan, v, a),
+      "duet: time_optimal_trajectory: waypoint 1 is not finite or has another size than waypoint 0",
+      invalid_input);
   plan.joints.pop_back();
   CHECK_THROWS_WITH_AS((void)time_optimal_trajectory(plan, v, vector(1, 0, 1)),
-                       "duet: time_optimal_trajectory: the acceleration limit of joint 1 is 0",
+                       "duet: time_optimal_trajectory: the acceleration limit of joint 1 is 0 "
+                       "(expected positive and finite)",
                        invalid_input);
   CHECK_THROWS_AS((void)time_optimal_trajectory(plan, v, vector(1, INFINITY, 1)), invalid_input);
   CHECK_THROWS_AS((void)time_optimal_trajectory(plan, vector(1, 1, -1), a), invalid_input);
@@ -383,12 +395,13 @@ TEST_CASE("along a plan; a plan that stays; bad input") {
                   invalid_input);
 }
 
-TEST_CASE("on the same curve hardly longer than where limits are kept at many places only") {
+TEST_CASE(
+    "time_optimal_trajectory: durations are close to those with sampled limits on the same curve") {
   duet_test::random_source random(5);
   const vector v(1, 2, .7), a(3, 2, 10);
   for (int k = 0; k < 6; ++k) {
     CAPTURE(k);
-    // Steps of all joints, of one at a time, and of very different lengths.
+    // Steps of all joints, of one joint at a time, and of very different lengths.
     std::vector<vector> waypoints{vector(0, 0, 0)};
     for (int i = random.integer(2, 7); i > 0; --i) {
       const vector step = k % 3 == 1 ? vector(random.normal() * vector::Unit(random.integer(0, 2)))
@@ -409,8 +422,7 @@ TEST_CASE("on the same curve hardly longer than where limits are kept at many pl
   }
 }
 
-TEST_CASE(
-    "the smooth curve is the natural spline: its second derivative is continuous, 0 at the ends") {
+TEST_CASE("natural_cubic_slopes: the second derivative is continuous and 0 at free ends") {
   duet_test::random_source random(8);
   std::vector<vector> waypoints;
   for (int i = 0; i < 7; ++i) {
@@ -443,7 +455,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("starts and ends in motion") {
+TEST_CASE(
+    "time_optimal_trajectory: velocities at the ends are attained, and infeasible ones rejected") {
   const std::vector<vector> waypoints{vector(0, 1, 0), vector(1, .5, .3), vector(2, .7, -.2)};
   const vector v(1, 1, 1), a(2, 3, 4);
   time_parametrisation_options options{.min_intervals = 60};
@@ -458,12 +471,12 @@ TEST_CASE("starts and ends in motion") {
   CHECK((q(q.duration()).value - waypoints[2]).norm() < 1e-12);
   check_shares(q, v, a);
 
-  // Rates of 0 are rest.
+  // Velocities of 0 are rest.
   options.initial_velocities = {0, 0, 0};
   options.final_velocities = {};
   CHECK(time_optimal_trajectory(waypoints, v, a, options).duration() == from_rest);
 
-  // Too fast to slow down; with what is said to be possible it is, a little faster not.
+  // Too fast to slow down: the fraction in the message is feasible, a little more is not.
   for (const bool at_end : {false, true}) {
     CAPTURE(at_end);
     const std::vector<vector> short_path{vector(0, 0, 0), vector(.02, 0, 0)};
@@ -474,10 +487,11 @@ TEST_CASE("starts and ends in motion") {
     const auto message =
         duet_test::message_of([&] { (void)time_optimal_trajectory(short_path, v, a, options); });
     const std::string before = std::string("duet: time_optimal_trajectory: the ") +
-                               (at_end ? "final" : "initial") + " rates are too fast: at most ";
+                               (at_end ? "final" : "initial") +
+                               " velocities are infeasible (expected at most ";
     REQUIRE(message.substr(0, before.size()) == before);
     const double part = std::stod(message.substr(before.size()));
-    CHECK(message.substr(message.find(" of")) == " of them can be kept");
+    CHECK(message.substr(message.find(" times")) == " times as large)");
     rates[0] = .9 * part;
     CHECK(time_optimal_trajectory(short_path, v, a, options).duration() > 0);
     rates[0] = .9 * part * 1.003;
@@ -487,20 +501,22 @@ TEST_CASE("starts and ends in motion") {
   }
   CHECK_THROWS_WITH_AS(
       (void)time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {1, 2}}),
-      "duet: time_optimal_trajectory: 2 initial rates for 3 joints", invalid_input);
+      "duet: time_optimal_trajectory: 2 initial velocities (expected 3, one per joint)",
+      invalid_input);
   CHECK_THROWS_WITH_AS(
       (void)time_optimal_trajectory(waypoints, v, a, {.final_velocities = {1, 2, NAN}}),
-      "duet: time_optimal_trajectory: the final rates are not finite", invalid_input);
+      "duet: time_optimal_trajectory: the final velocities are not finite", invalid_input);
   const std::vector<vector> still{vector(0, 0, 0), vector(0, 0, 0)};
   CHECK_THROWS_AS((void)time_optimal_trajectory(still, v, a, {.initial_velocities = {1, 2, 3}}),
                   invalid_input);
-  // Faster than a joint may be.
+  // Faster than the velocity limit of a joint.
   CHECK_THROWS_WITH_AS(
       (void)time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {2, 0, 0}}),
-      doctest::Contains("the initial rates are too fast: at most 0."), invalid_input);
+      doctest::Contains("the initial velocities are infeasible (expected at most 0."),
+      invalid_input);
 }
 
-TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
+TEST_CASE("slopes_within_ranges: a natural cubic spline stays within the ranges of its waypoints") {
   duet_test::random_source random(9);
   const vector none = vector::Constant(INFINITY), one(1, 1, 1);
   int beyond = 0;
@@ -531,7 +547,7 @@ TEST_CASE("a smooth curve stays within ranges that all waypoints keep") {
   CHECK(beyond > 100);
 }
 
-TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
+TEST_CASE("time_optimal_trajectory: the velocity and position limits of a chain are satisfied") {
   std::array<joint<>, 3> joints;
   for (std::size_t i = 0; i < 3; ++i) {
     joints[i].limits = {-1, 1, double(i) + 1};
@@ -550,7 +566,7 @@ TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
   CHECK(time_optimal_trajectory(chain, plan, a, {.curve = waypoint_interpolation::pchip})
             .duration() == time_optimal_trajectory(plan, v, a).duration());
 
-  // The first joint turns back at its limit: beyond it on the spline.
+  // The first joint reverses at its limit; the spline exceeds it.
   plan.joints[1][0] = 1;
   plan.joints[3][1] = 1;
   const auto largest = [](const auto& motion) {
@@ -563,7 +579,7 @@ TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
   CHECK(largest(time_optimal_trajectory(
             plan, v, a, {.curve = waypoint_interpolation::natural_cubic}))[0] > 1.01);
   CHECK(largest(time_optimal_trajectory(chain, plan, a)).maxCoeff() < 1 + 1e-12);
-  // From its limit on outwards: on every curve.
+  // With an outward velocity at its limit the joint exceeds it on every curve.
   plan.joints[0][0] = 1;
   plan.joints[1][0] = .8;
   for (const auto kind : {waypoint_interpolation::natural_cubic, waypoint_interpolation::pchip}) {
@@ -571,10 +587,9 @@ TEST_CASE("a chain's own limits: velocities, and ranges that joints keep") {
       (void)time_optimal_trajectory(chain, plan, a,
                                     {.initial_velocities = {.1, 0, 0}, .curve = kind});
     });
-    CHECK(message.find(
-              "duet: time_optimal_trajectory: between waypoints 0 and 1 joint 0 would be 0.0") ==
-          0);
-    CHECK(message.find(" outside its limits, by its rate at an end") != std::string::npos);
+    CHECK(message.find("duet: time_optimal_trajectory: joint 0 leaves its limits by 0.0") == 0);
+    CHECK(message.find(" between waypoints 0 and 1 because of its velocity at an end") !=
+          std::string::npos);
     CHECK(time_optimal_trajectory(plan, v, a, {.initial_velocities = {.1, 0, 0}, .curve = kind})
               .duration() > 0);
   }
