@@ -134,8 +134,7 @@ double reference(const curve& path, const vector& velocity, const vector& accele
 
 void compare(unsigned seeds) {
   std::printf("| | same curve | worst (seed) | natural spline | worst (seed) | `natural_cubic` | "
-              "worst (seed) "
-              "| µs |\n|---|---|---|---|---|---|---|---|\n");
+              "worst (seed) | µs |\n|---|---|---|---|---|---|---|---|\n");
   for (const family& kind : families) {
     statistics same, spline, smooth;
     stopwatch watch;

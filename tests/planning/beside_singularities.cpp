@@ -237,9 +237,8 @@ TEST_CASE("all_inverse_kinematics: near a wrist singularity all solutions are ac
   }
 }
 
-TEST_CASE("all_inverse_kinematics: near a wrist singularity of an arm with three parallel axes all "
-          "solutions "
-          "are accurate") {
+TEST_CASE("all_inverse_kinematics: near a wrist singularity of an arm with three parallel axes "
+          "all solutions are accurate") {
   duet_test::random_source random(2);
   for (int k = 0; k < 5; ++k) {
     CAPTURE(k);
@@ -286,8 +285,7 @@ TEST_CASE("all_inverse_kinematics: near a folded elbow with skew axes 2 and 3 al
 }
 
 TEST_CASE("all_inverse_kinematics: near an elbow that folds a wrist of two axes onto a spherical "
-          "shoulder "
-          "all solutions are accurate") {
+          "shoulder all solutions are accurate") {
   duet_test::random_source random(6);
   for (int k = 0; k < 10; ++k) {
     CAPTURE(k);
@@ -347,8 +345,7 @@ TEST_CASE("all_inverse_kinematics: near a fold onto a shoulder with separated ax
 }
 
 TEST_CASE("all_inverse_kinematics: near a fold onto a shoulder with nearly intersecting axes the "
-          "result is "
-          "not complete") {
+          "result is not complete") {
   duet_test::random_source random(8);
   for (const double separation : {1e-4, 1e-6, 1e-8}) {
     for (int k = 0; k < 20; ++k) {
@@ -395,8 +392,7 @@ TEST_CASE("subproblem3: angles at which a rotating vector has a small length are
 
 /// Random configurations, which may be near other singularities, too.
 TEST_CASE("all_inverse_kinematics: in a wrist singularity a singular solution is found and the "
-          "result is not "
-          "complete") {
+          "result is not complete") {
   duet_test::random_source random(3);
   for (int k = 0; k < 200; ++k) {
     CAPTURE(k);

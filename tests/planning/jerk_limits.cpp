@@ -192,9 +192,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("time_optimal_trajectory: one joint in motion at both ends takes the time of the closed "
-          "form with "
-          "jerk limits") {
+TEST_CASE("time_optimal_trajectory: one joint in motion at both ends takes the time of the "
+          "closed form with jerk limits") {
   // From `from` with the maximum acceleration at once, which decreases to 0 at the maximum
   // velocity.
   const auto rise = [](double from, double v, double a, double j) {
@@ -393,15 +392,13 @@ TEST_CASE(
   const std::string message = stop(min_length * .9);
   CAPTURE(message);
   CHECK(message.find("duet: time_optimal_trajectory: no motion from the initial velocities is "
-                     "found within the "
-                     "limits (expected at most 0.9") == 0);
+                     "found within the limits (expected at most 0.9") == 0);
   CHECK(message.find(" times as large; joint 0, with the velocity 1, is nearest to its limits)") !=
         std::string::npos);
 }
 
 TEST_CASE("joint_trajectory: with jerk limits accelerations are continuous, and velocities, "
-          "accelerations "
-          "and jerks are consistent derivatives") {
+          "accelerations and jerks are consistent derivatives") {
   duet_test::random_source random(4);
   const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
   for (int k = 0; k < 4; ++k) {
@@ -440,8 +437,7 @@ TEST_CASE("joint_trajectory: with jerk limits accelerations are continuous, and 
 }
 
 TEST_CASE("path_velocity_constraints: bounds on a segment enclose velocities, accelerations and "
-          "jerks in 50 "
-          "digits, closely") {
+          "jerks in 50 digits, closely") {
   // Value at u of a polynomial with these Bernstein coefficients.
   const auto bernstein = [](const auto& at, int degree, double u) {
     double sum = 0, binomial = 1;
@@ -585,8 +581,7 @@ TEST_CASE(
         "duet: time_optimal_trajectory: the jerk limit of joint 2 is 0 (expected positive)");
   CHECK(error_message({.initial_velocities = {.1, 0, -1.5}, .jerk = j}) ==
         "duet: time_optimal_trajectory: the initial velocity of joint 2 is -1.5 (expected at most "
-        "1 in "
-        "absolute value)");
+        "1 in absolute value)");
   CHECK(
       error_message({.final_velocities = {.1, 1.25, 0}, .jerk = j}) ==
       "duet: time_optimal_trajectory: the final velocity of joint 1 is 1.25 (expected at most 1 in "

@@ -70,9 +70,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("least_solution: minimum-norm solutions of six equations are accurate, also if these are "
-          "nearly "
-          "dependent") {
+TEST_CASE("least_solution: minimum-norm solutions of six equations are accurate, also if these "
+          "are nearly dependent") {
   check_min_norm_solution<6>();
   check_min_norm_solution<7>();
 }

@@ -101,8 +101,7 @@ double max_abs_difference(const chain& arm, const vector& theta,
 } // namespace
 
 TEST_CASE("all_inverse_kinematics: with parallel prismatic joints each solution of the revolute "
-          "joints is "
-          "found once") {
+          "joints is found once") {
   duet_test::random_source random(311);
   for (const arm_kind& kind : kinds) {
     CAPTURE(kind.first);
@@ -136,9 +135,8 @@ TEST_CASE("all_inverse_kinematics: with parallel prismatic joints each solution 
   }
 }
 
-TEST_CASE("all_inverse_kinematics: with parallel prismatic joints a goal outside the reachable set "
-          "has no "
-          "solution, for certain") {
+TEST_CASE("all_inverse_kinematics: with parallel prismatic joints a goal outside the reachable "
+          "set has no solution, for certain") {
   duet_test::random_source random(312);
   for (const arm_kind& kind : kinds) {
     int certain = 0;

@@ -209,8 +209,7 @@ TEST_CASE("time_optimal_trajectory: one joint takes the time of the trapezoidal 
 }
 
 TEST_CASE("time_optimal_trajectory: one joint in motion at its ends takes the time of the closed "
-          "form, and "
-          "reverses if it starts backwards") {
+          "form, and reverses if it starts backwards") {
   using one = Eigen::Matrix<double, 1, 1>;
   const double v = 2, a = 5;
   for (const double distance : {.7, 30.0}) {
