@@ -138,9 +138,9 @@ void follow(const options& settings, const mechanism& known, duet::driven_motion
 /// Prints the complete motion of a mechanism with one driven coordinate, and its dead points.
 void print(const duet::closed_chain_mechanism& mechanism, const duet::motion_trace& motion) {
   std::printf("complete motion: %zu positions, %s\n", motion.positions.size(),
-              motion.is_closed        ? "closed"
+              motion.is_closed       ? "closed"
               : motion.stopped_early ? "ends at a branch point"
-                                      : "not closed");
+                                     : "not closed");
   for (const duet::branch_point& each : motion.branch_points) {
     std::printf("  %zu tangents at the branch point", each.tangents.size());
     for (const double x : each.coordinates) {

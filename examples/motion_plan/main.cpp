@@ -67,9 +67,9 @@ bool run(const problem& p) {
   example::require_folder(p.out);
   const plan_type result = plan(p);
   const Eigen::VectorXd acceleration = Eigen::VectorXd::Constant(p.arm.size(), p.acceleration);
-  duet::time_parametrisation_options options{.curve = p.jerk
-                                                          ? duet::waypoint_interpolation::natural_cubic
-                                                          : duet::waypoint_interpolation::pchip};
+  duet::time_parametrisation_options options{
+      .curve = p.jerk ? duet::waypoint_interpolation::natural_cubic
+                      : duet::waypoint_interpolation::pchip};
   const auto without_jerk_limit =
       duet::time_optimal_trajectory(result, velocities(p), acceleration, options);
   if (p.jerk) {

@@ -195,9 +195,15 @@ TEST_CASE("bounding_capsules: shapes of trees and chains have the poses of their
   robot_description robot;
   robot.links = {{"base"}, {"arm"}, {"weld"}, {"hand"}};
   robot.joints = {
-      {"shoulder", "base", "arm", {joint_kind::revolute, duet_test::placement_at(.1, .2, .3, 0, 0, 1)}},
+      {"shoulder",
+       "base",
+       "arm",
+       {joint_kind::revolute, duet_test::placement_at(.1, .2, .3, 0, 0, 1)}},
       {"fixed", "arm", "weld", {joint_kind::fixed, duet_test::placement_at(.5, 0, 1, .3, .1, 0)}},
-      {"wrist", "weld", "hand", {joint_kind::revolute, duet_test::placement_at(0, 1, 0, 0, 0, .5)}}};
+      {"wrist",
+       "weld",
+       "hand",
+       {joint_kind::revolute, duet_test::placement_at(0, 1, 0, 0, 0, .5)}}};
   const placement<double> shape_placement = duet_test::placement_at(.7, -.2, .4, .1, .2, -.3);
   robot.links[0].collision = {{shape_placement, collision_cylinder{.1, 1}},
                               {{}, collision_sphere{.2}}};
