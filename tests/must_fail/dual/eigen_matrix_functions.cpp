@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: Eigen's (exp|sqrt|log|pow|sin, cos, sinh or cosh) of a matrix loses derivatives
-// over forms: 5
+// expect: duet: Eigen's (exp|sqrt|log|pow|sin, cos, sinh or cosh) of a matrix loses
+// forms: 5
 
 #include <duet/derivative/matrix_exponential.hpp>
 

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 // expect: duet: the matrix of a rotation is rotation_matrix\(q\), that of a pose
-// transform_matrix\(A\) within: 4
+// within: 4
 
 #include <duet/dual_quaternion/pose.hpp>
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: (.*the first argument|the parameter is missing|transform_point takes|from_euler
-// takes) within: 2 forms: 7
+// expect: duet: (.*the first argument|the parameter is missing|(transform_point|from_euler) takes)
+// within: 2
+// forms: 7
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/euler.hpp>
