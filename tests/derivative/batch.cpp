@@ -117,7 +117,7 @@ TEST_CASE("solve over batches: one singular or not finite lane throws invalid_in
     return a;
   };
   CHECK(message_of(with(5)) == "");
-  CHECK(message_of(with(4)).find("A is singular: of pivot 2 of 2") != std::string::npos);
+  CHECK(message_of(with(4)).find("A is singular: pivot 2 of 2") != std::string::npos);
   CHECK(message_of(with(std::numeric_limits<double>::infinity())).find("is not finite") !=
         std::string::npos);
 }
