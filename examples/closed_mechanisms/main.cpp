@@ -177,14 +177,14 @@ void run(const options& settings) {
     drives.push_back(mechanism.tree().coordinate(name));
   }
   std::printf("%s: %d coordinates, %d equations\n", known->name.c_str(), mechanism.size(),
-              mechanism.equations());
+              mechanism.equation_count());
   const auto result = duet::find_assembly_configurations(mechanism, drives, known->from,
                                                          {.random_starts = settings.starts});
   if (result.positions.empty()) {
     throw std::runtime_error("no assembly configuration found (increase --random-starts)");
   }
   const VectorXd q =
-      drives.empty() ? result.positions[0].coordinates : mechanism.closed(known->guess, drives);
+      drives.empty() ? result.positions[0].coordinates : mechanism.assemble(known->guess, drives);
   std::printf("%s\n", to_text(duet::mobility(mechanism, q)).c_str());
   const auto independent = mechanism.independent_coordinates(q);
   std::printf("driven:%s; best conditioned:%s\n", names(mechanism, drives).c_str(),

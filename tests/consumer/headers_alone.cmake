@@ -1,6 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# The headers alone installed: a project finds them, and is told what it cannot have.
+# The headers alone installed: a project finds them, and a message names the missing components.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 

@@ -2,7 +2,7 @@
 
 # Do all headers compile in plain C++20 as clang reads them for Windows in MSVC's stead (its ABI, its
 # extensions, long of 32 bits, long double of 64)? There is no standard library of MSVC here: MinGW's
-# libstdc++ takes its place and is told that clang is GNU's.
+# libstdc++ replaces it, with macros that say that clang is GNU's.
 #
 # cmake -Dcompile=<clang and flags> -Dinclude=<folder> -Dfolder=<for files> -P microsoft.cmake
 

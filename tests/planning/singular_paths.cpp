@@ -135,8 +135,8 @@ TEST_CASE("plans leave a stretched elbow inwards and not outwards") {
   }
 }
 
-/// Whatever way back leads to the singular pose, the way there exists, but for motions in place
-/// that limits cut off; the arms have none here.
+/// A path that leads to the singular pose can be followed backwards, except for self-motions that
+/// limits cut off; the arms have no such limits here.
 TEST_CASE("plans leave the wrist singularity whenever a path back to it exists") {
   duet_test::random_source random(4);
   int count = 0;

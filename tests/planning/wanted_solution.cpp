@@ -332,7 +332,7 @@ TEST_CASE("preferred_posture: nearest of all six-joint solutions, including full
     const int count = 60;
     for (int k = 0; k < count; ++k) {
       vector known = configuration(arm, random), posture = configuration(arm, random);
-      if (k % 3 == 0) { // multiples of 15 degrees, but for the wrist's singularity
+      if (k % 3 == 0) { // multiples of 15 degrees, except at the wrist's singularity
         known = known.unaryExpr([](double x) { return pi / 12 * std::round(12 / pi * x); });
         posture = posture.unaryExpr([](double x) { return pi / 2 * std::round(2 / pi * x); });
         known[4] = known[4] < 0 ? -pi / 3 : pi / 3;

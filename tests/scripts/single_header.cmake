@@ -1,6 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# The one header of scripts/single_header: it includes nothing of duet and nothing twice, and in place of
+# The one header of scripts/single_header: it includes nothing of duet and nothing twice, and instead of
 # duet/duet.hpp it compiles, without a warning, README's first program by every compiler that is here, and
 # those of the layers that it has by the one that tests are built with.
 #

@@ -1,7 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# Without the compiler's extensions results have the same digits, and a compiler that has none of them is
-# told by itself.
+# Without the compiler's extensions results have the same digits, and a compiler without them is
+# detected.
 #
 # cmake -Dcompile=<compiler and flags> -Dtarget=<core/compiler/target.hpp> -P check.cmake
 
