@@ -8,9 +8,9 @@
 /// (1).
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/denavit_hartenberg.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
 
 #include <algorithm>
 #include <array>

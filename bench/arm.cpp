@@ -8,9 +8,9 @@
 #include "workloads.hpp"
 
 #include <duet/derivative/jacobian.hpp>
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/mechanism/jacobian_rate.hpp>
-#include <duet/mechanism/robots.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/jacobian_rate.hpp>
+#include <duet/kinematics/robots.hpp>
 
 #if DUET_BENCH_KDL
 #include <kdl/chain.hpp>

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/closed_tree.hpp>
-#include <duet/mechanism/kinematic_tree.hpp>
-#include <duet/mechanism/loop_positions.hpp>
+#include <duet/kinematics/kinematic_tree.hpp>
+#include <duet/robotics/closed_tree.hpp>
+#include <duet/robotics/loop_positions.hpp>
 
 #include <Eigen/Core>
 

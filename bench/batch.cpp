@@ -8,8 +8,8 @@
 #include "support/contest.hpp"
 #include "workloads.hpp"
 
-#include <duet/mechanism/robots.hpp>
-#include <duet/mechanism/sweep.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/kinematics/sweep.hpp>
 #include <duet/spline/evaluate.hpp>
 
 #include <array>

@@ -9,11 +9,11 @@
 #include <duet/core/batch/batch.hpp>
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/manipulability.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/mechanism/sweep.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/kinematics/manipulability.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/kinematics/sweep.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/interpolate.hpp>

@@ -6,10 +6,10 @@
 /// kind (1000), the seed (1).
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/limits.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/choose_start.hpp>
-#include <duet/planning/goals.hpp>
+#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/choose_start.hpp>
+#include <duet/robotics/goals.hpp>
 
 #include <algorithm>
 #include <array>

@@ -5,8 +5,8 @@
 /// beside it: what share is solved to 1e-6 within the limits, and the mean time of a pose.
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <benchmark/benchmark.h>
 

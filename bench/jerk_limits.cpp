@@ -9,7 +9,7 @@
 
 #include "timing_families.hpp"
 
-#include <duet/planning/time_parametrised.hpp>
+#include <duet/robotics/time_parametrised.hpp>
 
 #include <Eigen/Dense>
 

@@ -9,8 +9,8 @@
 
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 
 #include <benchmark/benchmark.h>
 

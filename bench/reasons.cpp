@@ -7,11 +7,11 @@
 /// six families (100), the seed (1), and anything to list what is not as it should be.
 /// build/bench/bench/duet_reasons_bench
 
-#include "planning/complete_search.hpp"
-#include "planning/layered_search.hpp"
-#include "planning/singular_problems.hpp"
+#include "robotics/complete_search.hpp"
+#include "robotics/layered_search.hpp"
+#include "robotics/singular_problems.hpp"
 
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 
 #include <cstddef>
 #include <cstdio>

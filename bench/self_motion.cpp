@@ -8,11 +8,11 @@
 /// build/bench/bench/duet_self_motion_bench
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/denavit_hartenberg.hpp>
-#include <duet/mechanism/limits.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
-#include <duet/planning/self_motion_curves.hpp>
+#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics/self_motion_curves.hpp>
 
 #include <Eigen/Core>
 

@@ -8,10 +8,10 @@
 /// number of problems of each of six families (100), the seed (1).
 /// build/bench/bench/duet_singular_paths_bench
 
-#include "planning/singular_problems.hpp"
+#include "robotics/singular_problems.hpp"
 
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 
 #include <Eigen/SVD>
 

@@ -4,9 +4,9 @@
 #include "support/stopwatch.hpp"
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
-#include <duet/planning/time_parametrised.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
+#include <duet/robotics/time_parametrised.hpp>
 
 #include <Eigen/Core>
 

@@ -7,9 +7,9 @@
 #include "support/contest.hpp"
 #include "workloads.hpp"
 
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/mechanism/kinematic_tree.hpp>
-#include <duet/mechanism/tree_jacobian.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/kinematic_tree.hpp>
+#include <duet/kinematics/tree_jacobian.hpp>
 
 #if DUET_BENCH_KDL
 #include <kdl/tree.hpp>

@@ -11,7 +11,7 @@
 
 #include <duet/core/text/file.hpp>
 #include <duet/duet.hpp>
-#include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
 
 #include <algorithm>
 #include <array>

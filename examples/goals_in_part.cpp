@@ -13,7 +13,7 @@
 #include <duet/core/random_source.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/duet.hpp>
-#include <duet/planning/goals.hpp>
+#include <duet/robotics/goals.hpp>
 
 #include <algorithm>
 #include <array>

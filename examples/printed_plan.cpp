@@ -6,8 +6,8 @@
 /// step size beta. Prints the tables of docs/printed_plan.md.
 
 #include <duet/core/random_source.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/printed_plan.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/motion/printed_plan.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 // Screw motions of a UR5e through a wrist singularity, from one and from a stretched elbow: the
 // range of joint 4, and whether the plan begins with a self-motion.
 
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 
 #include <algorithm>
 #include <cstddef>

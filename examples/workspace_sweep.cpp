@@ -15,7 +15,7 @@
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/progress_line.hpp>
-#include <duet/mechanism/sweep.hpp>
+#include <duet/kinematics/sweep.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>

@@ -4,6 +4,6 @@
 
 #define DUET_DEFINES_COMPILED
 
-#include <duet/planning/branches/branch_solver.hpp>
-#include <duet/planning/branches/chain_loop_units.hpp>
-#include <duet/planning/branches/component_search.hpp>
+#include <duet/robotics/branches/branch_solver.hpp>
+#include <duet/robotics/branches/chain_loop_units.hpp>
+#include <duet/robotics/branches/component_search.hpp>

@@ -4,8 +4,8 @@
 
 #define DUET_DEFINES_COMPILED
 
-#include <duet/mechanism/loops/assembly_search.hpp>
-#include <duet/mechanism/loops/motion_follower.hpp>
-#include <duet/mechanism/loops/neighbourhood.hpp>
-#include <duet/mechanism/loops/tracer.hpp>
-#include <duet/mechanism/loops/tree_closure_solver.hpp>
+#include <duet/robotics/loops/assembly_search.hpp>
+#include <duet/robotics/loops/motion_follower.hpp>
+#include <duet/robotics/loops/neighbourhood.hpp>
+#include <duet/robotics/loops/tracer.hpp>
+#include <duet/robotics/loops/tree_closure_solver.hpp>

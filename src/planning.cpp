@@ -8,9 +8,9 @@
 #undef DUET_COMPILED_TEMPLATE
 #define DUET_COMPILED_TEMPLATE template
 
-#include <duet/planning/enclosing_capsule.hpp>
-#include <duet/planning/goals.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
-#include <duet/planning/start_search.hpp>
-#include <duet/planning/timing/log_barrier_solver.hpp>
+#include <duet/robotics/enclosing_capsule.hpp>
+#include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
+#include <duet/robotics/start_search.hpp>
+#include <duet/robotics/timing/log_barrier_solver.hpp>

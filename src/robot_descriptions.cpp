@@ -4,11 +4,11 @@
 
 #define DUET_DEFINES_COMPILED
 
-#include <duet/mechanism/meshes/mesh_reading.hpp>
-#include <duet/mechanism/urdf_library.hpp>
+#include <duet/io/meshes/mesh_reading.hpp>
+#include <duet/io/urdf_library.hpp>
 
 #undef DUET_COMPILED_TEMPLATE
 #define DUET_COMPILED_TEMPLATE template
 
-#include <duet/mechanism/srdf.hpp>
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/srdf.hpp>
+#include <duet/io/urdf.hpp>

@@ -2,8 +2,8 @@
 
 // All joints for a pose.
 
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/all_inverse_kinematics.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
 
 #include <cstddef>
 

@@ -2,8 +2,8 @@
 
 // From which solution an arm can follow a path.
 
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/choose_start.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/choose_start.hpp>
 
 #include <cstddef>
 

@@ -71,7 +71,7 @@ endforeach()
 message("| header | s | over Eigen/Core |\n|---|---|---|")
 foreach(header duet core/select dual/math derivative/jacobian quaternion/exponential
     dual_quaternion/screw comparison/compare expression/jacobian spline/interpolate
-    mechanism/jacobian planning/inverse_kinematics)
+    kinematics/jacobian robotics/inverse_kinematics)
   if(programs AND NOT header MATCHES "${programs}")
     continue()
   endif()

@@ -2,8 +2,8 @@
 
 // Joints for a pose.
 
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 Eigen::Matrix<double, 7, 1> joints(const duet::dual_quaternion<double>& goal,
                                    const Eigen::Matrix<double, 7, 1>& start) {

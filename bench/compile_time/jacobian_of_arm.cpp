@@ -2,8 +2,8 @@
 
 // The geometric Jacobian of a robot.
 
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/mechanism/robots.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/robots.hpp>
 
 Eigen::Matrix<double, 6, 7> twists(const Eigen::Matrix<double, 7, 1>& theta) {
   return jacobian(duet::robots::panda(), theta, duet::frame::hybrid);

@@ -2,8 +2,8 @@
 
 // The geometric Jacobian of a link of a robot that is read from a file.
 
-#include <duet/mechanism/tree_jacobian.hpp>
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/urdf.hpp>
+#include <duet/kinematics/tree_jacobian.hpp>
 
 #include <string>
 

@@ -2,8 +2,8 @@
 
 // Joints along a screw motion.
 
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 
 Eigen::Matrix<double, 7, 1> last(const Eigen::Matrix<double, 7, 1>& start,
                                  const duet::dual_quaternion<double>& goal) {

@@ -8,12 +8,12 @@
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/all_inverse_kinematics.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/robots.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 
 #include <Eigen/SVD>
 

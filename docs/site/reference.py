@@ -10,7 +10,7 @@ from html import escape
 import text
 
 LAYERS = ["core", "dual", "derivative", "quaternion", "dual_quaternion", "comparison", "expression", "spline",
-          "mechanism", "planning", "interop"]
+          "kinematics", "motion", "io", "robotics", "interop"]
 HIDDEN = {"detail", "rule", "op", "internal"}  # namespaces
 LISTS = {"param": "Argument", "templateparam": "Template argument", "exception": "Throws", "retval": "Returns",
          "return": "Returns", "note": "Note", "warning": "Mind", "see": "See", "pre": "Needs", "post": "Then"}

@@ -13,11 +13,11 @@
 
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
-#include <duet/mechanism/loop_file.hpp>
-#include <duet/mechanism/loop_positions.hpp>
-#include <duet/mechanism/loop_trace.hpp>
-#include <duet/mechanism/mobility.hpp>
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/loop_file.hpp>
+#include <duet/io/urdf.hpp>
+#include <duet/robotics/loop_positions.hpp>
+#include <duet/robotics/loop_trace.hpp>
+#include <duet/robotics/mobility.hpp>
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 
 #include <duet/core/text/file.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/mechanism/closed_tree.hpp>
+#include <duet/robotics/closed_tree.hpp>
 
 #include <Eigen/Core>
 

@@ -3,10 +3,10 @@
 // A robot arm: forward kinematics, Jacobian, inverse kinematics, and a plan along a screw motion.
 
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 
 #include <iostream>
 

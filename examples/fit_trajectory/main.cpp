@@ -13,7 +13,7 @@
 #include "../support/program.hpp"
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/printable.hpp>
-#include <duet/spline/recording.hpp>
+#include <duet/io/recording.hpp>
 
 #include <cstddef>
 #include <cstdio>

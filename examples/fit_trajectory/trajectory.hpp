@@ -3,8 +3,8 @@
 
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/io/recording.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/recording.hpp>
 
 #include <cmath>
 #include <cstddef>

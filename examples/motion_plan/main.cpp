@@ -14,7 +14,7 @@
 #include "../support/program.hpp"
 
 #include <duet/core/text/progress_line.hpp>
-#include <duet/planning/time_parametrised.hpp>
+#include <duet/robotics/time_parametrised.hpp>
 
 #include <chrono>
 #include <cstddef>

@@ -7,10 +7,10 @@
 
 #include <duet/core/random_source.hpp>
 #include <duet/duet.hpp>
-#include <duet/mechanism/srdf.hpp>
-#include <duet/mechanism/urdf.hpp>
-#include <duet/planning/capsules_of.hpp>
-#include <duet/planning/pairs_apart.hpp>
+#include <duet/io/srdf.hpp>
+#include <duet/io/urdf.hpp>
+#include <duet/robotics/capsules_of.hpp>
+#include <duet/robotics/pairs_apart.hpp>
 
 #include <algorithm>
 #include <cmath>

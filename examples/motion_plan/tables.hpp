@@ -5,8 +5,8 @@
 
 #include <duet/core/text/csv.hpp>
 #include <duet/duet.hpp>
-#include <duet/planning/joint_trajectory.hpp>
-#include <duet/planning/save_plan.hpp>
+#include <duet/io/save_plan.hpp>
+#include <duet/kinematics/joint_trajectory.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 #include "tables.hpp"
 
 #include <duet/core/text/csv.hpp>
-#include <duet/planning/follow_path.hpp>
+#include <duet/robotics/follow_path.hpp>
 
 #include <algorithm>
 #include <cstdio>

@@ -9,7 +9,7 @@
 
 #include <duet/core/text/csv.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
-#include <duet/planning/motion_plan.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 
 #include <algorithm>
 #include <cstddef>

@@ -15,9 +15,9 @@
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/duet.hpp>
-#include <duet/mechanism/centre_of_mass.hpp>
-#include <duet/mechanism/tree_jacobian.hpp>
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/urdf.hpp>
+#include <duet/kinematics/centre_of_mass.hpp>
+#include <duet/kinematics/tree_jacobian.hpp>
 
 #include <cstddef>
 #include <cstdio>

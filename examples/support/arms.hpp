@@ -4,9 +4,9 @@
 #include "command_line.hpp"
 #include "numbers.hpp"
 
-#include <duet/mechanism/robots.hpp>
-#include <duet/mechanism/serial_chain.hpp>
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/urdf.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/kinematics/serial_chain.hpp>
 
 #include <Eigen/Core>
 

@@ -7,8 +7,8 @@
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/io/tables/columns.hpp>
 #include <duet/quaternion/norm.hpp>
-#include <duet/spline/tables/columns.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -4,8 +4,8 @@
 #include "equal_arcs.hpp"
 
 #include <duet/core/text/file.hpp>
+#include <duet/io/table_file.hpp>
 #include <duet/spline/orientations.hpp>
-#include <duet/spline/table_file.hpp>
 
 #include <string>
 #include <utility>

@@ -3,20 +3,20 @@
 
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
-/// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (mechanism/urdf.hpp),
-/// trees of links and joints (mechanism/coupled_tree.hpp, mechanism/tree_limits.hpp), mechanisms
-/// with loops of them (mechanism/loop_file.hpp, mechanism/loop_positions.hpp,
-/// mechanism/loop_trace.hpp, mechanism/mobility.hpp), arms in many
-/// configurations (mechanism/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
-/// inverse kinematics and what moves along them (planning/all_inverse_kinematics.hpp,
-/// planning/differentiable_branch.hpp, planning/self_motion_curves.hpp), partial goals, wishes and
-/// the start of a path (planning/goals.hpp, planning/equation_goal.hpp, planning/choose_start.hpp),
+/// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (io/urdf.hpp),
+/// trees of links and joints (kinematics/coupled_tree.hpp, kinematics/tree_limits.hpp), mechanisms
+/// with loops of them (io/loop_file.hpp, robotics/loop_positions.hpp,
+/// robotics/loop_trace.hpp, robotics/mobility.hpp), arms in many
+/// configurations (kinematics/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
+/// inverse kinematics and what moves along them (robotics/all_inverse_kinematics.hpp,
+/// robotics/differentiable_branch.hpp, robotics/self_motion_curves.hpp), partial goals, wishes and
+/// the start of a path (robotics/goals.hpp, robotics/equation_goal.hpp, robotics/choose_start.hpp),
 /// what keeps links apart from each other and the capsules that their shapes are in
-/// (planning/pairs_apart.hpp, planning/capsules_of.hpp, planning/enclosing_capsule.hpp,
-/// mechanism/mesh_file.hpp, mechanism/srdf.hpp),
-/// plans over time (planning/time_parametrised.hpp), tables, recordings and plans as files
-/// (spline/table_file.hpp, spline/recording.hpp, planning/save_plan.hpp, core/text/csv.hpp),
-/// progress_line (core/text/progress_line.hpp), the notes' own planner (planning/printed_plan.hpp),
+/// (robotics/pairs_apart.hpp, robotics/capsules_of.hpp, robotics/enclosing_capsule.hpp,
+/// io/mesh_file.hpp, io/srdf.hpp),
+/// plans over time (robotics/time_parametrised.hpp), tables, recordings and plans as files
+/// (io/table_file.hpp, io/recording.hpp, io/save_plan.hpp, core/text/csv.hpp),
+/// progress_line (core/text/progress_line.hpp), the notes' own planner (motion/printed_plan.hpp),
 /// the nearest point of a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
@@ -63,18 +63,16 @@
 #include <duet/expression/special_functions.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>
-#include <duet/mechanism/adapted.hpp>
-#include <duet/mechanism/analytic_jacobian.hpp>
-#include <duet/mechanism/closed_loop.hpp>
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/mechanism/jacobian_rate.hpp>
-#include <duet/mechanism/joint_efforts.hpp>
-#include <duet/mechanism/limits.hpp>
-#include <duet/mechanism/manipulability.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/mechanism/screw_axes.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/kinematics/adapted.hpp>
+#include <duet/kinematics/analytic_jacobian.hpp>
+#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/jacobian_rate.hpp>
+#include <duet/kinematics/joint_efforts.hpp>
+#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/manipulability.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/kinematics/screw_axes.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/distance.hpp>
@@ -85,6 +83,8 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>

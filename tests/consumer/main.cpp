@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/duet.hpp>
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/urdf.hpp>
 
 #include <fstream>
 #include <iostream>

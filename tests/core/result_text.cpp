@@ -6,10 +6,10 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/sparse.hpp>
 #include <duet/dual_quaternion/screw.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
-#include <duet/planning/motion_plan.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/spline/look_up_table.hpp>
 
 #include <doctest/doctest.h>

@@ -11,8 +11,8 @@
 #include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>
-#include <duet/mechanism/jacobian.hpp>
-#include <duet/mechanism/robots.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/robots.hpp>
 
 #include <doctest/doctest.h>
 

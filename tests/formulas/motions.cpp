@@ -6,7 +6,7 @@
 #include "formulas/table.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/mechanism/robots.hpp>
+#include <duet/kinematics/robots.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 
@@ -210,7 +210,7 @@ formula arm(std::string label, std::string function, const Chain& chain,
     joints.push_back(argument::number);
   }
   return make_formula(
-      std::move(label), R"(A(\Theta),\; t(\Theta))", std::move(function), "mechanism/robots.hpp",
+      std::move(label), R"(A(\Theta),\; t(\Theta))", std::move(function), "kinematics/robots.hpp",
       std::move(joints),
       [&chain]<class T>(const numbers<T>& x) {
         const auto a = chain.pose(Eigen::Map<const Eigen::Matrix<T, int(N), 1>>(x.data()));

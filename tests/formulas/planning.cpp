@@ -7,8 +7,8 @@
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/planning/resolved_motion.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/motion/resolved_motion.hpp>
 #include <duet/quaternion/exponential.hpp>
 
 #include <Eigen/Core>
@@ -140,7 +140,7 @@ bool is_regular(const numbers<double>& x) {
 formula least_rates() {
   return make_formula(
       "N22", R"(\dot\Theta = B\dot\gamma,\; B = J^\top(JJ^\top)^{-1}J_2)", "resolved_rate_matrix",
-      "planning/resolved_motion.hpp", {vector, vector, number, vector, argument::quaternion},
+      "motion/resolved_motion.hpp", {vector, vector, number, vector, argument::quaternion},
       []<class T>(const numbers<T>& x) {
         duet::vector7<T> rate;
         rate << v_of(x, 7), x[10], x[11], x[12], x[13];
@@ -160,7 +160,7 @@ formula least_rates() {
 formula joint_step() {
   return make_formula(
       "N23", R"(\Theta(t+h) = \Theta(t) + \beta B\,(\gamma(t+h) - \gamma(t)))", "resolved_step",
-      "planning/resolved_motion.hpp", {vector, vector, number, rotation_vector, vector},
+      "motion/resolved_motion.hpp", {vector, vector, number, rotation_vector, vector},
       []<class T>(const numbers<T>& x) {
         return as_numbers(
             duet::resolved_step(robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .5));
@@ -183,7 +183,7 @@ formula planning_step() {
   auto f = make_formula(
       "N24",
       R"(\Theta \mapsto \Theta + B\,(\gamma(A\,(A^*A_g)^\tau) - \gamma(A)),\; A = A(\Theta))",
-      "sclerp, resolved_step", "planning/printed_plan.hpp",
+      "sclerp, resolved_step", "motion/printed_plan.hpp",
       {vector, vector, number, rotation_vector, vector, argument::fraction},
       []<class T>(const numbers<T>& x) {
         numbers<duet::real_type_t<T>> still; // all arguments except τ
@@ -220,7 +220,7 @@ formula steps_along_path() {
   return make_formula(
       "N25",
       R"(\Theta_{k+1} = \Theta_k + \beta B\,(\gamma_{k+1} - \gamma(A(\Theta_k))),\; k = 0, 1)",
-      "resolved_step", "planning/resolved_motion.hpp",
+      "resolved_step", "motion/resolved_motion.hpp",
       {vector, vector, number, rotation_vector, vector, rotation_vector, vector},
       []<class T>(const numbers<T>& x) {
         const auto midway =

@@ -2,7 +2,7 @@
 
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/mechanism/loop_file.hpp>
+#include <duet/io/loop_file.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/mechanism/mesh_file.hpp>
+#include <duet/io/mesh_file.hpp>
 
 #include <doctest/doctest.h>
 

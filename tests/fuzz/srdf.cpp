@@ -2,7 +2,7 @@
 
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/mechanism/srdf.hpp>
+#include <duet/io/srdf.hpp>
 
 #include <doctest/doctest.h>
 

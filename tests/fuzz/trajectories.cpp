@@ -4,7 +4,7 @@
 
 #include <duet/core/text/file.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
-#include <duet/spline/recording.hpp>
+#include <duet/io/recording.hpp>
 
 #include <doctest/doctest.h>
 

@@ -2,7 +2,7 @@
 
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/urdf.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,9 +4,9 @@
 
 #include <duet/derivative/sparse.hpp>
 #include <duet/duet.hpp>
-#include <duet/mechanism/sweep.hpp>
-#include <duet/mechanism/urdf.hpp>
-#include <duet/planning/time_parametrised.hpp>
+#include <duet/io/urdf.hpp>
+#include <duet/kinematics/sweep.hpp>
+#include <duet/robotics/time_parametrised.hpp>
 #include <duet/spline/fit.hpp>
 
 #include <cstddef>

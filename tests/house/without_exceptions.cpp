@@ -6,7 +6,7 @@
 // usage: without_exceptions [handled|unhandled|returns <error>]
 
 #include <duet/duet.hpp>
-#include <duet/mechanism/urdf.hpp>
+#include <duet/io/urdf.hpp>
 
 #include <array>
 #include <cmath>

@@ -7,7 +7,7 @@
 cmake_minimum_required(VERSION 3.22)
 
 # The header that includes it, as it is where there is none.
-set(header duet/mechanism/xml_parser.hpp)
+set(header duet/io/xml_parser.hpp)
 file(READ ${include}/${header} text)
 string(REPLACE "<expat.h>" "<no_such_expat.h>" changed "${text}")
 if(changed STREQUAL text)
@@ -19,7 +19,7 @@ file(WRITE ${folder}/${header} "${changed}")
 list(TRANSFORM compile REPLACE "^${include}$" ${folder})
 
 foreach(header IN ITEMS urdf mesh_file)
-  file(WRITE ${folder}/${header}.cpp "#include <duet/mechanism/${header}.hpp>\n")
+  file(WRITE ${folder}/${header}.cpp "#include <duet/io/${header}.hpp>\n")
   execute_process(COMMAND ${compile} -fsyntax-only ${folder}/${header}.cpp RESULT_VARIABLE result ERROR_VARIABLE message)
   string(REGEX MATCHALL "error: " errors "${message}")
   list(LENGTH errors count)

@@ -54,7 +54,7 @@ if(compile MATCHES "clang")
 endif()
 read_comment("wrong flags" wrong_flags)
 file(STRINGS ${snippet} searches
-  REGEX "#include <duet/planning/(all_inverse_kinematics|choose_start|follow_path|goals|self_motion_curves)")
+  REGEX "#include <duet/robotics/(all_inverse_kinematics|choose_start|follow_path|goals|self_motion_curves)")
 if(searches)
   list(APPEND compile -DDUET_COMPILED)
 elseif(precompiled AND NOT flags AND NOT wrong_flags)

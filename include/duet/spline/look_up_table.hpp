@@ -7,7 +7,7 @@
 #include <vector>
 
 /// \file
-/// Lookup tables of rotations and poses. As files: spline/table_file.hpp.
+/// Lookup tables of rotations and poses. As files: io/table_file.hpp.
 
 namespace duet {
 

@@ -3,13 +3,13 @@
 // Prints every bit of the results of the library's functions.
 
 #include <duet/comparison/compare.hpp>
-#include <duet/mechanism/loop_positions.hpp>
-#include <duet/mechanism/loop_trace.hpp>
-#include <duet/mechanism/mobility.hpp>
-#include <duet/mechanism/robots.hpp>
-#include <duet/mechanism/urdf.hpp>
-#include <duet/planning/inverse_kinematics.hpp>
-#include <duet/planning/plan_screw_motion.hpp>
+#include <duet/io/urdf.hpp>
+#include <duet/kinematics/robots.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics/loop_positions.hpp>
+#include <duet/robotics/loop_trace.hpp>
+#include <duet/robotics/mobility.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/spline/fit.hpp>
 
 #include <cstddef>

@@ -3,8 +3,8 @@
 // within: 5
 // forms: 4
 
-#include <duet/spline/recording.hpp>
-#include <duet/spline/table_file.hpp>
+#include <duet/io/recording.hpp>
+#include <duet/io/table_file.hpp>
 
 #include <cstddef>
 

@@ -1,0 +1,55 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/file.hpp>
+#include <duet/io/xml_element.hpp>
+#include <duet/kinematics/robot_contents.hpp>
+
+#include <string>
+#include <vector>
+
+/// \file
+/// Pairs of links in SRDF. For those who extend duet.
+
+namespace duet::detail {
+
+[[nodiscard]] inline std::vector<link_pair> disabled_collisions(const std::string& path,
+                                                                const xml_element& robot) {
+  const auto fail = [&](const xml_element& in, const std::string& what) {
+    raise(file_error(path, in.line, what));
+  };
+  if (robot.name != "robot") {
+    fail(robot, "the root is <" + robot.name + "> (expected <robot>)");
+  }
+  std::vector<link_pair> result;
+  for (const xml_element& each : robot.children) {
+    if (each.name == "enable_collisions" || each.name == "disable_default_collisions") {
+      fail(each, "<" + each.name + "> is not supported");
+    }
+    if (each.name != "disable_collisions") {
+      continue;
+    }
+    for (const auto& [key, value] : each.attributes) {
+      if (key != "link1" && key != "link2" && key != "reason") {
+        fail(each, "<disable_collisions>: unknown attribute \"" + key +
+                       "\": there are \"link1\", \"link2\" and \"reason\"");
+      }
+    }
+    for (const char* key : {"link1", "link2"}) {
+      if (each.attribute(key) == nullptr) {
+        fail(each, std::string("<disable_collisions>: no attribute \"") + key + "\"");
+      }
+      if (each.attribute(key)->empty()) {
+        fail(each, std::string("<disable_collisions>: ") + key + "=\"\" is empty");
+      }
+    }
+    if (*each.attribute("link1") == *each.attribute("link2")) {
+      fail(each,
+           "<disable_collisions>: link1 and link2 are both \"" + *each.attribute("link1") + "\"");
+    }
+    result.push_back({*each.attribute("link1"), *each.attribute("link2")});
+  }
+  return result;
+}
+
+} // namespace duet::detail

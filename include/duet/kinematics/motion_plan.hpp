@@ -1,0 +1,225 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/kinematics/serial_chain.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+/// \file
+/// Options and result of the path planners.
+
+namespace duet {
+
+/// Error of a pose relative to another: distance of the origins and rotation angle.
+struct pose_error {
+  double translation = 0; ///< distance of the origins, in units of length
+  double rotation = 0;    ///< rotation angle between the axes, radians
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("translation", translation);
+    f("rotation", rotation);
+  }
+};
+
+/// Tolerance of a pose, with separate bounds for lengths and angles: `{.1, 1e-3}` is a tenth of a
+/// unit of length and a milliradian. A single number sets both.
+struct pose_tolerance {
+  double translation; ///< maximum distance of the origins, in units of length
+  double rotation;    ///< maximum rotation angle between the axes, radians
+
+  constexpr pose_tolerance(double both) : translation(both), rotation(both) {}
+  constexpr pose_tolerance(double of_translation, double of_rotation)
+      : translation(of_translation), rotation(of_rotation) {}
+
+  /// Ratio of an error to the tolerance, the larger one of length and angle; at most 1 within it.
+  [[nodiscard]] double ratio(const pose_error& error) const {
+    return std::max(error.translation / translation, error.rotation / rotation);
+  }
+};
+
+/// Options of `follow_path` and `plan_screw_motion`. Steps along the path are fractions of it.
+struct plan_options {
+  /// Maximum error of the tip relative to the path at waypoints.
+  pose_tolerance tolerance = 1e-6;
+  /// Maximum error of the tip relative to the path between waypoints, where joints move straight
+  /// on.
+  pose_tolerance deviation = 1e-5;
+  /// Maximum step along the path from one waypoint to the next.
+  double largest_step = .1;
+  /// Minimum step along the path; below it the plan only continues by a self-motion.
+  double smallest_step = 1e-6;
+  /// Gain of joint-limit avoidance (joint centring): largest rate at which joints move away from
+  /// their limits without moving the tip (in the null space of the Jacobian), in coordinates per
+  /// path.
+  double centring = 1;
+  /// Step along the path between the poses at which the tip may stop for a self-motion; 0: none.
+  double search_step = .02;
+  /// Step of the joints from one configuration of a self-motion to the next, in coordinates.
+  double self_motion_step = .1;
+  /// Maximum number of iterations of Newton's method in total.
+  int max_iterations = 1000000;
+};
+
+/// Termination reason of a planner or search. Plans are continued to within 100 `smallest_step` of
+/// where they end, 1e-4 of the path: if limits end one closer than that before a singularity does,
+/// both block it, and the reason is either of the two.
+enum class stop_reason {
+  reached,         ///< the tip is at the goal
+  joint_limit,     ///< the continuation leads beyond the limits of a joint
+  singular,        ///< the continuation leads through a singularity
+  obstacle,        ///< the continuation leads too close to an obstacle, or to self-collision
+  no_progress,     ///< steps became too small, for none of these reasons
+  iteration_limit, ///< the maximum number of iterations is used up
+  out_of_reach,    ///< the goal is farther away than the links reach
+  no_solution      ///< no joint coordinates take the tip there, within limits or not
+};
+
+/// Name of a `stop_reason`.
+[[nodiscard]] inline const char* to_text(stop_reason reason) {
+  constexpr std::array names{"reached",     "joint_limit",     "singular",     "obstacle",
+                             "no_progress", "iteration_limit", "out_of_reach", "no_solution"};
+  return names[std::size_t(reason)];
+}
+
+/// Error between two poses, length and angle separate; symmetric in a and b.
+template <std::floating_point T>
+[[nodiscard]] pose_error pose_error_between(const dual_quaternion<T>& a,
+                                            const dual_quaternion<T>& b) {
+  return {(translation(b) - translation(a)).norm(),
+          rotation_vector(quaternion<T>(conj(rotation(a)) * rotation(b))).norm()};
+}
+
+/// Path in configuration space from the start on: waypoints, with straight lines in between. If the
+/// goal is not reached, the path ends as far as the planner came.
+///
+/// \tparam N  as in `serial_chain`
+template <int N>
+struct motion_plan {
+  /// Configuration at each waypoint: radians, or units of length for prismatic joints.
+  std::vector<detail::joint_vector<double, N>> joints;
+  std::vector<dual_quaternion<double>> poses; ///< pose of the tip at each waypoint
+  /// Fraction of the screw motion, or parameter of the path, at each waypoint; equal at successive
+  /// waypoints of a self-motion.
+  std::vector<double> tau;
+  std::vector<pose_error> deviations; ///< error relative to the requested motion at each waypoint
+  /// Smallest singular value of the Jacobian in `frame::hybrid` at any waypoint, estimated from
+  /// above.
+  double smallest_singular_value = std::numeric_limits<double>::infinity();
+  /// Smallest distance of any joint from its nearer limit at any waypoint, in coordinates.
+  double smallest_limit_margin = std::numeric_limits<double>::infinity();
+  /// Smallest clearance at any waypoint, of bodies from obstacles and in pairs; infinite without
+  /// any.
+  double smallest_clearance = std::numeric_limits<double>::infinity();
+  int iterations = 0; ///< number of iterations of Newton's method in total
+  /// Termination reason: `reached` if the plan ends at the goal.
+  stop_reason reason = stop_reason::no_progress;
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("joints", joints);
+    f("poses", poses);
+    f("tau", tau);
+    f("deviations", deviations);
+    f("smallest_singular_value", smallest_singular_value);
+    f("smallest_limit_margin", smallest_limit_margin);
+    f("smallest_clearance", smallest_clearance);
+    f("iterations", iterations);
+    f("reason", reason);
+  }
+};
+
+namespace detail {
+
+template <int N, class C, class V>
+void add_waypoint(motion_plan<N>& plan, const C& chain, const V& theta,
+                  const dual_quaternion<double>& pose, double tau, const pose_error& deviation) {
+  plan.joints.push_back(theta);
+  plan.poses.push_back(pose);
+  plan.tau.push_back(tau);
+  plan.deviations.push_back(deviation);
+  for (int i = 0; i < chain.size(); ++i) {
+    const auto& limits = chain.limits(i);
+    plan.smallest_limit_margin =
+        std::min({plan.smallest_limit_margin, theta[i] - limits.lower, limits.upper - theta[i]});
+  }
+}
+
+/// Coordinates of a chain's joints, in the vector type of the chain.
+template <class C, class X>
+[[nodiscard]] joint_vector<double, C::joints> to_chain_joints(const C& chain, const X& x) {
+  joint_vector<double, C::joints> theta(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    theta[i] = x[i];
+  }
+  return theta;
+}
+
+/// \throws invalid_input for a start of another size, not finite or outside the limits
+template <class C, class Start>
+void require_start(const C& chain, const Start& start) {
+  require_size(chain, start);
+  for (int i = 0; i < chain.size(); ++i) {
+    const double x = vector_argument<Start>::get(start, i);
+    const auto& limits = chain.limits(i);
+    require(x >= limits.lower && x <= limits.upper && x - x == 0, "duet: plan: joint ", i,
+            " of the start is ", x, " (expected a finite number from ", limits.lower, " to ",
+            limits.upper, ")");
+  }
+}
+
+/// \throws invalid_input for an argument that is not a pose: "duet: plan: the goal is …"
+inline void require_pose(const dual_quaternion<double>& a, const char* caller,
+                         const std::string& name) {
+  if (is_unit(a, 1e-6)) {
+    return;
+  }
+  // If one entry of a translation is not finite, no entry of q is: each depends on all of them.
+  const auto rotation_part = rotation(a);
+  const auto translation_part = translation(a);
+  const auto entry = [](double x) { return x == x ? to_text(x) : "nan"; }; // nan without a sign
+  require(is_all_finite(rotation_part), "duet: ", caller, ": the rotation of ", name,
+          " is not finite: (", entry(rotation_part.w()), ", ", entry(rotation_part.x()), ", ",
+          entry(rotation_part.y()), ", ", entry(rotation_part.z()), ")");
+  require(is_all_finite(dual_part(a)), "duet: ", caller, ": the translation of ", name,
+          " is not finite: (", entry(translation_part[0]), ", ", entry(translation_part[1]), ", ",
+          entry(translation_part[2]), ")");
+  const auto square = squared_norm(a);
+  raise(invalid_input(message("duet: ", caller, ": ", name,
+                              " is not a unit dual quaternion: |p|^2 = ", square.value(),
+                              ", p.q = ", square.epsilon() / 2, " (expected 1 and 0)")));
+}
+
+/// \throws invalid_input unless the value is finite and `is_good`: within the `range` of the
+/// message
+inline void require_option(const char* caller, const char* name, double value, bool is_good,
+                           const char* range) {
+  require(is_good && value - value == 0, "duet: ", caller, ": ", name, " is ", value, " (expected ",
+          range, ")");
+}
+inline void require_positive(const char* caller, const char* name, double value) {
+  require_option(caller, name, value, value > 0, "a positive number");
+}
+inline void require_positive(const char* caller, const char* name, const pose_tolerance& value) {
+  const bool is_length = !(value.translation > 0);
+  if (is_length || !(value.rotation > 0)) {
+    const std::string part = std::string(name) + (is_length ? ".translation" : ".rotation");
+    require_positive(caller, part.c_str(), is_length ? value.translation : value.rotation);
+  }
+}
+
+} // namespace detail
+} // namespace duet

@@ -1,0 +1,263 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/compiler/refused.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/jacobian.hpp>
+#include <duet/dual/promotion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/kinematics/jacobian.hpp>
+#include <duet/kinematics/jacobian_rate.hpp>
+#include <duet/kinematics/kinematic_tree.hpp>
+#include <duet/kinematics/tree_motion.hpp>
+#include <duet/kinematics/tree_rates.hpp>
+#include <duet/kinematics/tree_table.hpp>
+#include <duet/kinematics/tree_walk.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/three_vector.hpp>
+
+#include <Eigen/Core>
+
+#include <concepts>
+#include <cstddef>
+#include <vector>
+
+/// \file
+/// Geometric Jacobians of frames on a kinematic tree, their time derivatives and Hessians, in
+/// closed form.
+
+namespace duet {
+
+namespace detail {
+
+/// A matrix with one column for each coordinate of a tree.
+template <class S, int Rows>
+using tree_columns = Eigen::Matrix<S, Rows, Eigen::Dynamic>;
+
+/// A frame of a tree and its observer, relative to the node above both.
+template <class S>
+struct relative_frames {
+  link_displacement<S> frame, observer;
+
+  /// Pose of the frame relative to the observer.
+  [[nodiscard]] dual_quaternion<S> pose() const {
+    const quaternion<S> back = conj(observer.rotation);
+    return pose_of_unit(back * frame.rotation,
+                        rotated(back, frame.translation - observer.translation).eigen());
+  }
+  /// The frame whose axes the columns for `Frame` use.
+  template <class Frame>
+  [[nodiscard]] const link_displacement<S>& axes() const {
+    return std::same_as<Frame, body_frame> ? frame : observer;
+  }
+  /// The origin at which the columns for `Frame` have their v.
+  template <class Frame>
+  [[nodiscard]] const link_displacement<S>& origin() const {
+    return std::same_as<Frame, spatial_frame> ? observer : frame;
+  }
+};
+
+/// The two frames, and all nodes that move between them.
+template <class S>
+struct relative_motion : relative_frames<S> {
+  tree_motion<S> to_frame, to_observer;
+
+  template <class X>
+  relative_motion(const tree_table& table, const X& x, const tree_view& view)
+      : to_frame(motion_to<S>(table, x, view.frame.node, view.top)),
+        to_observer(motion_to<S>(table, x, view.observer.node, view.top)) {
+    this->frame = pose_on(to_frame, view.frame.offset);
+    this->observer = pose_on(to_observer, view.observer.offset);
+  }
+
+private:
+  [[nodiscard]] static link_displacement<S> pose_on(const tree_motion<S>& motion,
+                                                    const placement<double>& offset) {
+    return attached(motion.frame(int(motion.frames.size()) - 1), offset);
+  }
+};
+
+template <class J, class S>
+DUET_ALWAYS_INLINE void add_to_column(J& m, const coordinate_source& source, double sign,
+                                      const twist_column<S>& a) {
+  const double factor = sign * source.multiplier;
+  m(0, source.own) += a.v.x * factor;
+  m(1, source.own) += a.v.y * factor;
+  m(2, source.own) += a.v.z * factor;
+  m(3, source.own) += a.omega.x * factor;
+  m(4, source.own) += a.omega.y * factor;
+  m(5, source.own) += a.omega.z * factor;
+}
+
+/// Adds the screws of all nodes of a path, times a sign, to the columns of their coordinates;
+/// returns the frame of the last node.
+template <class S, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE link_displacement<S>
+add_screws(tree_columns<S, 6>& m, const tree_table& table, const X& x, const node_path& path,
+           double sign) {
+  return walk_down<S>(table, x, path,
+                      [&](int coordinate, const twist_column<S>& screw) DUET_INLINE_LAMBDA {
+                        add_to_column(m, table.sources[std::size_t(coordinate)], sign, screw);
+                      });
+}
+
+/// Sets m to the Jacobian of a frame of a tree; returns the pose of that frame.
+template <class Frame, class S, class X>
+[[nodiscard]] relative_frames<S> fill_jacobian(tree_columns<S, 6>& m, const tree_table& table,
+                                               const X& x, const tree_view& view) {
+  m.setConstant(6, Eigen::Index(table.names.size()), S(0));
+  const node_path to_frame(table, view.frame.node, view.top);
+  relative_frames<S> result{attached(add_screws<S>(m, table, x, to_frame, 1), view.frame.offset),
+                            identity_displacement<S>()};
+  if (!view.is_from_above) {
+    const node_path to_observer(table, view.observer.node, view.top);
+    result.observer = attached(add_screws<S>(m, table, x, to_observer, -1), view.observer.offset);
+  }
+  // All columns, as zero columns stay zero: finding the others takes longer.
+  if (!std::same_as<Frame, spatial_frame> || !view.is_from_above) {
+    const three_vector<S>& p = result.template origin<Frame>().translation;
+    for (Eigen::Index i = 0; i < m.cols(); ++i) {
+      const twist_column<S> twist = column_of(m, i);
+      set_column(m, twist_column<S>{twist.v + cross(twist.omega, p), twist.omega}, i);
+    }
+  }
+  if (std::same_as<Frame, body_frame> || !view.is_from_above) {
+    const rotation_of_many to_axes(conj(result.template axes<Frame>().rotation));
+    for (Eigen::Index i = 0; i < m.cols(); ++i) {
+      const twist_column<S> twist = column_of(m, i);
+      set_column(m, twist_column<S>{to_axes(twist.v), to_axes(twist.omega)}, i);
+    }
+  }
+  return result;
+}
+
+/// Time derivative of Rᵀ(v + ω × p), Rᵀω, where p has the velocity ṗ and R the angular velocity Ω:
+/// Rᵀ(v̇ + ω̇ × p + ω × ṗ − Ω × (v + ω × p)), Rᵀ(ω̇ − Ω × ω).
+template <class Frame, class S, class X, class V>
+[[nodiscard]] tree_columns<S, 6> jacobian_rate_of(const tree_table& table,
+                                                  const relative_motion<S>& motion, const X& x,
+                                                  const V& x_dot) {
+  tree_columns<S, 6> result(6, Eigen::Index(table.names.size()));
+  result.setConstant(S(0));
+  const auto to_frame = rates_of<S>(table, motion.to_frame, x, x_dot);
+  const auto to_observer = rates_of<S>(table, motion.to_observer, x, x_dot);
+  const auto last = [](const tree_rates<S>& rates) {
+    return rates.node(int(rates.nodes.size()) - 1);
+  };
+  const twist_column<S> of_frame = last(to_frame);
+  const twist_column<S> of_observer = last(to_observer);
+  const three_vector<S>& p = motion.template origin<Frame>().translation;
+  const quaternion<S> back = conj(motion.template axes<Frame>().rotation);
+  const twist_column<S>& of_origin = std::same_as<Frame, spatial_frame> ? of_observer : of_frame;
+  const three_vector<S> p_dot = of_origin.v + cross(of_origin.omega, p);
+  const three_vector<S>& axes_omega =
+      std::same_as<Frame, body_frame> ? of_frame.omega : of_observer.omega;
+  const auto add = [&](const tree_motion<S>& branch, const tree_rates<S>& rates, double sign) {
+    for (std::size_t i = 0; i < branch.screws.size(); ++i) {
+      const twist_column<S>& s = branch.screws[i].twist;
+      const twist_column<S>& s_dot = rates.screws[i];
+      const three_vector<S> at_p = s.v + cross(s.omega, p);
+      const twist_column<S> change{s_dot.v + cross(s_dot.omega, p) + cross(s.omega, p_dot) -
+                                       cross(axes_omega, at_p),
+                                   s_dot.omega - cross(axes_omega, s.omega)};
+      add_to_column(result, table.sources[std::size_t(branch.screws[i].coordinate)], sign,
+                    twist_column<S>{rotated(back, change.v), rotated(back, change.omega)});
+    }
+  };
+  add(motion.to_frame, to_frame, 1);
+  add(motion.to_observer, to_observer, -1);
+  return result;
+}
+
+} // namespace detail
+
+/// The geometric Jacobian J of 6 rows: the twist [v; ω] = J q̇ of a frame on a tree (N18, N20), for
+/// example an end-effector frame. Columns of coordinates that do not move the frame are zero.
+/// Units: those of q in the denominator.
+///
+/// \tparam Frame  `frame::spatial`, `frame::body` or `frame::hybrid`, as for a chain; for a
+///                `relative_frame` the observer is the fixed frame
+/// \param at      a link number, an `attached_frame`, as `tree.link("hand").at_point({x, y, z})`,
+///                or a `relative_frame`
+/// \return a matrix of 6 rows and a column for each coordinate
+/// \throws invalid_input if the number of coordinates differs from `size()`, or the link
+/// does not exist
+template <VectorLike X, FrameConstant Frame, FrameOnTree At>
+[[nodiscard]] auto jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
+  using S = detail::tree_scalar<X>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  detail::tree_columns<S, 6> result;
+  static_cast<void>(detail::fill_jacobian<Frame>(result, tree.table(), x, tree.view(at)));
+  return result;
+}
+
+/// Forward kinematics and geometric Jacobian: the pose A of a frame on a tree, and its Jacobian
+/// there. Arguments as `jacobian`.
+///
+/// \return `value_and_jacobian`
+template <VectorLike X, FrameConstant Frame, FrameOnTree At>
+[[nodiscard]] auto pose_and_jacobian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
+  using S = detail::tree_scalar<X>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  value_and_jacobian<dual_quaternion<S>, detail::tree_columns<S, 6>> result;
+  result.value =
+      detail::fill_jacobian<Frame>(result.jacobian, tree.table(), x, tree.view(at)).pose();
+  return result;
+}
+
+/// J and J̇ of a frame on a tree along the joint velocities q̇, so that J q̈ + J̇ q̇ is the
+/// derivative of the twist J q̇. In `frame::hybrid` its linear part is p̈ of the frame's origin.
+/// Arguments as `jacobian`.
+///
+/// \return `jacobian_and_rate`
+template <VectorLike X, VectorLike V, FrameConstant Frame, FrameOnTree At>
+[[nodiscard]] auto jacobian_with_rate(const kinematic_tree& tree, const X& q, const V& q_dot, Frame,
+                                      const At& at) {
+  using S = promote_t<detail::tree_scalar<X>, typename detail::vector_argument<V>::scalar>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  const detail::joint_velocities<S, V> x_dot(tree.table(), q_dot);
+  const detail::tree_view view = tree.view(at);
+  jacobian_and_rate<detail::tree_columns<S, 6>> result;
+  static_cast<void>(detail::fill_jacobian<Frame>(result.jacobian, tree.table(), x, view));
+  const detail::relative_motion<S> motion(tree.table(), x, view);
+  result.rate = detail::jacobian_rate_of<Frame>(tree.table(), motion, x, x_dot);
+  return result;
+}
+
+/// J̇ of `jacobian_with_rate`, the time derivative of the Jacobian.
+///
+/// \return a matrix of 6 rows and a column for each coordinate
+template <VectorLike X, VectorLike V, FrameConstant Frame, FrameOnTree At>
+[[nodiscard]] auto jacobian_rate(const kinematic_tree& tree, const X& q, const V& q_dot,
+                                 Frame frame_of_result, const At& at) {
+  return jacobian_with_rate(tree, q, q_dot, frame_of_result, at).rate;
+}
+
+/// Kinematic Hessian ∂J/∂q_j of a frame on a tree for all j, each a matrix of 6 rows and a column
+/// for each coordinate. Only in `frame::hybrid` the linear part of column k is ∂²p/∂q_j∂q_k of the
+/// frame's origin p. Arguments as `jacobian`.
+///
+/// \return a `std::vector` of matrices
+template <VectorLike X, FrameConstant Frame, FrameOnTree At>
+[[nodiscard]] auto kinematic_hessian(const kinematic_tree& tree, const X& q, Frame, const At& at) {
+  using S = detail::tree_scalar<X>;
+  const detail::joint_coordinates<S, X> x(tree.table(), q);
+  const detail::relative_motion<S> motion(tree.table(), x, tree.view(at));
+  std::vector<detail::tree_columns<S, 6>> result;
+  for (int j = 0; j < tree.size(); ++j) {
+    result.push_back(detail::jacobian_rate_of<Frame>(tree.table(), motion, x,
+                                                     detail::unit_velocities(tree.table(), j)));
+  }
+  return result;
+}
+
+template <VectorLike X>
+DUET_REFUSED("name the frame and the axes: jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
+Eigen::MatrixXd jacobian(const kinematic_tree&, const X&);
+template <VectorLike X, FrameConstant Frame>
+DUET_REFUSED("name the frame: jacobian(tree, q, frame::hybrid, tree.link(\"hand\"))")
+Eigen::MatrixXd jacobian(const kinematic_tree&, const X&, Frame);
+
+} // namespace duet

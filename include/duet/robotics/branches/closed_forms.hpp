@@ -1,0 +1,266 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/robotics/branches/angle_pairs.hpp>
+#include <duet/robotics/branches/connecting_rotation.hpp>
+#include <duet/robotics/branches/folded_elbow.hpp>
+#include <duet/robotics/branches/loop_equation.hpp>
+#include <duet/robotics/branches/subproblems.hpp>
+#include <duet/robotics/planning_model.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+/// \file
+/// Closed-form solutions of loops in which three consecutive joints have axes that meet in a point
+/// (spherical wrist) or are parallel, or in which three joints are prismatic.
+///
+/// Rotations about axes that meet leave their common point invariant, rotations about parallel axes
+/// a plane. The other three joints have to move that point or plane to its goal. This gives two
+/// equations in the first and third of them, because rotations about the second axis leave two
+/// numbers invariant. (Page: all_inverse_kinematics.)
+
+namespace duet::detail {
+
+/// Closed-form solutions of a loop whose joints 4 to 6 have axes that meet.
+class spherical_loop {
+public:
+  explicit spherical_loop(const loop_equation& loop, const vector3d& centre)
+      : loop_(loop), centre_(centre) {}
+
+  /// Calls visit(θ, multiplicity) for each solution: exp(θ₁S₁) exp(θ₂S₂) exp(θ₃S₃) moves the centre
+  /// to its goal, and a rotation remains.
+  ///
+  /// \return false if coordinates are undetermined
+  template <class Visit>
+  bool operator()(const Visit& visit) const {
+    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
+    const vector3d goal = loop_.closing.point(centre_);
+    const folded_elbow folded(loop_, centre_, goal);
+    bool is_determined = folded.is_certain;
+    if (folded.is_folded) {
+      bool is_met = false;
+      const auto met = [&](const six_coordinates& all, int multiplicity) {
+        is_met = true;
+        visit(all, multiplicity);
+      };
+      for (const auto& [theta1, theta2, theta3, multiplicity] : folded.all) {
+        if (!(folded.is_any && is_met)) {
+          six_coordinates theta;
+          theta << theta1, theta2, theta3, 0, 0, 0;
+          const double error = folded.is_any ? 0 : error_of(theta);
+          is_determined = wrist(theta, multiplicity, error, met) && is_determined;
+        }
+      }
+      return is_determined;
+    }
+    // In a frame with its origin on the second axis: the points e₃ c and e₁⁻¹ goal have the same
+    // component along that axis and the same squared norm.
+    const rotating_vector from(third.axis, centre_ - third.point, third.point - second.point);
+    const rotating_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
+    const auto height = [&](const rotating_vector& x) { return part_along(second.axis, x); };
+    const auto square = [&](const rotating_vector& x) {
+      const double constant = dot(x.across, x.across) + dot(x.along, x.along);
+      return first_harmonic{constant, 2 * dot(x.along, x.across), 2 * dot(x.along, x.normal)};
+    };
+    const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
+    connecting_rotation middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
+    const bool has_pairs = pairs([&](double near1, double near3, int m) {
+      middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
+        six_coordinates theta;
+        theta << theta1, theta2, theta3, 0, 0, 0;
+        is_determined = wrist(theta, multiplicity, 0, visit) && is_determined;
+      });
+    });
+    return has_pairs && middle.nearest() > 0 && is_determined;
+  }
+
+private:
+  /// Solves for the last three angles.
+  ///
+  /// \param error  error of the first three coordinates, if it exceeds round-off
+  /// \return false if coordinates are undetermined
+  template <class Visit>
+  bool wrist(six_coordinates& theta, int multiplicity, double error, const Visit& visit) const {
+    const quaternion<double> rotation =
+        conj(product_of_joints(loop_, theta, 0, 3).rotation) * loop_.closing.rotation;
+    const double nearest = for_each_three_axis_decomposition(
+        loop_.joints[3], loop_.joints[4], loop_.joints[5], rotation,
+        [&](double alpha, double beta, double gamma, int m) {
+          theta.tail<3>() << alpha, beta, gamma;
+          visit(theta, multiplicity * m);
+        },
+        error);
+    constexpr double close_by = 1e-3;
+    return error > 0 ? nearest > std::max(2 * close_by, error)
+                     : nearest > close_by || (nearest > 0 && nearest > error_of(theta));
+  }
+
+  /// Error of the first three coordinates by round-off in the position of the centre.
+  [[nodiscard]] double error_of(const six_coordinates& theta) const {
+    constexpr double rounding = 3e-15;
+    const six_columns all = closure_error(loop_, theta).jacobian;
+    const Eigen::Vector3d goal = loop_.closing.point(centre_);
+    Eigen::Matrix3d velocities;
+    for (int i = 0; i < 3; ++i) {
+      velocities.col(i) = all.col(i).head<3>() + all.col(i).tail<3>().cross(goal);
+    }
+    return rounding * velocities.inverse().norm();
+  }
+
+  const loop_equation& loop_;
+  vector3d centre_;
+};
+
+/// Closed-form solutions of a loop whose joints 1 to 3 have parallel axes.
+class planar_loop {
+public:
+  explicit planar_loop(const loop_equation& loop) : loop_(loop) {}
+
+  /// Calls visit(θ, multiplicity) for each solution: exp(θ₅S₅) exp(θ₆S₆) closing⁻¹ and
+  /// exp(−θ₄S₄) map the plane perpendicular to the three axes to the same plane, and a motion
+  /// of that plane remains.
+  ///
+  /// \return false if coordinates are undetermined
+  template <class Visit>
+  bool operator()(const Visit& visit) const {
+    const auto &fourth = loop_.joints[3], &fifth = loop_.joints[4], &sixth = loop_.joints[5];
+    const vector3d n = loop_.joints[0].axis;
+    const tip_pose opening = inverse_pose(loop_.closing);
+    const vector3d goal_normal = rotated(opening.rotation, n);
+    const double goal_distance = dot(goal_normal, opening.translation);
+    // Rotations of a plane about the fifth axis preserve the component of its normal along that
+    // axis and its distance from a point on that axis.
+    const rotating_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
+    const auto distance = [&](const rotating_vector& x, double before, const vector3d& offset) {
+      first_harmonic result = part_along(offset, x);
+      result.a += before;
+      return result;
+    };
+    const angle_pairs pairs{
+        {part_along(fifth.axis, to),
+         distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
+        {part_along(fifth.axis, from),
+         distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
+    connecting_rotation middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
+    bool is_determined = true;
+    const bool has_pairs = pairs([&](double near4, double near6, int m) {
+      middle(near6, near4, m, [&](double theta6, double theta4, double theta5, int multiplicity) {
+        six_coordinates theta;
+        theta << 0, 0, 0, theta4, theta5, theta6;
+        const auto visit_plane = [&](double angle, int times) {
+          theta[4] = angle;
+          is_determined = plane(theta, times, visit) && is_determined;
+        };
+        if (!middle.is_open() || !visit_zeros(beyond_reach(theta), visit_plane)) {
+          visit_plane(theta5, multiplicity);
+        }
+      });
+    });
+    return has_pairs && middle.nearest() > 0 && is_determined;
+  }
+
+private:
+  /// Function of θ₅ for a fifth axis that has become parallel to the first three: 0 where the
+  /// distance of the third axis from the first is at the centre of its range.
+  [[nodiscard]] first_harmonic beyond_reach(const six_coordinates& theta) const {
+    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2],
+               &fifth = loop_.joints[4];
+    const auto across = [&](const loop_joint& j, const vector3d& x) {
+      return x - dot(j.axis, x) * j.axis;
+    };
+    const tip_pose after = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 5, 1)),
+                   before = inverse_pose(product_of_joints(loop_, theta, 3, 1));
+    const rotating_vector offset(-1 * fifth.axis, before.point(third.point) - fifth.point);
+    const vector3d fixed_part = across(fifth, fifth.point - inverse_pose(after).point(first.point));
+    const double a = length_of(across(first, second.point - first.point)),
+                 c = length_of(fixed_part),
+                 b = length_of(across(first, third.point - second.point)),
+                 d = length_of(offset.across),
+                 radius = (std::max(std::abs(a - b), std::abs(c - d)) + std::min(a + b, c + d)) / 2;
+    return {c * c + d * d - radius * radius, 2 * dot(fixed_part, offset.across),
+            2 * dot(fixed_part, offset.normal)};
+  }
+
+  template <class Visit>
+  bool plane(six_coordinates& theta, int multiplicity, const Visit& visit) const {
+    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
+    const tip_pose motion = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 3, 3));
+    const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
+    const double total_angle = angle_of(motion.rotation, n); // sum of angles about n and −n
+    const vector3d offset = second.point - first.point;
+    const rotating_vector arm(second.axis, third.point - second.point, offset);
+    const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
+    const vector3d across = in_plane(offset), goal = in_plane(to);
+    connecting_rotation rotation(n, arm, to);
+    const double error = multiplicity > 1 ? 2 * one_angle : 0; // error of the other angles
+    const bool has_second = visit_zeros(
+        {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
+         2 * dot(across, arm.across), 2 * dot(across, arm.normal)},
+        [&](double near2, int near_multiplicity) {
+          rotation(near2, 0, near_multiplicity, [&](double theta2, double, double theta1, int m) {
+            theta[0] = theta1;
+            theta[1] = theta2;
+            theta[2] = dot(n, third.axis) * (total_angle - theta1 - dot(n, second.axis) * theta2);
+            visit(theta, multiplicity * m);
+          });
+        },
+        error);
+    // Angles that count as one may have put the third axis on the first.
+    return has_second && rotation.nearest() > error;
+  }
+
+  const loop_equation& loop_;
+};
+
+/// Closed-form solutions of a loop of three revolute and three prismatic joints.
+class three_prismatic_loop {
+public:
+  explicit three_prismatic_loop(const loop_equation& loop) : loop_(loop) {}
+
+  /// Calls visit(θ, multiplicity) for each solution: revolute joints alone make the rotation,
+  /// prismatic displacements the rest.
+  ///
+  /// \return false if coordinates are undetermined
+  template <class Visit>
+  bool operator()(const Visit& visit) const {
+    std::array<int, 3> revolute{}, prismatic{};
+    for (int i = 0, revolute_count = 0, prismatic_count = 0; i < 6; ++i) {
+      (loop_.joints[std::size_t(i)].is_revolute ? revolute[std::size_t(revolute_count++)]
+                                                : prismatic[std::size_t(prismatic_count++)]) = i;
+    }
+    const auto joint = [&](std::size_t k) { return loop_.joints[std::size_t(revolute[k])]; };
+    bool is_determined = true;
+    const double nearest = for_each_three_axis_decomposition(
+        joint(0), joint(1), joint(2), loop_.closing.rotation,
+        [&](double alpha, double beta, double gamma, int multiplicity) {
+          six_coordinates theta = six_coordinates::Zero();
+          theta[revolute[0]] = alpha;
+          theta[revolute[1]] = beta;
+          theta[revolute[2]] = gamma;
+          const closure_error closure(loop_, theta);
+          Eigen::Matrix3d directions;
+          for (int k = 0; k < 3; ++k) {
+            directions.col(k) = closure.jacobian.col(prismatic[std::size_t(k)]).head<3>();
+          }
+          const Eigen::Matrix3d inverse = directions.inverse();
+          is_determined = is_determined && inverse.norm() < 1e15 / directions.norm();
+          const Eigen::Vector3d d = inverse * closure.twist.head<3>();
+          for (int k = 0; k < 3; ++k) {
+            theta[prismatic[std::size_t(k)]] = d[k];
+          }
+          visit(theta, multiplicity);
+        });
+    return nearest > 0 && is_determined;
+  }
+
+private:
+  const loop_equation& loop_;
+};
+
+} // namespace duet::detail

@@ -1,0 +1,148 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+
+#include <duet/core/batch/vector_sine_cosine.hpp>
+#include <duet/core/compiled.hpp>
+#include <duet/dual_quaternion/displacement.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
+#include <duet/robotics/planning_model.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+/// \file
+/// Loop equation of six joints whose successive displacements equal a given one. All solutions of
+/// inverse kinematics are found from it; chain and goal enter through it only.
+
+namespace duet::detail {
+
+/// Joint in the zero configuration: revolute about the line through `point` along `axis`, or
+/// prismatic along `axis`. All in one frame.
+struct loop_joint {
+  bool is_revolute = true;
+  three_vector<double> axis{}, point{};
+};
+
+/// Inverse of the displacement x ↦ R x + t.
+[[nodiscard]] inline tip_pose inverse_pose(const tip_pose& a) {
+  return {conj(a.rotation), -1 * rotated(conj(a.rotation), a.translation)};
+}
+
+[[nodiscard]] inline loop_joint displaced(const tip_pose& by, const loop_joint& j) {
+  return {j.is_revolute, rotated(by.rotation, j.axis), by.point(j.point)};
+}
+
+/// Point on the axis of `a` that is nearest to that of `b`.
+[[nodiscard]] inline three_vector<double> nearest_point(const loop_joint& a, const loop_joint& b) {
+  const three_vector<double> n = cross(a.axis, b.axis);
+  return a.point + dot(cross(b.point - a.point, b.axis), n) / dot(n, n) * a.axis;
+}
+
+using six_coordinates = Eigen::Matrix<double, 6, 1>;
+using six_columns = Eigen::Matrix<double, 6, 6>;
+
+/// Loop-closure equation exp(θ₁S₁) … exp(θ₆S₆) = closing, a product of exponentials.
+struct loop_equation {
+  std::array<loop_joint, 6> joints{};
+  tip_pose closing{quaternion<double>(1), {0, 0, 0}};
+
+  /// Loop that begins with the second joint: exp(θ₂S₂) … exp(θ₆S₆) exp(θ₁ Ad(closing⁻¹)S₁) is the
+  /// same displacement.
+  [[nodiscard]] loop_equation shifted() const {
+    loop_equation result = *this;
+    std::rotate(result.joints.begin(), result.joints.begin() + 1, result.joints.end());
+    result.joints[5] = displaced(inverse_pose(closing), joints[0]);
+    return result;
+  }
+  /// Loop in reverse order, exp(−θ₆S₆) … exp(−θ₁S₁) = closing⁻¹.
+  [[nodiscard]] loop_equation reversed() const {
+    loop_equation result{joints, inverse_pose(closing)};
+    std::reverse(result.joints.begin(), result.joints.end());
+    for (loop_joint& j : result.joints) {
+      j.axis = -1 * j.axis;
+    }
+    return result;
+  }
+};
+
+/// Rotation about an axis, from the sine and the cosine of half its angle.
+[[nodiscard]] inline quaternion<double> rotation_about_axis(const three_vector<double>& axis,
+                                                            double sine, double cosine) {
+  return {cosine, sine * axis.x, sine * axis.y, sine * axis.z};
+}
+
+/// Sines and cosines of half the coordinates.
+[[nodiscard]] inline sines_at_once<6> half_angle_sincos_of(const six_coordinates& theta) {
+  return sines_at_once<6>(theta[0] / 2, theta[1] / 2, theta[2] / 2, theta[3] / 2, theta[4] / 2,
+                          theta[5] / 2);
+}
+
+/// Product of the displacements of `count` joints from joint `first` on (forward kinematics).
+[[nodiscard]] inline tip_pose
+product_of_joints(const loop_equation& loop, const six_coordinates& theta, int first, int count) {
+  const auto halves = half_angle_sincos_of(theta);
+  tip_pose result{quaternion<double>(1), {0, 0, 0}};
+  for (int i = first; i < first + count; ++i) {
+    const loop_joint& j = loop.joints[std::size_t(i)];
+    const quaternion<double> q = rotation_about_axis(j.axis, halves.sine(i), halves.cosine(i));
+    result = result * (j.is_revolute ? tip_pose{q, j.point - rotated(q, j.point)}
+                                     : tip_pose{quaternion<double>(1), theta[i] * j.axis});
+  }
+  return result;
+}
+
+/// Closure error of a loop: the twist [v; ω] that closes it, and the Jacobian of the six joints, in
+/// the frame of the axes.
+struct closure_error {
+  six_coordinates twist;
+  six_columns jacobian;
+  double size = 1; ///< largest prismatic displacement, at least 1: round-off grows with it
+
+  closure_error(const loop_equation& loop, const six_coordinates& theta) {
+    const auto halves = half_angle_sincos_of(theta);
+    tip_pose link{quaternion<double>(1), {0, 0, 0}};
+    for (int column = 0; column < 6; ++column) {
+      const loop_joint& j = loop.joints[std::size_t(column)];
+      const three_vector<double> n = rotated(link.rotation, j.axis);
+      if (!j.is_revolute) {
+        jacobian.col(column) << n.x, n.y, n.z, 0, 0, 0;
+        link.translation = link.translation + theta[column] * n;
+        size = std::max(size, std::abs(theta[column]));
+        continue;
+      }
+      const three_vector<double> p = link.point(j.point), m = cross(p, n);
+      jacobian.col(column) << m.x, m.y, m.z, n.x, n.y, n.z;
+      link.rotation =
+          link.rotation * rotation_about_axis(j.axis, halves.sine(column), halves.cosine(column));
+      link.translation = p - rotated(link.rotation, j.point);
+    }
+    const tip_pose remaining = loop.closing * inverse_pose(link);
+    const double twice =
+        remaining.rotation.w() < 0 ? -2 : 2; // 2 sin(angle/2) rises up to half a turn
+    twist << remaining.translation.x, remaining.translation.y, remaining.translation.z,
+        twice * remaining.rotation.x(), twice * remaining.rotation.y(),
+        twice * remaining.rotation.z();
+  }
+};
+
+/// Newton's method from an initial guess θ to a solution, accurate to round-off; near singularities
+/// by damped least squares (Levenberg–Marquardt).
+///
+/// \param size_of_angles  divisor of angular errors, as `closure_error::size` is of lengths, and at
+/// most that size: the default, which saves a step if many initial guesses are tried; or 1
+/// \return true if it converges
+[[nodiscard]] DUET_COMPILED_FUNCTION bool
+close_loop(const loop_equation& loop, six_coordinates& theta, double size_of_angles = HUGE_VAL);
+
+} // namespace duet::detail
+
+#ifndef DUET_COMPILED
+#include <duet/robotics/branches/close_loop.hpp>
+#endif

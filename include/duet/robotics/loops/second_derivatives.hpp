@@ -1,0 +1,107 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/random_source.hpp>
+#include <duet/dual/taylor.hpp>
+#include <duet/robotics/closed_tree.hpp>
+#include <duet/robotics/loops/rank_revealing_svd.hpp>
+
+#include <Eigen/Core>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+/// \file
+/// Second derivatives of the equations of loops. For those who extend duet.
+
+namespace duet::detail {
+
+/// Scalar for second derivatives of the equations.
+using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
+
+/// The quadratic forms wᵀ ∂²F(K v, K v) in v, a symmetric matrix for each column w, from F along
+/// the lines of single columns of K and of sums of two: 2 b(u, v) = b(u + v, u + v) − b(u, u) −
+/// b(v, v).
+///
+/// \param columns  K, each row per unit of its coordinate
+[[nodiscard]] inline std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
+                                                                  const Eigen::VectorXd& q,
+                                                                  const Eigen::MatrixXd& w,
+                                                                  const Eigen::MatrixXd& columns) {
+  const Eigen::Index n = columns.cols();
+  std::vector<Eigen::MatrixXd> result(std::size_t(w.cols()), Eigen::MatrixXd(n, n));
+  const auto second = [&](const Eigen::VectorXd& direction) {
+    Eigen::Matrix<along_line, Eigen::Dynamic, 1> x(q.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      x[i] = q[i] + of.units()[i] * direction[i] * along_line::variable(0);
+    }
+    const auto f = of.residuals(x);
+    Eigen::VectorXd all(f.size());
+    for (Eigen::Index i = 0; i < f.size(); ++i) {
+      all[i] = f[i].derivative(2);
+    }
+    return Eigen::VectorXd(w.transpose() * all);
+  };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      const Eigen::VectorXd along =
+          i == j ? second(columns.col(j)) : second(columns.col(i) + columns.col(j));
+      for (std::size_t k = 0; k < result.size(); ++k) {
+        Eigen::MatrixXd& form = result[k];
+        form(i, j) = along[Eigen::Index(k)];
+      }
+    }
+  }
+  for (Eigen::MatrixXd& form : result) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = 0; i < j; ++i) {
+        form(i, j) = (form(i, j) - form(i, i) - form(j, j)) / 2;
+        form(j, i) = form(i, j);
+      }
+    }
+  }
+  return result;
+}
+
+/// A uniformly distributed unit vector.
+[[nodiscard]] inline Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
+  Eigen::VectorXd result(n);
+  do {
+    for (double& x : result) {
+      x = random.normal();
+    }
+  } while (result.norm() < 1e-3);
+  return result.normalized();
+}
+
+/// Derivatives of all forms with respect to v, in rows.
+[[nodiscard]] inline Eigen::MatrixXd form_gradients(const std::vector<Eigen::MatrixXd>& forms,
+                                                    const Eigen::VectorXd& v) {
+  Eigen::MatrixXd result(Eigen::Index(forms.size()), v.size());
+  for (std::size_t k = 0; k < forms.size(); ++k) {
+    result.row(Eigen::Index(k)) = 2 * (forms[k] * v).transpose();
+  }
+  return result;
+}
+
+/// A unit vector v for which all forms vanish, by Newton's method from an initial guess; empty if
+/// it does not converge.
+[[nodiscard]] inline std::optional<Eigen::VectorXd>
+common_zero(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd v, double rounding) {
+  const auto count = Eigen::Index(forms.size());
+  Eigen::VectorXd f(count + 1);
+  Eigen::MatrixXd j(count + 1, v.size());
+  for (int i = 0; i < 40; ++i) {
+    j << form_gradients(forms, v), v.transpose();
+    f << j.topRows(count) * v / 2, (v.squaredNorm() - 1) / 2;
+    if (f.norm() < rounding) {
+      return v;
+    }
+    const rank_revealing_svd svd(j);
+    v -= svd.solve(f, svd.rank());
+  }
+  return std::nullopt;
+}
+
+} // namespace duet::detail

@@ -1,0 +1,70 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/io/save_plan.hpp>
+#include <duet/robotics/time_parametrised.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+namespace test_io_save_plan {
+namespace {
+
+using namespace duet;
+using vector = Eigen::Matrix<double, 2, 1>;
+
+const std::string path = "test_io_save_plan.csv";
+
+} // namespace
+
+TEST_CASE("save_plan, save_trajectory: files contain all digits") {
+  motion_plan<2> plan;
+  CHECK_THROWS_AS(save_plan(path, plan), invalid_input);
+  for (int k = 0; k < 3; ++k) {
+    plan.joints.emplace_back(k / 3.0, -std::sqrt(k + 2.0));
+    plan.poses.push_back(pose(from_rotation_vector(Eigen::Vector3d(.1 * k, .2, 1e-300)),
+                              Eigen::Vector3d(k / 7.0, 1e-17, 3)));
+    plan.tau.push_back(k / 2.0);
+    plan.deviations.push_back({1e-9 * k, 1e-8 / 3});
+  }
+  save_plan(path, plan);
+  const csv_file file(path, 12);
+  REQUIRE(file.rows().size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto& x = file.rows()[k].numbers;
+    CHECK(x[0] == plan.tau[k]);
+    CHECK(vector(x[1], x[2]) == plan.joints[k]);
+    const auto gamma = pose_coordinates(plan.poses[k]);
+    for (std::size_t i = 0; i < 7; ++i) {
+      CHECK(x[3 + i] == gamma[Eigen::Index(i)]);
+    }
+    CHECK(x[10] == plan.deviations[k].translation);
+    CHECK(x[11] == plan.deviations[k].rotation);
+  }
+  std::ifstream in(path);
+  std::string header;
+  std::getline(in, header);
+  CHECK(header == "tau,theta0 [rad or m],theta1 [rad or m],x [m],y [m],z [m],qw,qx,qy,qz,"
+                  "deviation [m],deviation [rad]");
+  in.close();
+
+  const auto q = time_optimal_trajectory(plan, vector(1, 1), vector(2, 2));
+  save_trajectory(path, q, .1);
+  const csv_file timed(path, 7);
+  CHECK(timed.rows().size() == std::size_t(std::ceil(q.duration() / .1)) + 1);
+  CHECK(timed.rows().back().numbers[0] == q.duration());
+  CHECK(timed.rows()[2].numbers[4] == q(.2).velocity[1]);
+  CHECK(timed.rows()[2].numbers[6] == q(.2).acceleration[1]);
+  CHECK_THROWS_AS(save_trajectory(path, q, 0), invalid_input);
+  std::remove(path.c_str());
+  CHECK_THROWS_AS(save_plan("no/such/folder/plan.csv", plan), file_error);
+}
+
+} // namespace test_io_save_plan

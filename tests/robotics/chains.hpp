@@ -1,0 +1,49 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include "kinematics/arms.hpp"
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+/// \file
+/// Chains of any number of joints, so that what searches on them is compiled once.
+
+namespace duet_test {
+
+using any_chain = duet::bounded_chain<16>;
+using any_joints = duet::detail::joint_vector<double, -16>;
+
+/// Uniform within the limits and one full turn.
+inline any_joints configuration(const any_chain& arm, random_source& random) {
+  using std::numbers::pi;
+  any_joints theta(arm.size());
+  for (int i = 0; i < arm.size(); ++i) {
+    theta[i] =
+        random.uniform(std::max(arm.limits(i).lower, -pi), std::min(arm.limits(i).upper, pi));
+  }
+  return theta;
+}
+
+inline bool is_within_limits(const any_chain& arm, const any_joints& theta) {
+  bool is_inside = theta.size() == arm.size();
+  for (int i = 0; i < arm.size(); ++i) {
+    is_inside = is_inside && arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
+  }
+  return is_inside;
+}
+
+/// Arm with a prismatic third joint, with a metre of `unit` units.
+inline duet::serial_chain<6> stanford_arm(double unit) {
+  using std::numbers::pi;
+  return duet::from_dh(std::array<duet::dh_row<>, 6>{
+      {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
+       {.d = .154 * unit, .alpha = pi / 2, .limits = {-2.9, 2.9}},
+       {.limits = {.3048 * unit, 1.27 * unit}, .kind = duet::joint_kind::prismatic},
+       {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
+       {.alpha = pi / 2, .limits = {-1.5, 1.5}},
+       {.d = .263 * unit, .limits = {-2.9, 2.9}}}});
+}
+
+} // namespace duet_test

@@ -1,0 +1,196 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/random.hpp"
+
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/robotics/constrained_step.hpp>
+#include <duet/robotics/small_vector.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace test_robotics_constrained_step {
+namespace {
+
+using namespace duet;
+using detail::inequality;
+using joints = Eigen::Matrix<double, 7, 1>;
+using vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 10, 1>;
+
+/// Normal numbers.
+template <class M>
+M random_matrix(duet_test::random_source& random, M m) {
+  for (Eigen::Index j = 0; j < m.cols(); ++j) {
+    for (Eigen::Index i = 0; i < m.rows(); ++i) {
+      m(i, j) = random.normal();
+    }
+  }
+  return m;
+}
+
+} // namespace
+
+TEST_CASE("cholesky: solves systems; an unknown without a positive pivot is 0") {
+  duet_test::random_source random(4);
+  for (int n = 1; n <= 10; ++n) {
+    using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 10, 10>;
+    const matrix root = random_matrix(random, matrix(n, n));
+    const vector x = random_matrix(random, vector(n));
+    // Only the lower half of a = root rootᵀ + 1/100 is used. The last unknown has a pivot of zero
+    // or below in `cut`.
+    matrix a(n, n), lower(n, n), cut(n, n);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) {
+        a(i, j) = root.row(i).dot(root.row(j)) + (i == j ? .01 : 0);
+        lower(i, j) = j > i ? NAN : a(i, j);
+        cut(i, j) = i < n - 1 ? lower(i, j) : i > j ? 0 : n % 2 - 1;
+      }
+    }
+    vector b(n);
+    for (int i = 0; i < n; ++i) {
+      b[i] = a.row(i).dot(x);
+    }
+    const detail::cholesky full(lower), reduced(cut);
+    CHECK(full.is_positive());
+    CHECK((full.solve(b) - x).norm() < 1e-10 * x.norm());
+    CHECK(!reduced.is_positive());
+    const vector found = reduced.solve(b);
+    CHECK(found[n - 1] == 0);
+    for (int i = 0; i < n - 1; ++i) {
+      CHECK(std::abs(a.row(i).dot(found) - b[i]) < 1e-10 * x.norm());
+    }
+  }
+}
+
+TEST_CASE("least_distance: agrees with Dykstra's alternating projections") {
+  duet_test::random_source random(1);
+  int moved = 0;
+  for (int k = 0; k < 200; ++k) {
+    const int n = random.integer(1, 10), m = random.integer(0, 20);
+    const vector inside = random_matrix(random, vector(n));
+    std::vector<inequality<vector>> inequalities;
+    for (int i = 0; i < m; ++i) {
+      const vector normal = random_matrix(random, vector(n));
+      inequalities.push_back({normal, normal.dot(inside) - .3 * std::abs(random.normal())});
+    }
+    if (m > 0) { // the same twice, and one that says nothing
+      inequalities.push_back(inequalities[0]);
+      inequalities.push_back({vector::Zero(n), -1});
+    }
+    const auto x = detail::least_distance(inequalities, n);
+    REQUIRE(x);
+    for (const auto& each : inequalities) {
+      CHECK(each.normal.dot(*x) - each.bound > -1e-10);
+    }
+    // Optimal: x·(y − x) ≥ 0 for all other solutions y.
+    CHECK(x->dot(inside - *x) > -1e-9);
+    // Dykstra's alternating projections end at the same point.
+    if (n < 4) {
+      vector y = vector::Zero(n);
+      std::vector<vector> increments(inequalities.size(), y);
+      for (int round = 0; round < 500; ++round) {
+        for (std::size_t i = 0; i < inequalities.size(); ++i) {
+          const vector from = y + increments[i];
+          const double length2 = std::max(inequalities[i].normal.squaredNorm(), 1e-300);
+          y = from + inequalities[i].normal *
+                         (std::max(0.0, inequalities[i].bound - inequalities[i].normal.dot(from)) /
+                          length2);
+          increments[i] = from - y;
+        }
+      }
+      CHECK((y - *x).norm() < 1e-3);
+      moved += x->norm() > .1;
+    }
+  }
+  CHECK(moved > 10);
+}
+
+TEST_CASE("least_distance: infeasible inequalities have no solution") {
+  duet_test::random_source random(2);
+  for (int k = 0; k < 100; ++k) {
+    const int n = random.integer(1, 8), m = random.integer(1, 20);
+    // A positive combination of all is 0 ≥ 1e-3.
+    std::vector<inequality<vector>> inequalities;
+    inequality<vector> sum{vector::Zero(n), 0};
+    for (int i = 0; i < m; ++i) {
+      inequalities.push_back({random_matrix(random, vector(n)), -std::abs(random.normal())});
+      const double u = random.uniform(.1, 2);
+      sum.normal += u * inequalities.back().normal;
+      sum.bound += u * inequalities.back().bound;
+    }
+    inequalities.push_back({-sum.normal, 1e-3 - sum.bound});
+    CHECK(!detail::least_distance(inequalities, n));
+  }
+  using list = std::vector<inequality<vector>>;
+  CHECK(!detail::least_distance(list{{vector::Zero(3), 1e-3}}, 3));
+  CHECK(detail::least_distance(list{{vector::Zero(3), -1e-3}}, 3) == vector(vector::Zero(3)));
+  CHECK(detail::least_distance(list{}, 3) == vector(vector::Zero(3)));
+}
+
+TEST_CASE("constrained_step: satisfies twist, limits and inequalities and is nearest to the "
+          "preferred step") {
+  duet_test::random_source random(3);
+  int found = 0, none = 0;
+  for (int k = 0; k < 300; ++k) {
+    const auto j = random_matrix(random, Eigen::Matrix<double, 6, 7>());
+    const joints preferred = .3 * random_matrix(random, joints());
+    const joints some = .1 * random_matrix(random, joints());
+    const vector6<double> e = j * some;
+    const joints lower = joints::Constant(-.3), upper = joints::Constant(.3);
+    std::vector<inequality<joints>> inequalities;
+    for (int i = 0; i < 3; ++i) {
+      inequalities.push_back({random_matrix(random, joints()), .3 * random.normal()});
+    }
+    const auto step = detail::constrained_step(j, e, preferred, lower, upper, inequalities).step;
+    // One degree of redundancy: the steps some + y z that satisfy all constraints, and the y
+    // nearest to the preferred step.
+    const joints any = random_matrix(random, joints());
+    const joints z = detail::self_motion<joints>(j)(any).normalized();
+    CHECK((j * z).norm() < 1e-14);
+    double low = -std::numeric_limits<double>::infinity(), high = -low;
+    const auto keep = [&](const joints& normal, double bound) {
+      const double rate = normal.dot(z), limit = (bound - normal.dot(some)) / rate;
+      (rate > 0 ? low : high) = rate > 0 ? std::max(low, limit) : std::min(high, limit);
+    };
+    for (Eigen::Index i = 0; i < 7; ++i) {
+      keep(joints::Unit(i), -.3);
+      keep(-joints::Unit(i), -.3);
+    }
+    for (const auto& each : inequalities) {
+      keep(each.normal, each.bound);
+    }
+    REQUIRE(std::abs(high - low) > 1e-6);
+    CHECK(step.has_value() == (low < high));
+    if (step) {
+      ++found;
+      const double y = std::clamp(z.dot(preferred - some), low, high);
+      CHECK((*step - some - y * z).norm() < 1e-10);
+    } else {
+      ++none;
+    }
+  }
+  CHECK(found > 20);
+  CHECK(none > 20);
+}
+
+TEST_CASE("constrained_step: without redundancy returns the only step or none") {
+  using six = Eigen::Matrix<double, 6, 1>;
+  const Eigen::Matrix<double, 6, 6> j = Eigen::Matrix<double, 6, 6>::Identity();
+  const six far = six::Constant(std::numeric_limits<double>::infinity()), none = six::Zero();
+  const std::vector<inequality<six>> inequalities{{-six::Unit(2), -.5}}; // Δ_2 ≤ 0.5
+  const six e = six::Constant(.4);
+  const auto step =
+      detail::constrained_step(j, e, six(six::Ones()), six(-far), far, inequalities).step;
+  REQUIRE(step);
+  CHECK((*step - e).norm() < 1e-15);
+  CHECK(!detail::constrained_step(j, six(2 * e), none, six(-far), far, inequalities).step);
+}
+
+} // namespace test_robotics_constrained_step

@@ -1,0 +1,619 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/message.hpp"
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+
+#include <duet/dual/taylor.hpp>
+#include <duet/robotics/time_parametrised.hpp>
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace test_robotics_jerk_limits {
+namespace {
+
+using namespace duet;
+using vector = Eigen::Matrix<double, 3, 1>;
+using one = Eigen::Matrix<double, 1, 1>;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Minimum time from rest to rest on a straight line: seven phases with constant jerk, fewer if the
+/// velocity or acceleration limit is not reached.
+double seven_phases(double distance, double v, double a, double j) {
+  // Duration of the acceleration from rest to a speed.
+  const auto rise = [&](double speed) {
+    return speed > a * a / j ? speed / a + a / j : 2 * std::sqrt(speed / j);
+  };
+  double low = 0, high = std::min(v, 1e9);
+  if (high * rise(high) <= distance) {
+    return 2 * rise(high) + (distance - high * rise(high)) / high;
+  }
+  for (int i = 0; i < 200; ++i) {
+    const double middle = (low + high) / 2;
+    (middle * rise(middle) < distance ? low : high) = middle;
+  }
+  return 2 * rise(high);
+}
+
+/// Largest fraction of a limit that is used, sampled at equidistant times.
+template <class Trajectory, class V>
+double max_fraction(const Trajectory& q, const V& v, const V& a, const V& j, int count) {
+  double result = 0;
+  for (int i = 0; i <= count; ++i) {
+    const double t = q.duration() * i / count;
+    const auto now = q(t);
+    result = std::max({result, now.velocity.cwiseQuotient(v).cwiseAbs().maxCoeff(),
+                       now.acceleration.cwiseQuotient(a).cwiseAbs().maxCoeff(),
+                       q.jerk(t).cwiseQuotient(j).cwiseAbs().maxCoeff()});
+  }
+  return result;
+}
+
+std::vector<double> numbers(const vector& x) { return {x.begin(), x.end()}; }
+
+/// Random waypoints with, by `kind`: steps of all joints, of one joint at a time, of very different
+/// lengths, and back and forth.
+std::vector<vector> random_waypoints(duet_test::random_source& random, int kind) {
+  std::vector<vector> result{vector(0, 0, 0)};
+  for (int i = random.integer(2, 8); i > 0; --i) {
+    vector step(random.normal(), random.normal(), random.normal());
+    if (kind == 1) {
+      step = random.normal() * vector::Unit(random.integer(0, 2));
+    } else if (kind == 2) {
+      step *= random.log_uniform(1e-3, 1);
+    } else if (kind == 3) {
+      step = (i % 2 == 0 ? 1 : -.7) * vector(1, 2, .5);
+    }
+    result.push_back(result.back() + step);
+  }
+  return result;
+}
+
+} // namespace
+
+TEST_CASE(
+    "time_optimal_trajectory: one joint with a jerk limit takes the time of the closed form") {
+  for (const double distance : {1e-3, .1, 1.0, 30.0}) {
+    for (const double v : {2.0, infinity}) {
+      for (const double j : {.5, 10.0, 400.0}) {
+        CAPTURE(distance);
+        CAPTURE(v);
+        CAPTURE(j);
+        const double a = 5, exact = seven_phases(distance, v, a, j);
+        const std::vector<one> ends{one(1.0), one(1 + distance)};
+        const auto q = time_optimal_trajectory(ends, std::array{v}, std::array{a}, {.jerk = {j}});
+        CHECK(q.duration() >= exact * (1 - 1e-12));
+        CHECK(q.duration() < exact * 1.02);
+        CHECK(max_fraction(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
+        CHECK(q.times() == std::vector<double>{0, q.duration()});
+      }
+    }
+  }
+  // The same motion backwards, through a waypoint, and in other units.
+  const auto time = [](double scale, double units) {
+    const std::vector<one> line{one(0.0), one(-.3 * scale), one(-1 * scale)};
+    return units * time_optimal_trajectory(line, std::array{2 * scale * units},
+                                           std::array{5 * scale * units * units},
+                                           {.jerk = {40 * scale * units * units * units}})
+                       .duration();
+  };
+  CHECK(time(1, 1) < seven_phases(1, 2, 5, 40) * 1.02);
+  CHECK(time(1e6, 1e3) == doctest::Approx(time(1, 1)).epsilon(1e-3));
+  CHECK(time(1e-6, 1e-3) == doctest::Approx(time(1, 1)).epsilon(1e-3));
+}
+
+TEST_CASE("time_optimal_trajectory: on a line with jerk limits the slowest joint determines the "
+          "duration") {
+  const std::vector<vector> ends{vector(0, 1, 0), vector(1, .5, 0)};
+  const vector v(1, 1, 1e-3), a(4, .5, 1e-3);
+  for (const double j : {1.0, 20.0}) {
+    const vector jerk(3 * j, j, 1e-3);
+    const auto q = time_optimal_trajectory(ends, v, a, {.jerk = numbers(jerk)});
+    // The second joint moves half as far.
+    const double exact = seven_phases(1, 1, 1, std::min(3 * j, 2 * j));
+    CHECK(q.duration() >= exact * (1 - 1e-12));
+    CHECK(q.duration() < exact * 1.02);
+  }
+}
+
+TEST_CASE(
+    "time_optimal_trajectory: random curves satisfy all jerk limits and are at rest at both ends") {
+  duet_test::random_source random(3);
+  for (int k = 0; k < 120; ++k) {
+    CAPTURE(k);
+    const auto waypoints = random_waypoints(random, k % 4);
+    const auto limits = [&](double from, double to) {
+      return vector(random.log_uniform(from, to), random.log_uniform(from, to),
+                    random.log_uniform(from, to));
+    };
+    const vector v = limits(.3, 3), a = limits(.5, 20);
+    vector j = limits(1, 500);
+    if (k % 7 == 0) {
+      j[k % 3] = infinity;
+    }
+    const time_parametrisation_options options{.min_intervals = 60 + k % 50, .jerk = numbers(j)};
+    const auto q = time_optimal_trajectory(waypoints, v, a, options);
+    const double fraction = max_fraction(q, v, a, j, 500);
+    CHECK(fraction <= 1 + 1e-10);
+    CHECK(fraction > .9);
+    CHECK(q(0).velocity.norm() < 1e-12);
+    CHECK(q(0).acceleration.norm() < 1e-12);
+    CHECK(q(q.duration()).velocity.cwiseQuotient(v).norm() < 1e-9);
+    CHECK(q(q.duration()).acceleration.cwiseQuotient(a).norm() < 1e-9);
+    REQUIRE(q.times().size() == waypoints.size());
+    for (std::size_t i = 0; i < waypoints.size(); ++i) {
+      CHECK((q(q.times()[i]).value - waypoints[i]).norm() < 1e-9);
+    }
+    // Jerk limits do not shorten the motion.
+    CHECK(q.duration() >
+          .99 * time_optimal_trajectory(waypoints, v, a,
+                                        {.curve = waypoint_interpolation::natural_cubic})
+                    .duration());
+  }
+}
+
+TEST_CASE(
+    "reference_parametrisation: s increases from the first to the last arc length, at rest or "
+    "in motion at its ends") {
+  duet_test::random_source random(8);
+  for (int k = 0; k < 200; ++k) {
+    CAPTURE(k);
+    std::vector<double> arc_lengths{1.0};
+    for (int i = random.integer(4, 30); i > 0; --i) {
+      arc_lengths.push_back(arc_lengths.back() + random.log_uniform(1e-3, 1));
+    }
+    const detail::reference_parametrisation reference(arc_lengths, {k % 2 == 0, k % 4 < 2});
+    const std::vector<double> knots{arc_lengths.front(), arc_lengths.back()};
+    const auto path = reference.pieces(knots);
+    CHECK((reference.first_slope() > 0) == (k % 2 == 1));
+    CHECK((reference.last_slope() > 0) == (k % 4 >= 2));
+    CHECK(path.front().start == doctest::Approx(0).epsilon(1e-13));
+    CHECK(path.front().a == doctest::Approx(reference.first_slope()).epsilon(1e-12));
+    const auto& last = path.back();
+    CHECK(last.a + 2 * last.b + 3 * last.c ==
+          doctest::Approx(reference.last_slope()).epsilon(1e-9));
+    CHECK(last.start + last.a + last.b + last.c ==
+          doctest::Approx(arc_lengths.back() - arc_lengths.front()).epsilon(1e-13));
+    for (const auto& piece : path) {
+      for (const double x : {0.0, .25, .5, .75, 1.0}) {
+        CHECK(piece.a + x * (2 * piece.b + 3 * x * piece.c) > -1e-12);
+      }
+    }
+  }
+}
+
+TEST_CASE("time_optimal_trajectory: one joint in motion at both ends takes the time of the "
+          "closed form with jerk limits") {
+  // From `from` with the maximum acceleration at once, which decreases to 0 at the maximum
+  // velocity.
+  const auto rise = [](double from, double v, double a, double j) {
+    const double constant = (v - from - a * a / (2 * j)) / a, ramp = a / j;
+    REQUIRE(constant >= 0);
+    const double before = from + a * constant;
+    const double distance = (from + before) / 2 * constant + before * ramp + a * ramp * ramp / 3;
+    return std::array{constant + ramp, distance};
+  };
+  for (const double first : {0.01, .5, 1.0}) {
+    for (const double last : {.2, 1.1}) {
+      CAPTURE(first);
+      CAPTURE(last);
+      const double v = 2, a = 5, j = 40, distance = 3;
+      const auto up = rise(first, v, a, j), down = rise(last, v, a, j);
+      const double exact = up[0] + down[0] + (distance - up[1] - down[1]) / v;
+      for (const double sign : {-1.0, 1.0}) {
+        const std::vector<one> ends{one(1.0), one(1 + sign * distance)};
+        const auto q = time_optimal_trajectory(
+            ends, std::array{v}, std::array{a},
+            {.initial_velocities = {sign * first}, .final_velocities = {sign * last}, .jerk = {j}});
+        CHECK(q.duration() >= exact * (1 - 1e-12));
+        CHECK(q.duration() <
+              exact * (first < .1 ? 1.03 : 1.01)); // nearly at rest: intervals are coarse
+        CHECK(max_fraction(q, one(v), one(a), one(j), 3000) <= 1 + 1e-12);
+        CHECK(q(0).velocity[0] == doctest::Approx(sign * first).epsilon(1e-12));
+        CHECK(q(q.duration()).velocity[0] == doctest::Approx(sign * last).epsilon(1e-9));
+      }
+    }
+  }
+  // At the velocity limit at both ends: constant velocity.
+  const std::vector<one> ends{one(0.0), one(0.0), one(1.0), one(2.0)};
+  for (const double v : {.3, 1.0, 7.0}) {
+    const auto q =
+        time_optimal_trajectory(ends, std::array{v}, std::array{2.0},
+                                {.initial_velocities = {v}, .final_velocities = {v}, .jerk = {5}});
+    CHECK(q.duration() >= 2 / v * (1 - 1e-12));
+    CHECK(q.duration() < 2 / v * 1.002);
+    CHECK(max_fraction(q, one(v), one(2.0), one(5.0), 3000) <= 1 + 1e-12);
+  }
+  // It moves away from the goal at first, and back to it from beyond.
+  const std::vector<one> line{one(0.0), one(1.0)};
+  const auto q = time_optimal_trajectory(
+      line, std::array{1.0}, std::array{2.0},
+      {.initial_velocities = {-.2}, .final_velocities = {-.1}, .jerk = {20}});
+  CHECK(max_fraction(q, one(1.0), one(2.0), one(20.0), 3000) <= 1 + 1e-12);
+  CHECK(q(0).velocity[0] == doctest::Approx(-.2).epsilon(1e-12));
+  CHECK(q(.01).value[0] < 0);
+  CHECK(q(q.duration() - .01).value[0] > 1);
+}
+
+TEST_CASE(
+    "time_optimal_trajectory: a segment of a feasible motion, with its velocities at the ends, is "
+    "feasible") {
+  duet_test::random_source random(9);
+  for (int k = 0; k < 24; ++k) {
+    CAPTURE(k);
+    const auto limits = [&](double from, double to) {
+      return vector(random.log_uniform(from, to), random.log_uniform(from, to),
+                    random.log_uniform(from, to));
+    };
+    const vector v = limits(.3, 3), a = limits(.5, 20), j = limits(1, 500);
+    const auto waypoints = random_waypoints(random, k % 4);
+    const time_parametrisation_options options{.min_intervals = 120, .jerk = numbers(j)};
+    auto problem = detail::validated_input(waypoints, v, a, options);
+    auto& polygon = problem.polygon;
+    const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
+    const auto complete = detail::timed_within_jerks(problem, curve);
+    // Arc lengths and path velocities at two times.
+    double from = random.uniform(0, .8) * complete.duration;
+    const double to =
+        std::min(complete.duration, from + random.uniform(.02, 1) * complete.duration);
+    from *= k % 5 == 0 ? 0 : 1;
+    const auto at = [&](double t) {
+      double s = 0;
+      std::size_t i = 0;
+      for (; i + 1 < complete.pieces.size() && complete.pieces[i + 1].scaling.time <= t; ++i) {
+        s += complete.pieces[i].path.length;
+      }
+      const auto [distance, speed, acceleration, jerk] =
+          complete.pieces[i].scaling.at(t, complete.pieces[i].path.length);
+      return std::array{s + distance, speed};
+    };
+    const auto [first, first_speed] = at(from);
+    const auto [last, last_speed] = at(to);
+    std::vector<detail::joint_cubic<vector>> middle;
+    std::vector<double> knots{0};
+    for (std::size_t e = 0; e < curve.size(); ++e) {
+      const double begin = std::max(polygon.s[e], first), end = std::min(polygon.s[e + 1], last);
+      if (end - begin > 1e-12) {
+        middle.push_back(curve[e].part(begin - polygon.s[e], end - begin));
+        knots.push_back(knots.back() + end - begin);
+      }
+    }
+    polygon.s = polygon.waypoint_s = knots;
+    problem.waypoints = knots.size();
+    problem.initial_speed = from > 0 ? first_speed : 0;
+    problem.final_speed = to < complete.duration ? last_speed : 0;
+    const auto q = detail::timed(problem, middle);
+    CHECK(max_fraction(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK(q.duration() < 1.1 * (to - from));
+    const auto& end = middle.back();
+    CHECK((q(0).velocity - problem.initial_speed * middle[0].first(0)).norm() < 1e-9);
+    CHECK((q(q.duration()).velocity - problem.final_speed * end.first(end.length)).norm() < 1e-9);
+    CHECK((q(q.duration()).value - end.value(end.length)).norm() < 1e-9);
+  }
+}
+
+TEST_CASE(
+    "time_optimal_trajectory: with random velocities at the ends the jerk limits are satisfied, or "
+    "the message states a feasible fraction") {
+  duet_test::random_source random(10);
+  const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30), rest(0, 0, 0);
+  int infeasible = 0;
+  for (int k = 0; k < 16; ++k) {
+    CAPTURE(k);
+    const auto waypoints = random_waypoints(random, k % 4);
+    // Velocities in random directions, which the curve has at its ends.
+    const double size = k % 6 == 5 ? .6 : .1;
+    vector first = size * vector(random.normal(), random.normal(), .2);
+    vector last = size * vector(random.normal(), random.normal(), .2);
+    (k % 3 == 1 ? first : last) *= k % 3 == 2 ? 1 : 0;
+    const auto timed = [&] {
+      return time_optimal_trajectory(waypoints, v, a,
+                                     {.min_intervals = 120,
+                                      .initial_velocities = numbers(first),
+                                      .final_velocities = numbers(last),
+                                      .jerk = numbers(j)});
+    };
+    std::string message = duet_test::message_of([&] { (void)timed(); });
+    if (message.find("in absolute value") != std::string::npos) {
+      const double max_ratio = std::max(first.cwiseQuotient(v).cwiseAbs().maxCoeff(),
+                                        last.cwiseQuotient(v).cwiseAbs().maxCoeff());
+      CHECK(max_ratio > 1);
+      first *= .999 / max_ratio;
+      last *= .999 / max_ratio;
+      message = duet_test::message_of([&] { (void)timed(); });
+    }
+    if (!message.empty()) {
+      ++infeasible;
+      const std::string before = "(expected at most ";
+      const auto at = message.find(before);
+      REQUIRE(at != std::string::npos);
+      const double fraction = std::stod(message.substr(at + before.size()));
+      CHECK(fraction > 0);
+      CHECK(fraction < 1);
+      CHECK(message.find(" times as large; joint ") != std::string::npos);
+      first *= .95 * fraction;
+      last *= .95 * fraction;
+    }
+    const auto q = timed();
+    CHECK(max_fraction(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK((q(0).velocity - first).norm() < 1e-12);
+    CHECK((q(q.duration()).velocity - last).norm() < 1e-9);
+    CHECK((q(q.duration()).value - waypoints.back()).norm() < 1e-9);
+  }
+  CHECK(infeasible > 0);
+  CHECK(infeasible < 8);
+}
+
+TEST_CASE(
+    "time_optimal_trajectory: seven joints in motion at the start satisfy their jerk limits, and a "
+    "joint that cannot stop in time is rejected") {
+  using seven = Eigen::Matrix<double, 7, 1>;
+  duet_test::random_source random(11);
+  const auto random_vector = [&] {
+    seven result;
+    for (double& x : result) {
+      x = random.normal();
+    }
+    return result;
+  };
+  for (int k = 0; k < 2; ++k) {
+    const std::vector<seven> waypoints{random_vector(), random_vector(), random_vector(),
+                                       random_vector()};
+    const seven v = random_vector().cwiseAbs() + seven::Constant(.5), a = seven::Constant(4),
+                j = seven::Constant(50);
+    const seven first = .2 * random_vector().cwiseMin(1).cwiseMax(-1);
+    const auto q = time_optimal_trajectory(waypoints, v, a,
+                                           {.min_intervals = 120,
+                                            .initial_velocities = {first.begin(), first.end()},
+                                            .jerk = {j.begin(), j.end()}});
+    CHECK(max_fraction(q, v, a, j, 500) <= 1 + 1e-10);
+    CHECK((q(0).velocity - first).norm() < 1e-12);
+  }
+  // From velocity 1 to rest, without acceleration at the end: distance ≥ √(2 / j) / 3.
+  const double min_length = std::sqrt(2.0 / 8) / 3;
+  const auto stop = [&](double distance) {
+    const std::vector<one> line{one(0.0), one(distance)};
+    return duet_test::message_of([&] {
+      (void)time_optimal_trajectory(line, std::array{2.0}, std::array{100.0},
+                                    {.initial_velocities = {1}, .jerk = {8}});
+    });
+  };
+  CHECK(stop(min_length * 1.01) == "");
+  const std::string message = stop(min_length * .9);
+  CAPTURE(message);
+  CHECK(message.find("duet: time_optimal_trajectory: no motion from the initial velocities is "
+                     "found within the limits (expected at most 0.9") == 0);
+  CHECK(message.find(" times as large; joint 0, with the velocity 1, is nearest to its limits)") !=
+        std::string::npos);
+}
+
+TEST_CASE("joint_trajectory: with jerk limits accelerations are continuous, and velocities, "
+          "accelerations and jerks are consistent derivatives") {
+  duet_test::random_source random(4);
+  const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
+  for (int k = 0; k < 4; ++k) {
+    const auto waypoints = random_waypoints(random, k);
+    const auto q = time_optimal_trajectory(waypoints, v, a, {.jerk = numbers(j)});
+    const int count = 4000;
+    const double h = q.duration() / count;
+    int smooth = 0;
+    auto before = q(0);
+    vector jerk_before = q.jerk(0);
+    for (int i = 1; i <= count; ++i) {
+      const double t = std::min(q.duration(), i * h);
+      const auto now = q(t);
+      const vector jerk = q.jerk(t);
+      const double off = 1 + 1e-9;
+      CHECK(((now.acceleration - before.acceleration) / h).cwiseQuotient(j).cwiseAbs().maxCoeff() <=
+            off);
+      CHECK(((now.velocity - before.velocity) / h).cwiseQuotient(a).cwiseAbs().maxCoeff() <= off);
+      // Simpson's rule and the trapezoidal rule, with errors of third order at most.
+      const vector rate = (now.velocity + before.velocity) / 2;
+      const vector change = (now.acceleration + before.acceleration) / 2;
+      CHECK(((now.value - before.value) / h - rate).cwiseQuotient(j).cwiseAbs().maxCoeff() <
+            h * h / 6);
+      CHECK(((now.velocity - before.velocity) / h - change).cwiseQuotient(j).cwiseAbs().maxCoeff() <
+            h / 3);
+      const vector third = (jerk + jerk_before) / 2;
+      smooth += ((now.acceleration - before.acceleration) / h - third)
+                    .cwiseQuotient(j)
+                    .cwiseAbs()
+                    .maxCoeff() < .01;
+      before = now;
+      jerk_before = jerk;
+    }
+    CHECK(smooth > .9 * count); // the others are at jumps of the jerk
+  }
+}
+
+TEST_CASE("path_velocity_constraints: bounds on a segment enclose velocities, accelerations and "
+          "jerks in 50 digits, closely") {
+  // Value at u of a polynomial with these Bernstein coefficients.
+  const auto bernstein = [](const auto& at, int degree, double u) {
+    double sum = 0, binomial = 1;
+    for (int k = 0; k <= degree; ++k) {
+      sum += binomial * std::pow(u, k) * std::pow(1 - u, degree - k) * at(std::size_t(k));
+      binomial *= double(degree - k) / double(k + 1);
+    }
+    return sum;
+  };
+  using duet_test::real_50;
+  using number = taylor<real_50, 3>;
+  duet_test::random_source random(6);
+  double max_width = 0;
+  for (int k = 0; k < 40; ++k) {
+    const detail::joint_polygon<vector> polygon(random_waypoints(random, k % 4));
+    const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
+    const std::size_t n = 30;
+    std::vector<double> arc_lengths;
+    for (std::size_t i = 0; i <= n; ++i) {
+      const double x = double(i) / double(n);
+      arc_lengths.push_back(polygon.s.back() * x * x * (3 - 2 * x));
+    }
+    const detail::ends_at_rest rest{k % 2 == 0, k % 3 == 0};
+    const auto path = detail::reference_parametrisation(arc_lengths, rest).pieces(polygon.s);
+    const vector v(1, 2, .7), a(3, 2, 10), j(20, 40, 30);
+    const detail::path_velocity_constraints bounds(curve, path, n, v, a, j);
+    std::vector<double> squared_velocity;
+    for (std::size_t i = 0; i < n + 2; ++i) {
+      squared_velocity.push_back(random.uniform(.5, 2));
+    }
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const auto& piece = path[i];
+      const double* c = &squared_velocity[piece.interval];
+      const real_50 first = piece.interval == 0 ? c[0] : (real_50(c[0]) + c[1]) / 2;
+      const real_50 last = piece.interval + 1 == n ? c[2] : (real_50(c[1]) + c[2]) / 2;
+      for (int at = 0; at <= 4; ++at) {
+        const auto t = number::variable(real_50(piece.length) * at / 4);
+        const number s = number(piece.start) +
+                         t * (number(piece.a) + t * (number(piece.b) + t * number(piece.c)));
+        const number y = number(piece.from) + t, z = number(1) - y;
+        const number p = number(first) * z * z + number(2 * c[1]) * y * z + number(last) * y * y;
+        for (int joint = 0; joint < 3; ++joint) {
+          const auto& q = curve[piece.edge];
+          const number f =
+              number(q.c0[joint]) +
+              s * (number(q.c1[joint]) + s * (number(q.c2[joint]) + s * number(q.c3[joint])));
+          const real_50 rate = f.derivative(1), square = p.value();
+          const real_50 change = f.derivative(2) * square + f.derivative(1) * p.derivative(1) / 2;
+          const real_50 jerk = f.derivative(3) * square +
+                               f.derivative(2) * p.derivative(1) * 3 / 2 +
+                               f.derivative(1) * p.derivative(2) / 2;
+          const auto& rows = bounds.joints[3 * i + std::size_t(joint)];
+          const double u = at / 4.0;
+          const auto& rates = bounds.pieces[i].square_rate;
+          const double square_rate =
+              bernstein([&](std::size_t r) { return detail::times(rates[r], c); }, 9, u);
+          CHECK(rate * rate * square / (v[joint] * v[joint]) <= square_rate * (1 + 1e-12) + 1e-28);
+          const auto check = [&](const real_50& exact, const auto& all, const auto& beyond) {
+            // Only the middle two coefficients are displaced; the bound is exact at the ends.
+            const auto moved = [&](double sign) {
+              return bernstein(
+                  [&](std::size_t r) {
+                    const double off = r == 1 || r == 2 ? detail::times(beyond, c) : 0;
+                    return detail::times(all[r], c) + sign * off;
+                  },
+                  3, u);
+            };
+            const double low = moved(-1), high = moved(1);
+            const double size = 1 + std::abs(low) + std::abs(high), rounding = 1e-12 * size;
+            CHECK(exact <= high + rounding);
+            CHECK(exact >= low - rounding);
+            max_width = std::max(max_width, (high - low) / size);
+          };
+          check(change / a[joint], rows.acceleration, rows.beyond_acceleration);
+          check(jerk / j[joint], rows.jerk, rows.beyond_jerk);
+        }
+      }
+    }
+  }
+  CHECK(max_width < .5);
+}
+
+TEST_CASE("reference_parametrisation: a knot next to a node does not change the time scaling") {
+  std::vector<double> arc_lengths;
+  for (int i = 0; i <= 16; ++i) {
+    arc_lengths.push_back(i * i * (3 - i / 8.0));
+  }
+  const detail::reference_parametrisation reference(arc_lengths);
+  const auto complete = reference.pieces({0, arc_lengths.back()});
+  REQUIRE(complete.size() == 16);
+  for (const double off : {-1e-9, -1e-12, -1e-14, 0.0, 1e-14, 1e-12, 1e-9}) {
+    CAPTURE(off);
+    const double knot = complete[6].start + off;
+    const auto path = reference.pieces({0, knot, arc_lengths.back()});
+    CHECK(path.size() <= 17);
+    const auto straight = [](double from, double length) {
+      return detail::joint_cubic<one>{one(from), one(1.0), one(0.0), one(0.0), length};
+    };
+    std::vector<double> squared_velocity;
+    for (int i = 0; i < 18; ++i) {
+      squared_velocity.push_back(1 + .1 * std::sin(i));
+    }
+    const auto motion = detail::trajectory_from_path_velocity(
+        std::vector{straight(0, knot), straight(knot, arc_lengths.back() - knot)}, path, 16,
+        squared_velocity);
+    const auto uncut = detail::trajectory_from_path_velocity(
+        std::vector{straight(0, arc_lengths.back())}, complete, 16, squared_velocity);
+    CHECK(motion.duration == doctest::Approx(uncut.duration).epsilon(1e-13));
+    double length = 0;
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const auto& [scaling, line] = motion.pieces[i];
+      const auto& expected = uncut.pieces[path[i].interval];
+      CHECK(scaling.growth == expected.scaling.growth);
+      CHECK(scaling.speed ==
+            doctest::Approx(std::sqrt(squared_velocity[0])).epsilon(.2)); // no cancellation
+      CHECK(std::abs(scaling.acceleration - expected.scaling.acceleration -
+                     scaling.growth * path[i].from) < 1e-14);
+      CHECK(line.c0[0] == doctest::Approx(length).epsilon(1e-13));
+      length += line.length;
+    }
+    CHECK(length == doctest::Approx(arc_lengths.back()).epsilon(1e-14));
+  }
+}
+
+TEST_CASE(
+    "time_optimal_trajectory: infinite jerk limits have no effect, and invalid ones are rejected") {
+  const std::vector<vector> waypoints{vector(0, 1, 0), vector(1, .5, .3), vector(2, .7, -.2)};
+  const vector v(1, 1, 1), a(2, 3, 4);
+  const std::vector<double> none(3, infinity), j{20, 20, 20};
+  const double smooth =
+      time_optimal_trajectory(waypoints, v, a, {.curve = waypoint_interpolation::natural_cubic})
+          .duration();
+  CHECK(time_optimal_trajectory(waypoints, v, a, {.jerk = none}).duration() == smooth);
+  CHECK(time_optimal_trajectory(waypoints, v, a, {.jerk = j}).duration() > smooth);
+  const auto error_message = [&](const time_parametrisation_options& options) {
+    return duet_test::message_of([&] { (void)time_optimal_trajectory(waypoints, v, a, options); });
+  };
+  CHECK(error_message({.jerk = {1, 2}}) ==
+        "duet: time_optimal_trajectory: 2 jerk limits (expected 3, one per joint)");
+  CHECK(error_message({.jerk = {1, 2, 0}}) ==
+        "duet: time_optimal_trajectory: the jerk limit of joint 2 is 0 (expected positive)");
+  CHECK(error_message({.initial_velocities = {.1, 0, -1.5}, .jerk = j}) ==
+        "duet: time_optimal_trajectory: the initial velocity of joint 2 is -1.5 (expected at most "
+        "1 in absolute value)");
+  CHECK(
+      error_message({.final_velocities = {.1, 1.25, 0}, .jerk = j}) ==
+      "duet: time_optimal_trajectory: the final velocity of joint 1 is 1.25 (expected at most 1 in "
+      "absolute value)");
+  CHECK(time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {0, 0, 0}, .jerk = j})
+            .duration() > 0);
+  CHECK(error_message({.curve = waypoint_interpolation::pchip, .jerk = j}) ==
+        "duet: time_optimal_trajectory: the second derivative of joint 1 jumps at waypoint 1 (with "
+        "jerk limits expected continuous, as of waypoint_interpolation::natural_cubic if no joint "
+        "leaves its range)");
+  // On a line every interpolating curve is smooth, and coinciding waypoints are a path of length 0.
+  const std::vector<vector> straight{vector(0, 0, 0), vector(1, 2, 3), vector(1, 2, 3),
+                                     vector(3, 6, 9)};
+  CHECK(time_optimal_trajectory(straight, v, a, {.curve = waypoint_interpolation::pchip, .jerk = j})
+            .duration() > 0);
+  CHECK(time_optimal_trajectory(std::vector<vector>{v, v}, v, a, {.jerk = j}).duration() == 0);
+
+  // A joint of a chain leaves its range, and does not with a wider one.
+  for (const double range : {1.0, 2.0}) {
+    std::array<joint<>, 3> joints;
+    for (auto& each : joints) {
+      each.limits = {-range, range, 1};
+    }
+    const std::vector<vector> back{vector(0, 0, 0), vector(1, .3, .2), vector(0, .4, .6)};
+    const auto message = duet_test::message_of(
+        [&] { (void)time_optimal_trajectory(serial_chain<3>(joints), back, a, {.jerk = j}); });
+    CHECK(message.empty() == (range == 2));
+    if (range == 1) {
+      CHECK(message.find("the second derivative of joint 0 jumps at waypoint 1") !=
+            std::string::npos);
+    }
+  }
+}
+
+} // namespace test_robotics_jerk_limits
