@@ -50,9 +50,9 @@ auto moved(const D& x, const D& v) {
 enum class kind { differentiated, zero, constant };
 
 template <kind K, class X>
-auto argument(const X& x, direction& way) {
+auto argument(const X& x, direction& values) {
   const auto some = [&](double) {
-    const double v = way.next();
+    const double v = values.next();
     return K == kind::differentiated ? v : 0.0;
   };
   const X v = map_scalars([&](const auto& s) { return detail::map_reals(s, some); }, x);
@@ -83,10 +83,10 @@ std::vector<double> numbers(const X& x) {
 template <unsigned Mask, kind Other, class F, class... X>
 std::vector<double> result(const F& f, const std::tuple<X...>& x) {
   return [&]<std::size_t... I>(std::index_sequence<I...>) {
-    direction way;
+    direction values;
     const std::tuple arguments{argument < ((Mask >> I) & 1U) != 0
                                    ? kind::differentiated
-                                   : Other > (std::get<I>(x), way)...};
+                                   : Other > (std::get<I>(x), values)...};
     return numbers(std::apply(f, arguments));
   }
   (std::index_sequence_for<X...>{});

@@ -38,7 +38,7 @@ namespace detail {
 
 /// Frame of ω alone: rotations have no origin, and the axes of `frame::hybrid` are fixed.
 template <class Frame>
-[[nodiscard]] constexpr auto frame_of_turning(Frame frame) {
+[[nodiscard]] constexpr auto rotation_frame_of(Frame frame) {
   if constexpr (std::is_same_v<Frame, hybrid_frame>) {
     return frame::spatial;
   } else {

@@ -286,13 +286,13 @@ struct manifold<quaternion<T>> {
   [[nodiscard]] static auto plus(const quaternion<T>& q, const Delta& delta, Frame frame = {}) {
     using S = std::decay_t<decltype(delta[0])>;
     const auto small_rotation = duet::exp(vector3<S>(delta[0] / 2, delta[1] / 2, delta[2] / 2));
-    return detail::composed_in(detail::frame_of_turning(frame), small_rotation, q);
+    return detail::composed_in(detail::rotation_frame_of(frame), small_rotation, q);
   }
   static constexpr bool takes_rates_of_any_scalar = true;
   template <class R, class Frame>
   [[nodiscard]] static vector3<promote_t<T, R>> velocity(const quaternion<T>& q,
                                                          const quaternion<R>& rate, Frame frame) {
-    return angular_velocity(q, rate, detail::frame_of_turning(frame));
+    return angular_velocity(q, rate, detail::rotation_frame_of(frame));
   }
 };
 

@@ -221,7 +221,7 @@ template <class T, class Frame>
     if constexpr (is_hybrid) {
       return false; // rotated by the rotation alone, below
     } else {
-      return is_spatial(frame_of_turning(Frame{}));
+      return is_spatial(rotation_frame_of(Frame{}));
     }
   }();
   const real_type_t<T> two(2);
