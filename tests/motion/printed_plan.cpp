@@ -144,15 +144,16 @@ TEST_CASE("N25, note 1: dependence of the error along a path on β") {
 TEST_CASE("N25: invalid paths are rejected") {
   std::vector<dual_quaternion<double>> path;
   CHECK_THROWS_WITH_AS((void)printed_path_plan(arm, gripper_down(), path),
-                       "duet: plan: the path has no poses", invalid_input);
+                       "duet: printed_path_plan: the path has no poses", invalid_input);
   path = circle(10);
   CHECK(printed_path_plan(arm, gripper_down(), path, {.max_iterations = 4}).reason ==
         stop_reason::iteration_limit);
   path[3] = dual_quaternion<double>(2);
-  CHECK_THROWS_WITH_AS((void)printed_path_plan(arm, gripper_down(), path),
-                       "duet: plan: pose 3 of the path is not a unit dual quaternion: |p|^2 = 4, "
-                       "p.q = 0 (expected 1 and 0)",
-                       invalid_input);
+  CHECK_THROWS_WITH_AS(
+      (void)printed_path_plan(arm, gripper_down(), path),
+      "duet: printed_path_plan: pose 3 of the path is not a unit dual quaternion: |p|^2 = 4, "
+      "p.q = 0 (expected 1 and 0)",
+      invalid_input);
   vector outside = gripper_down();
   outside[3] = 1;
   CHECK_THROWS_AS((void)printed_path_plan(arm, outside, circle(10)), invalid_input);

@@ -167,10 +167,10 @@ TEST_CASE("follow_path: invalid paths and starts are rejected") {
       doctest::Contains("is not finite: (nan, nan, nan, nan)"), invalid_input);
   vector outside = start;
   outside[5] = 4;
-  CHECK_THROWS_WITH_AS(
-      (void)follow_path(arm, outside, poses{first}),
-      "duet: plan: joint 5 of the start is 4 (expected a finite number from -0.0175 to 3.7525)",
-      invalid_input);
+  CHECK_THROWS_WITH_AS((void)follow_path(arm, outside, poses{first}),
+                       "duet: follow_path: joint 5 of the start is 4 (expected a finite number "
+                       "from -0.0175 to 3.7525)",
+                       invalid_input);
   CHECK_THROWS_AS((void)follow_path(arm, Eigen::VectorXd(Eigen::VectorXd::Zero(6)), poses{first}),
                   invalid_input);
 }

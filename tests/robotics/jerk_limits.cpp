@@ -340,7 +340,7 @@ TEST_CASE(
       const double fraction = std::stod(message.substr(at + before.size()));
       CHECK(fraction > 0);
       CHECK(fraction < 1);
-      CHECK(message.find(" times as large; joint ") != std::string::npos);
+      CHECK(message.find(" of them; joint ") != std::string::npos);
       first *= .95 * fraction;
       last *= .95 * fraction;
     }
@@ -391,9 +391,9 @@ TEST_CASE(
   CHECK(stop(min_length * 1.01) == "");
   const std::string message = stop(min_length * .9);
   CAPTURE(message);
-  CHECK(message.find("duet: time_optimal_trajectory: no motion from the initial velocities is "
-                     "found within the limits (expected at most 0.9") == 0);
-  CHECK(message.find(" times as large; joint 0, with the velocity 1, is nearest to its limits)") !=
+  CHECK(message.find("duet: time_optimal_trajectory: the initial velocities are too large "
+                     "for the limits (expected at most 0.9") == 0);
+  CHECK(message.find(" of them; joint 0, with the velocity 1, is nearest to its limits)") !=
         std::string::npos);
 }
 

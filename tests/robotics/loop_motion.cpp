@@ -294,7 +294,8 @@ TEST_CASE("driven_motion: singular coordinates and invalid drives are rejected")
   const VectorXd q = mechanism.assemble(vector({2, -1, 1.7}), {0});
   CHECK(message_of([&] {
           driven_motion(mechanism, q, {0, 1});
-        }) == "duet: driven_motion: 2 driven coordinates, but the loops leave 1 independent rates");
+        }) == "duet: driven_motion: 2 driven coordinates (expected 1, the degrees of freedom at "
+              "the start)");
   const closed_chain_mechanism two = five_bar(.3, .5, .7);
   CHECK(message_of([&] {
           driven_motion(two, vector({2, -1, 1.2, 1}), {0});

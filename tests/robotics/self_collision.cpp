@@ -204,8 +204,8 @@ TEST_CASE("plan_screw_motion: starts in self-collision and invalid pairs are rej
     CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, arm.pose(start), {}, {}, s),
                          doctest::Contains(what.c_str()), invalid_input);
   };
-  fails("duet: plan: at the start body " + std::to_string(c.body) + " (" + s.bodies[c.body].name +
-        ") is ");
+  fails("duet: follow_path: at the start body " + std::to_string(c.body) + " (" +
+        s.bodies[c.body].name + ") is ");
   fails(" from body " + std::to_string(c.other) + " (" + s.bodies[c.other].name +
         "), closer than the margin of 0.02");
   s.pairs.push_back({2, 4});

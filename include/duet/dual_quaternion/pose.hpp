@@ -26,7 +26,7 @@ namespace duet {
 
 namespace detail {
 
-/// N17 for a rotation known to be of unit norm.
+/// `pose(rotation, translation)` (N17) without the check of the norm.
 template <class A, class B>
 [[nodiscard]] dual_quaternion<promote_t<A, B>> pose_of_unit(const quaternion<A>& rotation,
                                                             const vector3<B>& translation) {

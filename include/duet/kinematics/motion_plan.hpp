@@ -170,18 +170,18 @@ template <class C, class X>
 
 /// \throws invalid_input for a start of another size, not finite or outside the limits
 template <class C, class Start>
-void require_start(const C& chain, const Start& start) {
+void require_start(const C& chain, const Start& start, const char* caller) {
   require_size(chain, start);
   for (int i = 0; i < chain.size(); ++i) {
     const double x = vector_argument<Start>::get(start, i);
     const auto& limits = chain.limits(i);
-    require(x >= limits.lower && x <= limits.upper && x - x == 0, "duet: plan: joint ", i,
+    require(x >= limits.lower && x <= limits.upper && x - x == 0, "duet: ", caller, ": joint ", i,
             " of the start is ", x, " (expected a finite number from ", limits.lower, " to ",
             limits.upper, ")");
   }
 }
 
-/// \throws invalid_input for an argument that is not a pose: "duet: plan: the goal is …"
+/// \throws invalid_input for an argument that is not a pose
 inline void require_pose(const dual_quaternion<double>& a, const char* caller,
                          const std::string& name) {
   if (is_unit(a, 1e-6)) {

@@ -34,9 +34,9 @@ using joint_vector =
 /// Forward kinematics of a chain.
 template <class C>
 struct poses_of {
-  /// Forward kinematics: the pose of the tip frame (end-effector frame) at the configuration θ,
-  /// relative to the base, or of the frame given by a second argument, a link number or an
-  /// `attached_frame`.
+  /// Forward kinematics: pose of a frame relative to the base at the configuration θ.
+  ///
+  /// \param at  the frame: the tip (end effector) by default, a link number or an `attached_frame`
   ///
   /// \throws invalid_input if the number of coordinates differs from `size()`, or the link
   /// does not exist

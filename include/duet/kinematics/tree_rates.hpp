@@ -57,8 +57,8 @@ struct tree_rates {
   }
 };
 
-/// A screw is carried by the parent node of its joint, ad(V) s; the screws of a ball also change
-/// with its own coordinates.
+/// A screw is carried by the parent node of its joint, ad(V) s; the screws of a spherical joint
+/// also change with its own coordinates.
 template <class S, class X, class V>
 [[nodiscard]] tree_rates<S> rates_of(const tree_table& table, const tree_motion<S>& motion,
                                      const X& x, const V& x_dot) {

@@ -19,13 +19,13 @@
 namespace duet::detail {
 
 /// An elementary joint: one that rotates about an axis, translates along it or both, with one
-/// coordinate; or a ball, with a rotation vector. A planar joint is two prismatic nodes and a
-/// revolute one, a floating joint three prismatic nodes and a ball.
+/// coordinate; or spherical, with a rotation vector. A planar joint is two prismatic nodes and a
+/// revolute one, a floating joint three prismatic nodes and a spherical one.
 struct tree_node {
   int parent = -1;    ///< number of the parent node; −1: the root of the tree
   int coordinate = 0; ///< number of its first coordinate among those of all joints
   bool is_ball = false;
-  joint_step<double> step{}; ///< for a ball only its pose before the motion
+  joint_step<double> step{}; ///< for a spherical joint only its pose before the motion
 
   [[nodiscard]] int coordinates() const { return is_ball ? 3 : 1; }
 };

@@ -89,7 +89,7 @@ private:
   Eigen::Index own_;
 };
 
-/// The rotation vector of a ball.
+/// Rotation vector of a spherical joint.
 template <class S, class X>
 [[nodiscard]] vector3<S> ball_coordinates(const tree_node& node, const X& x) {
   return {S(x[node.coordinate]), S(x[node.coordinate + 1]), S(x[node.coordinate + 2])};
@@ -100,14 +100,14 @@ template <class S>
   return {quaternion<S>(S(1)), {S(0), S(0), S(0)}};
 }
 
-/// Frame of a ball before its motion.
+/// Frame of a spherical joint before its motion.
 template <class S>
 [[nodiscard]] link_displacement<S> origin_of_ball(const link_displacement<S>& parent,
                                                   const tree_node& node) {
   return {parent.rotation * node.step.a, parent.point(node.step.offset)};
 }
 
-/// Frame of a ball after its motion.
+/// Frame of a spherical joint after its motion.
 ///
 /// \param visit  as for `for_each_node`
 template <class S, class X, class Visit>
@@ -143,7 +143,7 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
   };
   constexpr int max_count = 16;
   for (int i = 0; i < count;) {
-    // All nodes up to the next ball: with a branch for balls inside the loop, one in
+    // All nodes up to the next spherical joint: with a branch for these inside the loop, one in
     // five took longer.
     std::array<S, max_count> theta;
     int some = 0;

@@ -81,8 +81,8 @@ template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_screw_plan(const C& chain, const Start& start,
                                       const dual_quaternion<double>& goal,
                                       const printed_plan_options& options = {}) {
-  detail::require_start(chain, start);
-  detail::require_pose(goal, "plan", "the goal");
+  detail::require_start(chain, start, "printed_screw_plan");
+  detail::require_pose(goal, "printed_screw_plan", "the goal");
   motion_plan<C::joints> plan;
   const auto theta = detail::to_chain_joints(chain, start);
   const dual_quaternion<double> first = chain.pose(theta);
@@ -117,10 +117,11 @@ template <SerialChain C, VectorLike Start>
 [[nodiscard]] auto printed_path_plan(const C& chain, const Start& start,
                                      std::span<const dual_quaternion<double>> path,
                                      const printed_plan_options& options = {}) {
-  detail::require_start(chain, start);
-  detail::require(!path.empty(), "duet: plan: the path has no poses");
+  detail::require_start(chain, start, "printed_path_plan");
+  detail::require(!path.empty(), "duet: printed_path_plan: the path has no poses");
   for (std::size_t i = 0; i < path.size(); ++i) {
-    detail::require_pose(path[i], "plan", "pose " + std::to_string(i) + " of the path");
+    detail::require_pose(path[i], "printed_path_plan",
+                         "pose " + std::to_string(i) + " of the path");
   }
   motion_plan<C::joints> plan;
   const auto target = [&](int k) { return std::min(std::size_t(std::max(k, 1)), path.size()) - 1; };

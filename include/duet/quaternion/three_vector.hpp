@@ -16,7 +16,7 @@
 
 namespace duet::detail {
 
-/// (x, y, z): three of a scalar, or of numbers and known constants.
+/// (x, y, z): each a scalar or a constant known at compile time.
 template <class X, class Y = X, class Z = X>
 struct three_vector {
   X x;

@@ -35,7 +35,7 @@
 
 namespace duet {
 
-/// One solution (branch) of inverse kinematics: a configuration in which an arm reaches a pose.
+/// One solution of inverse kinematics: a configuration in which an arm reaches a pose.
 ///
 /// \tparam N  as in `serial_chain`
 template <int N>
@@ -48,10 +48,10 @@ struct inverse_kinematics_solution {
   /// distance relative to the arm's size, or to the largest prismatic displacement if that is
   /// larger.
   double residual = 0;
-  /// Smallest singular value of the Jacobian in `frame::hybrid`; 0 at a branch point.
+  /// Smallest singular value of the Jacobian in `frame::hybrid`; 0 at a singular solution.
   double smallest_singular_value = 0;
-  /// Multiplicity; 2 at a branch point: between this solution and another one the tip stays within
-  /// 3e-13 of the goal.
+  /// Multiplicity; 2 at a double (singular) solution: between this solution and another one the tip
+  /// stays within 3e-13 of the goal.
   int multiplicity = 1;
   bool within_limits = true; ///< true if all joints are within their limits
 

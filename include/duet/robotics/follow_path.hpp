@@ -36,14 +36,14 @@ concept PosePath = std::invocable<const P&, double>;
 namespace detail {
 
 /// \throws invalid_input
-inline void require_options(const plan_options& o) {
-  require_positive("plan", "tolerance", o.tolerance);
-  require_positive("plan", "deviation", o.deviation);
-  require_positive("plan", "largest_step", o.largest_step);
-  require_positive("plan", "smallest_step", o.smallest_step);
-  require_positive("plan", "self_motion_step", o.self_motion_step);
-  require_option("plan", "centring", o.centring, o.centring >= 0, "a non-negative number");
-  require_option("plan", "search_step", o.search_step,
+inline void require_options(const plan_options& o, const char* caller) {
+  require_positive(caller, "tolerance", o.tolerance);
+  require_positive(caller, "deviation", o.deviation);
+  require_positive(caller, "largest_step", o.largest_step);
+  require_positive(caller, "smallest_step", o.smallest_step);
+  require_positive(caller, "self_motion_step", o.self_motion_step);
+  require_option(caller, "centring", o.centring, o.centring >= 0, "a non-negative number");
+  require_option(caller, "search_step", o.search_step,
                  o.search_step == 0 || (o.search_step >= 1e-6 && o.search_step <= 1),
                  "0 or a number from 1e-6 to 1");
 }
@@ -58,7 +58,7 @@ template <class C, class Start, class Objective, class Scene>
   static_assert(planning_types<Objective, Scene>::are_good);
   constexpr int room = joint_room(C::joints);
   using vector = small_vector<room>;
-  require_options(options);
+  require_options(options, may_be_out_of_reach ? "plan_screw_motion" : "follow_path");
   require_objective(objective, chain.size());
   const std::conditional_t<std::same_as<Scene, scene>, chain_with_obstacles<C>, chain_model<C>>
       model(chain, around);
@@ -167,7 +167,7 @@ follow_path(const C& chain, const Start& start, const Path& path, double first, 
   static_assert(detail::Becomes<std::invoke_result_t<const Path&, double>, dual_quaternion<double>>,
                 "duet: follow_path: the path must return a dual_quaternion<double>: pose(q, t), or "
                 "from_eigen(...) of an Eigen::Isometry3d");
-  detail::require_start(chain, start);
+  detail::require_start(chain, start, "follow_path");
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: follow_path: the parameter of the path goes from ", first, " to ", last,
                   " (expected an increasing, finite interval)");
@@ -184,7 +184,7 @@ template <SerialChain C, VectorLike Start, PosePath Spline, class Objective = no
                                                  const plan_options& options = {},
                                                  const Objective& objective = {},
                                                  const Scene& around = {}) {
-  detail::require_start(chain, start);
+  detail::require_start(chain, start, "follow_path");
   const auto& breaks = spline.breaks();
   return detail::follow(chain, start, detail::checked(spline),
                         std::vector<double>(breaks.begin(), breaks.end()), options, objective,
@@ -198,7 +198,7 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
 follow_path(const C& chain, const Start& start, std::span<const dual_quaternion<double>> poses,
             const plan_options& options = {}, const Objective& objective = {},
             const Scene& around = {}) {
-  detail::require_start(chain, start);
+  detail::require_start(chain, start, "follow_path");
   detail::require(!poses.empty(), "duet: follow_path: the list of poses is empty");
   detail::path_through<double> target;
   std::vector<double> stops;

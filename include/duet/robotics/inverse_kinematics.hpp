@@ -54,7 +54,7 @@ private:
 /// (end-effector frame) has the pose `goal`, either sign of it, by damped least squares.
 ///
 /// Damped least squares (Levenberg–Marquardt) on the exact twist e = 2 log(A_goal A*) in
-/// `frame::hybrid`: Δ = Jᵀ(J Jᵀ + λ)⁻¹ e, with λ growing with |e|² after Sugihara. Joints that
+/// `frame::hybrid`: Δ = Jᵀ(J Jᵀ + λI)⁻¹ e, with λ growing with |e|² after Sugihara. Joints that
 /// would leave their limits are fixed there. The search starts from the initial guess `start` and,
 /// once the error stops falling, from random configurations, which are identical in every call with
 /// the same seed.

@@ -115,7 +115,7 @@ public:
     const auto closest = nearest(theta);
     if (!(closest.distance >= around_.margin - tolerance)) {
       raise(invalid_input(
-          printable(message("duet: plan: at the start ", name_of_body(around_, closest.body),
+          printable(message("duet: follow_path: at the start ", name_of_body(around_, closest.body),
                             " is ", closest.distance, " from ",
                             closest.is_self ? name_of_body(around_, closest.other)
                                             : "obstacle " + std::to_string(closest.other),

@@ -50,8 +50,8 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
 plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<double>& goal,
                   const plan_options& options = {}, const Objective& objective = {},
                   const Scene& around = {}) {
-  detail::require_start(chain, start);
-  detail::require_pose(goal, "plan", "the goal");
+  detail::require_start(chain, start, "plan_screw_motion");
+  detail::require_pose(goal, "plan_screw_motion", "the goal");
   const detail::chain_model<C> model(chain);
   const auto first = model.unscaled_pose(model.at(model.joints(start)).tip);
   const auto target = detail::screw_path(first, goal);

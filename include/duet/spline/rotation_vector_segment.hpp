@@ -97,9 +97,8 @@ public:
     return x;
   }
 
-  /// Coefficients of the cubic from its ends and ẍ at both ends, for consistent velocities and
-  /// accelerations at the knots. Differences of velocities are not divided by h, so that even a
-  /// short segment has its accelerations and velocities to round-off.
+  /// Coefficients of the cubic with given values and second derivatives ẍ at both ends. Velocities
+  /// are not subtracted and divided by h, so that short segments lose no digits.
   [[nodiscard]] coefficients
   polynomial_of_accelerations(const std::array<vector3<T>, 2>& start,
                               const std::array<vector3<T>, 2>& end) const {

@@ -182,7 +182,8 @@ private:
       }
     }
   }
-  /// `7`, `7/1`, `7//3`, `7/1/3`, from 1 on; negative from the last one back.
+  /// Zero-based vertex index of an element `v`, `v/vt`, `v//vn` or `v/vt/vn` of an OBJ face; v
+  /// counts from 1, or, if negative, back from the last vertex.
   [[nodiscard]] std::size_t vertex_number(std::string_view text, std::size_t count) const {
     const auto integer = [](std::string_view part) { // 0 if it is not an integer
       const double k = parse_number(part).value_or(0);

@@ -56,7 +56,7 @@ private:
     return result;
   }
 
-  /// Meaning of the name; also determines whether it is a time.
+  /// Column that the name denotes; also sets `is_a_time`, `is_of_ros` and `unit`.
   [[nodiscard]] table_column meaning() {
     if (name == "u" || name == "tau") {
       return table_column::u;

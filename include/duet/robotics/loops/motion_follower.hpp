@@ -56,7 +56,7 @@ driven_motion::driven_motion(closed_chain_mechanism mechanism, const Eigen::Vect
   const detail::rank_revealing_svd all = detail::linearised(mechanism_, start_);
   const Eigen::Index free = mechanism_.size() - all.rank();
   detail::require(free == Eigen::Index(drives_.size()), "duet: driven_motion: ", drives_.size(),
-                  " driven coordinates, but the loops leave ", free, " independent rates");
+                  " driven coordinates (expected ", free, ", the degrees of freedom at the start)");
   require_accelerations();
 }
 

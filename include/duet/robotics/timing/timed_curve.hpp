@@ -252,12 +252,12 @@ timed_within_jerks(const time_parametrisation_input<N>& problem,
   }
   const auto& nearest = search.nearest();
   const std::size_t end = nearest.end(), joint = nearest.nearest_joint;
-  raise(invalid_input(message(
-      "duet: time_optimal_trajectory: no motion ", end == 0 ? "from the initial" : "to the final",
-      " velocities is found within the limits (expected at most ",
-      std::floor(1e4 * nearest.reached[end]) / 1e4, " times as large; joint ", joint,
-      ", with the velocity ", end_velocities(problem, curve)[end][Eigen::Index(joint)],
-      ", is nearest to its limits)")));
+  raise(invalid_input(message("duet: time_optimal_trajectory: the ", end == 0 ? "initial" : "final",
+                              " velocities are too large for the limits (expected at most ",
+                              std::floor(1e4 * nearest.reached[end]) / 1e4, " of them; joint ",
+                              joint, ", with the velocity ",
+                              end_velocities(problem, curve)[end][Eigen::Index(joint)],
+                              ", is nearest to its limits)")));
 }
 
 /// Minimum-time motion along a curve, as `joint_trajectory`.

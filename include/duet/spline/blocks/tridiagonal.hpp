@@ -33,9 +33,9 @@ struct corners {
 /// Block elimination without row exchanges (block Thomas algorithm), as matrices of spline
 /// interpolation allow.
 ///
-/// The first row's corner fills its column up to the diagonal, the last row's corner its row: with
-/// corners n − 1 and 0 the system is cyclic, the border's elimination included; with 2 and n − 3
-/// its band is wider at both ends.
+/// The first and the last row may each have one block outside the band, their corner block. Fill-in
+/// stays in the column of the first and in the row of the last one. With corners in columns n − 1
+/// and 0 the system is cyclic; with 2 and n − 3 the band is wider at both ends (not-a-knot).
 template <class R>
 class block_tridiagonal {
 public:

@@ -18,9 +18,10 @@
 
 namespace duet::detail {
 
-/// Derivatives of the rates of exp(x(t)): element [k][m − 1] is ∂w_k/∂x_m of `half_body_rates` over
-/// a real R, for k < `count` and m ≤ k + 1. With η = J(x) δx, the perturbation in body axes, δw = η̇
-/// + 2 w × η. The last of the rates has no effect.
+/// Derivatives of the half body rates of exp(x(t)) (`half_body_rates` over a real R): element
+/// [k][m − 1] is ∂w_k/∂x_m for k < `Count` and m ≤ k + 1, where w_k and x_m are the Taylor
+/// coefficients in t. With η = J(x) δx, the perturbation in body axes, δw = η̇ + 2 w × η. The last
+/// element of `rates` is not used.
 template <std::size_t Count, std::size_t Terms, class R>
 [[nodiscard]] std::array<std::array<matrix3<R>, Count>, Count>
 half_body_rate_gradients(const jacobian_coefficients<Terms, R>& jacobian, const vector3<R>& at,

@@ -137,7 +137,7 @@ private:
     return pieces_[i].polynomial({x[i]}, {x[(i + 1) % x.size()]});
   }
 
-  /// Number of rates that piece i contributes to equations; all of them only next to the ends.
+  /// Number of derivatives of segment i that equations use; one more near the ends.
   [[nodiscard]] std::size_t rates_of(std::size_t i) const {
     const std::size_t reach = ends_.reach();
     const bool is_at_end = !ends_.is_cyclic && (i <= reach || i + reach + 1 >= pieces_.size());
