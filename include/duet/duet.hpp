@@ -4,9 +4,9 @@
 /// \file
 /// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
 /// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (io/urdf.hpp),
-/// trees of links and joints (kinematics/coupled_tree.hpp, kinematics/tree_limits.hpp), mechanisms
-/// with loops of them (io/loop_file.hpp, robotics/loop_positions.hpp,
-/// robotics/loop_trace.hpp, robotics/mobility.hpp), arms in many
+/// trees of links and joints (kinematics/tree_jacobian.hpp, kinematics/centre_of_mass.hpp,
+/// kinematics/tree_limits.hpp), mechanisms with loops of them (io/loop_file.hpp,
+/// robotics/loop_positions.hpp, robotics/loop_trace.hpp, robotics/mobility.hpp), arms in many
 /// configurations (kinematics/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
 /// inverse kinematics and what moves along them (robotics/all_inverse_kinematics.hpp,
 /// robotics/differentiable_branch.hpp, robotics/self_motion_curves.hpp), partial goals, wishes and

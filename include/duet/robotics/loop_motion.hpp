@@ -29,14 +29,14 @@ struct driven_motion_options {
 /// The coordinates q(u) of a closed-chain mechanism as a function of its driven (input)
 /// coordinates u.
 ///
-/// As a function it is differentiated by all drivers, by the implicit function theorem. It can be
-/// the coupling of a `coupled_tree`, which has poses, Jacobians and Hessians of all links with
-/// respect to u. The configuration at the start selects the assembly; from there the curve of
-/// configurations along the straight line to any u is followed by predictor–corrector continuation
-/// (tangent steps and Newton's method), straight on where branches cross.
+/// As a function it is differentiated by all drivers, by the implicit function theorem, and so are
+/// compositions with it, such as the pose of a link at q(u). The configuration at the start selects
+/// the assembly; from there the curve of configurations along the straight line to any u is
+/// followed by predictor–corrector continuation (tangent steps and Newton's method), straight on
+/// where branches cross.
 ///
 /// Example: `const driven_motion by_crank(four_bar, q0, {four_bar.tree().coordinate("crank")});`
-/// `const coupled_tree driven(four_bar.tree(), by_crank);`
+/// `jacobian([&](const auto& u) { return four_bar.tree().pose(by_crank(u), link); }, u, frame)`
 class driven_motion {
 public:
   /// \param q0      initial guess near the start configuration; driven coordinates are taken as
