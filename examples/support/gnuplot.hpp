@@ -5,11 +5,15 @@
 
 #include <duet/core/text/file.hpp>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 
 #if __has_include(<sys/wait.h>)
 #include <sys/wait.h>
@@ -45,8 +49,19 @@ inline int run_command(const std::string& command) {
   return status;
 }
 
-/// Draws folder/name.svg and folder/name.png, both or neither; false if gnuplot is not installed.
-/// The script remains in folder/name.gnuplot, where it can be changed and run.
+/// Removes a file and returns its content; empty if it does not exist.
+[[nodiscard]] inline std::string removed(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::string result{std::istreambuf_iterator<char>(in), {}};
+  in.close();
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+  return result;
+}
+
+/// Draws folder/name.svg and folder/name.png if gnuplot draws both without an error; false if
+/// gnuplot is not installed. The script remains in folder/name.gnuplot, where it can be changed and
+/// run. If the program is killed, temporary files `.duet-….part` may remain.
 /// \param height  height of the picture in pixels, at a width of `picture_width`
 /// \throws std::runtime_error if gnuplot fails, duet::file_error
 inline bool draw(const std::string& folder, const std::string& name, int height,
@@ -68,24 +83,28 @@ inline bool draw(const std::string& folder, const std::string& name, int height,
                        " font 'sans-serif,10.5' fontscale 2 linewidth 2 pointscale 2 "
                        "background rgb 'white'\n" +
                        output("png"));
-  duet::file_draft svg(path + ".svg"), png(path + ".png");
-  const auto absolute = [](const std::string& relative) {
-    return std::filesystem::absolute(relative).string();
-  };
-  const std::string variables = "svg_file=" + quoted(absolute(svg.name()), "''") +
-                                "; png_file=" + quoted(absolute(png.name()), "''");
-  // The user's start files and the terminal named by the environment are ignored.
+  duet::require_writable(path + ".svg");
+  duet::require_writable(path + ".png");
+  const auto time = std::chrono::system_clock::now().time_since_epoch().count();
+  const std::string temporary = ".duet-" + std::to_string(time) + "-" + name;
+  const std::string svg_file = temporary + ".svg.part", png_file = temporary + ".png.part";
+  const std::string variables =
+      "svg_file=" + quoted(svg_file, "''") + "; png_file=" + quoted(png_file, "''");
+  // The user's start files and the terminal named by the environment are ignored. By `umask` nobody
+  // else may read the temporary files, as the previous pictures may be private.
   const int status =
-      run_command("cd " + quoted_for_shell(absolute(folder)) + " && GNUTERM=svg gnuplot -d -e " +
-                  quoted_for_shell(variables) + " '" + name + ".gnuplot' >/dev/null 2>&1");
+      run_command("cd " + quoted_for_shell(std::filesystem::absolute(folder).string()) +
+                  " && umask 077 && GNUTERM=svg gnuplot -d -e " + quoted_for_shell(variables) +
+                  " '" + name + ".gnuplot' >/dev/null 2>&1");
+  const std::string svg = removed(folder + "/" + svg_file), png = removed(folder + "/" + png_file);
   if (status == 127) { // the shell did not find gnuplot
     return false;
   }
   if (status != 0) {
     throw std::runtime_error("gnuplot fails to draw " + path + ".gnuplot");
   }
-  svg.commit();
-  png.commit();
+  duet::write_file(path + ".svg", svg);
+  duet::write_file(path + ".png", png);
   return true;
 }
 

@@ -3,21 +3,20 @@
 #include "support/message.hpp"
 
 #include <duet/core/text/file.hpp>
-#include <duet/core/text/file_pair.hpp>
 
 #include <doctest/doctest.h>
 
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <string>
 #include <thread>
 #include <utility>
-#include <vector>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -26,6 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using duet::write_file;
+using duet::detail::temporary_file;
 
 /// A separate folder, created empty and removed at the end.
 class playground {
@@ -37,7 +37,7 @@ public:
   }
   ~playground() { fs::remove_all(path_); }
   [[nodiscard]] std::string at(const std::string& name) const { return path_ / name; }
-  /// Number of entries in the folder, drafts included.
+  /// Number of entries in the folder, temporary files included.
   [[nodiscard]] auto count() const {
     return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
   }
@@ -71,41 +71,18 @@ TEST_CASE("write_file: replaces the complete file and keeps its permissions") {
   CHECK(folder.count() == 1);
 }
 
-TEST_CASE("file_draft: has the permissions of the file, so nobody else may read it") {
+TEST_CASE("temporary_file: has the permissions of the target, so nobody else may read it") {
   const playground folder("private");
   const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
   for (const auto permissions : {fs::perms(0600), fs::perms(0666)}) {
     fs::permissions(path, permissions);
-    duet::file_draft draft(path);
-    CHECK(fs::status(draft.name()).permissions() == permissions);
-    draft.write("second\n");
-    draft.commit();
+    temporary_file temporary(path);
+    CHECK(fs::status(temporary.name()).permissions() == permissions);
+    temporary.write("second\n");
+    temporary.replace_target();
     CHECK(fs::status(path).permissions() == permissions);
   }
-}
-
-TEST_CASE("remove_drafts: works while another thread creates and removes drafts") {
-  const playground folder("many");
-  std::thread other([&] {
-    for (int i = 0; i < 200; ++i) {
-      const duet::file_draft draft(folder.at("a.csv"));
-    }
-  });
-  for (int i = 0; i < 200; ++i) {
-    duet::remove_drafts();
-  }
-  other.join();
-  { // more drafts than the list holds; destructors then empty the list
-    std::vector<std::unique_ptr<duet::file_draft>> drafts;
-    for (int i = 0; i < 100; ++i) {
-      drafts.push_back(std::make_unique<duet::file_draft>(folder.at("a.csv")));
-    }
-    CHECK(folder.count() == 100);
-    duet::remove_drafts();
-    CHECK(folder.count() == 100 - 64);
-  }
-  CHECK(folder.count() == 0);
 }
 
 TEST_CASE("write_file: text printed to a pipe precedes text written to it by name") {
@@ -132,24 +109,56 @@ TEST_CASE("write_file: text printed to a pipe precedes text written to it by nam
   CHECK(std::string(text.data()) == "printed x");
 }
 
-TEST_CASE("file_draft: without commit the target keeps its content") {
-  const playground folder("draft");
+TEST_CASE("temporary_file: not renamed, it is removed and the target keeps its content") {
+  const playground folder("temporary");
   const std::string path = folder.at("a.csv");
   write_file(path, "first\n");
   {
-    const duet::file_draft draft(path);
-    draft.write("second\n");
+    temporary_file temporary(path);
+    temporary.write("second\n");
     CHECK(folder.count() == 2);
-    CHECK(content_of(draft.name()) == "second\n");
+    CHECK(content_of(temporary.name()) == "second\n");
   }
   CHECK(folder.count() == 1);
-  // A signal before `commit` also keeps the content of the target.
-  duet::file_draft draft(path);
-  draft.write("second\n");
-  duet::remove_drafts();
-  CHECK(folder.count() == 1);
-  CHECK_THROWS_AS(draft.commit(), duet::file_error);
+  // Somebody else removes it before it is renamed.
+  temporary_file temporary(path);
+  temporary.write("second\n");
+  fs::remove(temporary.name());
+  CHECK_THROWS_AS(temporary.replace_target(), duet::file_error);
   CHECK(content_of(path) == "first\n");
+}
+
+TEST_CASE("temporary_file: a target that becomes a folder is an error and leaves no other file") {
+  const playground folder("late");
+  const std::string path = folder.at("late.csv");
+  {
+    temporary_file temporary(path);
+    temporary.write("1\n");
+    fs::create_directory(path);
+    CHECK(duet_test::message_of<duet::file_error>([&] { temporary.replace_target(); }) ==
+          "duet: " + path + ": cannot be written: Is a directory");
+  }
+  CHECK(fs::is_directory(path));
+  CHECK(folder.count() == 1);
+}
+
+TEST_CASE("write_file: content that does not fit leaves the previous file and no other") {
+  const playground folder("large");
+  const std::string path = folder.at("a.csv");
+  write_file(path, "first\n");
+  rlimit before{};
+  REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
+  rlimit limit = before;
+  limit.rlim_cur = 4096;
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  REQUIRE(setrlimit(RLIMIT_FSIZE, &limit) == 0);
+  const std::string error =
+      duet_test::message_of<duet::file_error>([&] { write_file(path, std::string(100000, 'x')); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  CHECK(error == "duet: " + path + ": cannot be written: File too large");
+  CHECK(content_of(path) == "first\n");
+  CHECK(folder.count() == 1);
 }
 
 TEST_CASE("write_file: concurrent writers of one file do not mix their contents") {
@@ -237,58 +246,6 @@ TEST_CASE("require_writable: reports the error that write_file would report, wit
   CHECK(message(folder.at("none\n\x1b[2J/a.csv")) ==
         "duet: " + folder.at("none\\n\\x1b[2J/a.csv") +
             ": cannot be written: No such file or directory");
-}
-
-TEST_CASE("write_files: writes both files or neither") {
-  const playground folder("pair");
-  const std::string a = folder.at("a.csv"), b = folder.at("b.csv");
-  const auto error_message = [](const std::string& first, const std::string& second) {
-    return duet_test::message_of<duet::file_error>(
-        [&] { duet::write_files(first, "1\n", second, "2\n"); });
-  };
-  CHECK(error_message(a, b).empty());
-  CHECK(content_of(a) == "1\n");
-  CHECK(content_of(b) == "2\n");
-  write_file(a, "before\n");
-  const std::string far = folder.at("none/b.csv");
-  CHECK(error_message(a, far) == "duet: " + far + ": cannot be written: No such file or directory");
-  CHECK(error_message(far, a) == error_message(a, far));
-  CHECK(error_message(a, folder.at("./a.csv")) ==
-        "duet: " + folder.at("./a.csv") + ": is the same file as " + a);
-  fs::create_symlink("a.csv", folder.at("link"));
-  CHECK(error_message(folder.at("link"), a) ==
-        "duet: " + a + ": is the same file as " + folder.at("link"));
-  const std::string none = folder.at("new.csv"); // not there yet
-  CHECK(error_message(none, folder.at("./new.csv")).ends_with(": is the same file as " + none));
-  CHECK(content_of(a) == "before\n");
-  CHECK(folder.count() == 3);
-
-  // The second target is a folder by the time it is replaced.
-  for (const std::string& first : {a, none, folder.at("link")}) {
-    const std::string second = folder.at("late.csv");
-    {
-      duet::file_draft one(first), two(second);
-      one.write("1\n");
-      two.write("2\n");
-      fs::create_directory(second);
-      CHECK(duet_test::message_of<duet::file_error>([&] {
-              duet::detail::commit_both(first, one, two);
-            }) == "duet: " + second + ": cannot be written: Is a directory");
-    }
-    fs::remove(second);
-    CHECK(content_of(a) == "before\n");
-    CHECK(fs::is_symlink(folder.at("link")));
-    CHECK(folder.count() == 3);
-  }
-
-  if (fs::is_character_file("/dev/full") && fs::is_character_file("/dev/null")) {
-    CHECK(error_message("/dev/full", a) == message("/dev/full"));
-    CHECK(error_message(a, "/dev/full") == message("/dev/full"));
-    CHECK(content_of(a) == "before\n");
-    CHECK(error_message("/dev/null", "/dev/null").empty());
-    CHECK(error_message("/dev/null", a).empty());
-    CHECK(content_of(a) == "2\n");
-  }
 }
 
 TEST_CASE("write_file: missing permissions for files and folders are errors") {

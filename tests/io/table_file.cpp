@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <locale>
@@ -187,6 +188,8 @@ TEST_CASE("save_table: errors name the reason, and no file is written") {
         "duet: no/times.txt: cannot be written: No such file or directory");
   CHECK(error_message(table, table_format::kitti, file.path.c_str()) ==
         "duet: " + file.path + ": is the same file as " + file.path);
+  CHECK(error_message(table, table_format::kitti, ("./" + file.path).c_str()) ==
+        "duet: " + file.path + ": is the same file as ./" + file.path);
   CHECK(error_message(table, table_format::tum, "times.txt") ==
         "duet: save_table: only KITTI files have times in a separate file");
   table.parameters = {0, 1e-3, 1.0000002e-3};
@@ -202,6 +205,41 @@ TEST_CASE("save_table: errors name the reason, and no file is written") {
   table.parameters.pop_back();
   CHECK(error_message(table, table_format::csv) == "duet: save_table: 2 parameters for 3 elements");
   CHECK(file.text().empty());
+}
+
+TEST_CASE("save_table: poses and times need separate files, and times remain if poses cannot be "
+          "written") {
+  const scratch_file file("poses.txt"), times("times.txt"), link("link.txt");
+  const poses table = random_poses(3, 0, 1);
+  const auto error_message = [&](const std::string& path, const std::string& path_of_times) {
+    return duet_test::message_of<duet::file_error>(
+        [&] { duet::save_table(path, table, table_format::kitti, path_of_times); });
+  };
+  CHECK(error_message(file.path, times.path).empty());
+  const std::string before = file.text(), column = times.text();
+  std::filesystem::create_symlink(file.path, link.path);
+  CHECK(error_message(link.path, file.path) ==
+        "duet: " + link.path + ": is the same file as " + file.path);
+  CHECK(error_message(file.path, link.path) ==
+        "duet: " + file.path + ": is the same file as " + link.path);
+  CHECK(file.text() == before);
+
+  times.write("before\n");
+  CHECK(error_message(file.path, "no/times.txt") ==
+        "duet: no/times.txt: cannot be written: No such file or directory");
+  CHECK(file.text() == before);
+  CHECK(error_message("no/poses.txt", times.path) ==
+        "duet: no/poses.txt: cannot be written: No such file or directory");
+  CHECK(times.text() == column);
+  if (std::filesystem::is_character_file("/dev/full") &&
+      std::filesystem::is_character_file("/dev/null")) {
+    CHECK(error_message(file.path, "/dev/full") ==
+          "duet: /dev/full: cannot be written: No space left on device");
+    CHECK(file.text() == before);
+    CHECK(error_message("/dev/full", times.path) ==
+          "duet: /dev/full: cannot be written: No space left on device");
+    CHECK(error_message("/dev/null", "/dev/null").empty());
+  }
 }
 
 TEST_CASE("load_table: files of other programs with blanks, line ends, byte order marks, comments "

@@ -5,7 +5,6 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
-#include <duet/core/text/file_pair.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
@@ -19,6 +18,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -137,12 +137,21 @@ template <class T>
   return text;
 }
 
+/// True if two paths lead to one file, existing or not; false for devices and pipes.
+[[nodiscard]] inline bool is_same_file(const std::string& first, const std::string& second) {
+  const auto real_path = [](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(link_target(path)));
+  };
+  return !is_written_directly(first) && !is_written_directly(second) &&
+         real_path(first) == real_path(second);
+}
+
 } // namespace detail
 
 /// Writes a lookup table of rotations or poses with all digits and independently of the locale.
-/// Writes atomically: the complete file or nothing, and both files or neither. Parameters are
-/// seconds in TUM and EuRoC files and in `csv_seconds`; EuRoC files round them to integer
-/// nanoseconds, KITTI files have no parameters.
+/// Writes atomically: the complete file or nothing. `times` is written first, and remains if `path`
+/// then cannot be written. Parameters are seconds in TUM and EuRoC files and in `csv_seconds`;
+/// EuRoC files round them to integer nanoseconds, KITTI files have no parameters.
 ///
 /// Read back, parameters and quaternions have the same bits, and positions differ by round-off, as
 /// a dual quaternion holds half the product of both. For EuRoC files this holds for parameters from
@@ -153,7 +162,7 @@ template <class T>
 /// \throws invalid_input if the numbers of parameters and elements differ, for rotations in a
 /// format of poses, for `times` with another format than KITTI's, and for times that EuRoC's format
 /// cannot distinguish
-/// \throws file_error if a file cannot be written
+/// \throws file_error if a file cannot be written, or if both are the same file
 template <class T>
 void save_table(const std::string& path, const lookup_table<T>& table,
                 table_format format = table_format::csv, const std::string& times = {}) {
@@ -163,15 +172,17 @@ void save_table(const std::string& path, const lookup_table<T>& table,
   detail::require(times.empty() || format == table_format::kitti,
                   "duet: save_table: only KITTI files have times in a separate file");
   const std::string text = detail::text_of(table, format);
-  if (times.empty()) {
-    write_file(path, text);
-    return;
+  if (!times.empty()) {
+    if (detail::is_same_file(times, path)) {
+      detail::raise(file_error(path, "is the same file as " + times));
+    }
+    std::string column;
+    for (const double u : table.parameters) {
+      column += csv_line({u});
+    }
+    write_file(times, column);
   }
-  std::string column;
-  for (const double u : table.parameters) {
-    column += csv_line({u});
-  }
-  write_files(times, column, path, text);
+  write_file(path, text);
 }
 
 namespace detail {

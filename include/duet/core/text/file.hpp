@@ -4,21 +4,15 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/text/printable.hpp>
 
-#include <algorithm>
-#include <array>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <utility>
-
-#if __has_include(<unistd.h>)
-#include <unistd.h>
-#endif
 
 /// \file
 /// Files written as a whole or not at all.
@@ -41,29 +35,23 @@ namespace detail {
   return {path, "cannot be written: " + std::generic_category().message(error)};
 }
 
-/// A stream of C, closed by the destructor.
-class c_file {
-public:
-  c_file(const std::string& path, const char* mode) : file_(std::fopen(path.c_str(), mode)) {}
-  c_file(const c_file&) = delete;
-  c_file& operator=(const c_file&) = delete;
-  ~c_file() { close(); }
-
-  [[nodiscard]] bool is_open() const { return file_ != nullptr; }
-  /// True if everything was written; otherwise errno gives the reason.
-  [[nodiscard]] bool write(const std::string& content) {
-    return std::fwrite(content.data(), 1, content.size(), file_) == content.size() &&
-           std::fflush(file_) == 0;
-  }
-  /// \return true if there was no error
-  bool close() {
-    std::FILE* const file = std::exchange(file_, nullptr);
-    return file == nullptr || std::fclose(file) == 0;
-  }
-
-private:
-  std::FILE* file_;
+struct closing {
+  void operator()(std::FILE* file) const { std::fclose(file); }
 };
+/// A stream of C, closed by the destructor.
+using c_file = std::unique_ptr<std::FILE, closing>;
+[[nodiscard]] inline c_file opened(const std::string& path, const char* mode) {
+  return c_file(std::fopen(path.c_str(), mode));
+}
+
+/// \param path  name for messages
+/// \throws file_error if the stream is not open or not everything can be written
+inline void write_and_close(const std::string& path, c_file file, const std::string& content) {
+  if (!file || std::fwrite(content.data(), 1, content.size(), file.get()) != content.size() ||
+      std::fflush(file.get()) != 0 || std::fclose(file.release()) != 0) {
+    raise(cannot_write(path, errno));
+  }
+}
 
 /// True if a path leads to something that is neither a file nor a folder: a device, a pipe, a
 /// socket.
@@ -80,17 +68,19 @@ private:
   return std::filesystem::equivalent(path, "/dev/stdout", ignored);
 }
 
+/// True if replacing a file by another one is impossible, or would lose the rest of the output.
+[[nodiscard]] inline bool is_written_directly(const std::string& path) {
+  return is_special_file(path) || is_standard_output(path);
+}
+
 /// The file that a path leads to over all links, existing or not.
 ///
 /// \throws file_error if it exists and is not a file, or may not be written
 [[nodiscard]] inline std::filesystem::path link_target(const std::string& path) {
-  constexpr int max_links = 40;
+  constexpr int max_links = 40; // `status` reports longer and circular sequences
   std::filesystem::path result(path);
   std::error_code error;
-  for (int links = 0; is_symlink(std::filesystem::symlink_status(result, error)); ++links) {
-    if (links == max_links) {
-      raise(cannot_write(path, ELOOP));
-    }
+  for (int links = 0; links < max_links && is_symlink(symlink_status(result, error)); ++links) {
     const std::filesystem::path next = std::filesystem::read_symlink(result, error);
     if (error) {
       raise(cannot_write(path, error.value()));
@@ -106,175 +96,105 @@ private:
       raise(is_directory(status) ? file_error(path, "is a folder, not a file")
                                  : cannot_write(path, EINVAL));
     }
-    if (!c_file(result.string(), "r+b").is_open()) { // changes nothing
+    if (!opened(result.string(), "r+b")) { // changes nothing
       raise(cannot_write(path, errno));
     }
   }
   return result;
 }
 
-/// Name of a draft, for signal handlers: these can neither lock nor allocate, and may run while
-/// another thread finishes with the draft. Only the thread that has changed `owner` to `busy` uses
-/// `name`.
-struct registered_temporary {
-  static constexpr unsigned long nobody = 0, busy = 1;
-  static_assert(std::atomic<unsigned long>::is_always_lock_free);
-
-  std::atomic<unsigned long> owner{nobody};
-  std::array<char, 4096> name{}; ///< the maximum length of a path on Linux
-};
-inline constinit std::array<registered_temporary, 64> listed_drafts{};
-inline std::atomic<unsigned long> last_draft{registered_temporary::busy};
-
-} // namespace detail
-
-/// Removes drafts: for the handler of a signal that ends the program. Signal-safe on POSIX.
-inline void remove_drafts() noexcept {
-  using detail::registered_temporary;
-  for (registered_temporary& draft : detail::listed_drafts) {
-    unsigned long owner = draft.owner.load();
-    if (owner > registered_temporary::busy &&
-        draft.owner.compare_exchange_strong(owner, registered_temporary::busy)) {
-#if __has_include(<unistd.h>)
-      ::unlink(draft.name.data()); // POSIX does not guarantee it for std::remove
-#else
-      std::remove(draft.name.data());
-#endif
-      draft.owner.store(registered_temporary::nobody);
-    }
-  }
-}
-
-/// A file under another name, in the same folder, until it is complete: `commit` then replaces the
-/// target, with the permissions of the previous file. Without `commit` it is removed.
-///
-/// Links are followed, so that a link stays one.
-class file_draft {
+/// A new file beside a target, with the permissions of an existing target: who may not read the
+/// target may not read the new content. The destructor removes it unless it has replaced the
+/// target.
+class temporary_file {
 public:
-  /// Creates the draft, an empty file.
+  /// Creates the empty file.
   ///
-  /// \throws file_error if the file cannot be written
-  explicit file_draft(const std::string& path) : path_(path), target_(detail::link_target(path)) {
-    using enum std::filesystem::perms;
-    for (int number = 0;; ++number) {
-      // Nobody else has this name: files are created, not opened.
-      const auto time = std::chrono::system_clock::now().time_since_epoch().count();
+  /// \throws file_error if the target cannot be written
+  explicit temporary_file(const std::string& path) : path_(path), target_(link_target(path)) {
+    const auto time = std::chrono::system_clock::now().time_since_epoch().count();
+    for (int number = 0; !file_; ++number) {
       name_ = (target_.parent_path() /
                (".duet-" + std::to_string(time) + "-" + std::to_string(number) + ".part"))
                   .string();
-      enlist(); // before it is created: a signal in between would leave it
-      if (detail::c_file(name_, "wbx").is_open()) {
-        // Users who may not read the file may not read its draft.
-        if (const auto error = take_permissions(owner_read | owner_write)) {
-          remove();
-          detail::raise(detail::cannot_write(path, error.value()));
-        }
-        return;
-      }
-      const int error = errno;
-      strike();
-      if (error != EEXIST || number == 1000) {
-        detail::raise(detail::cannot_write(path, error));
+      file_ = opened(name_, "wbx"); // fails if another writer has this name
+      if (!file_ && (errno != EEXIST || number == 1000)) {
+        raise(cannot_write(path, errno));
       }
     }
+    if (const auto error = copy_permissions()) {
+      remove();
+      raise(cannot_write(path, error.value()));
+    }
   }
-  file_draft(const file_draft&) = delete;
-  file_draft& operator=(const file_draft&) = delete;
-  ~file_draft() {
+  temporary_file(const temporary_file&) = delete;
+  temporary_file& operator=(const temporary_file&) = delete;
+  ~temporary_file() {
     if (!name_.empty()) {
       remove();
     }
   }
 
-  /// Path of the draft until it is committed.
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Writes the whole content.
+  /// Writes the content and closes the file.
   ///
   /// \throws file_error
-  void write(const std::string& content) const {
-    detail::c_file out(name_, "wb");
-    if (!out.is_open() || !out.write(content) || !out.close()) {
-      detail::raise(detail::cannot_write(path_, errno));
-    }
-  }
+  void write(const std::string& content) { write_and_close(path_, std::move(file_), content); }
 
-  /// Replaces the target by the draft.
+  /// Renames the written file to its target.
   ///
   /// \throws file_error
-  void commit() {
-    std::error_code error = take_permissions(std::filesystem::perms::none);
-    if (!error) {
-      std::filesystem::rename(name_, target_, error);
-    }
+  void replace_target() {
+    std::error_code error;
+    std::filesystem::rename(name_, target_, error);
     if (error) {
-      detail::raise(detail::cannot_write(path_, error.value()));
+      raise(cannot_write(path_, error.value()));
     }
-    strike();
     name_.clear();
   }
 
 private:
-  /// Sets the permissions of the existing file, if there is one, and these.
-  [[nodiscard]] std::error_code take_permissions(std::filesystem::perms also) const {
+  [[nodiscard]] std::error_code copy_permissions() const {
     std::error_code error;
-    const auto before = std::filesystem::status(target_, error);
-    if (!exists(before)) {
+    const auto wanted = std::filesystem::status(target_, error);
+    if (!exists(wanted)) {
       return {};
     }
-    const auto wanted = before.permissions() | also;
     const auto now = std::filesystem::status(name_, error);
-    if (!error && now.permissions() != wanted) { // some file systems have the same for all files
-      std::filesystem::permissions(name_, wanted, error);
+    if (!error && now.permissions() != wanted.permissions()) { // equal on some file systems
+      std::filesystem::permissions(name_, wanted.permissions(), error);
     }
     return error;
   }
-
-  void enlist() {
-    using detail::registered_temporary;
-    id_ = ++detail::last_draft;
-    for (registered_temporary& draft : detail::listed_drafts) {
-      unsigned long owner = registered_temporary::nobody;
-      if (name_.size() < draft.name.size() &&
-          draft.owner.compare_exchange_strong(owner, registered_temporary::busy)) {
-        *std::copy(name_.begin(), name_.end(), draft.name.begin()) = '\0';
-        draft.owner.store(id_);
-        return;
-      }
-    }
-  }
-  void strike() const {
-    for (detail::registered_temporary& draft : detail::listed_drafts) {
-      unsigned long mine = id_;
-      if (draft.owner.compare_exchange_strong(mine, detail::registered_temporary::nobody)) {
-        return;
-      }
-    }
-  }
-  void remove() const {
+  void remove() {
+    file_.reset();
     std::remove(name_.c_str());
-    strike();
   }
 
   std::string path_;
   std::filesystem::path target_;
-  std::string name_;
-  unsigned long id_ = 0; ///< unique number in the list of drafts
+  std::string name_; ///< empty after the file has replaced its target
+  c_file file_;
 };
+
+} // namespace detail
 
 /// Checks before a computation that `write_file` could write its result; changes nothing.
 ///
 /// \throws file_error
 inline void require_writable(const std::string& path) {
-  if (!detail::is_special_file(path) && !detail::is_standard_output(path)) {
-    file_draft{path};
+  if (!detail::is_written_directly(path)) {
+    detail::temporary_file{path};
   }
 }
 
-/// Writes a whole file or nothing: a `file_draft`, which then replaces the file. Links are
-/// followed; a device, a pipe or standard output is written directly.
+/// Writes a whole file or nothing: a temporary file in the same folder, with the permissions of the
+/// previous file, replaces it when complete. Links are followed; a device, a pipe or standard
+/// output is written directly. If the program is killed, the temporary file `.duet-….part` may
+/// remain.
 ///
-/// \throws file_error
+/// \throws file_error with the path and the reason; the previous file is then unchanged
 inline void write_file(const std::string& path, const std::string& content) {
   if (detail::is_standard_output(path)) {
     if (std::fwrite(content.data(), 1, content.size(), stdout) != content.size() ||
@@ -285,15 +205,12 @@ inline void write_file(const std::string& path, const std::string& content) {
   }
   if (detail::is_special_file(path)) {
     std::fflush(stdout); // it may go there, too: earlier output comes first
-    detail::c_file out(path, "wb");
-    if (!out.is_open() || !out.write(content) || !out.close()) {
-      detail::raise(detail::cannot_write(path, errno));
-    }
+    detail::write_and_close(path, detail::opened(path, "wb"), content);
     return;
   }
-  file_draft draft(path);
-  draft.write(content);
-  draft.commit();
+  detail::temporary_file temporary(path);
+  temporary.write(content);
+  temporary.replace_target();
 }
 
 } // namespace duet
