@@ -8,9 +8,9 @@
 #include "support/command_line.hpp"
 #include "support/poses.hpp"
 #include "support/program.hpp"
+#include "support/progress_line.hpp"
 
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/progress_line.hpp>
 #include <duet/duet.hpp>
 
 #include <algorithm>
@@ -103,7 +103,7 @@ void solve(const example::command_line& arguments) {
   }
   std::vector<solution> results(goals.size());
   {
-    progress_line line("goals");
+    example::progress_line line("goals");
     inverse_kinematics(arm, poses, start, results, options, {.threads = 0, .report = line});
   }
   if (goals.size() == 1 && results[0].reason != stop_reason::reached) {

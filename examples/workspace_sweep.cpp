@@ -11,10 +11,10 @@
 #include "support/folder.hpp"
 #include "support/gnuplot.hpp"
 #include "support/program.hpp"
+#include "support/progress_line.hpp"
 
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/progress_line.hpp>
 #include <duet/kinematics/sweep.hpp>
 
 #include <Eigen/Core>
@@ -91,7 +91,7 @@ std::vector<sample> sweep(const chain& arm, std::size_t count) {
       samples[i] = {std::hypot(t[0], t[1]), t[2], manipulability_of(jacobian)};
     }
   };
-  progress_line line("configurations");
+  example::progress_line line("configurations");
   const auto report = [&](const progress& p) {
     line(p);
     return is_interrupted == 0;

@@ -12,8 +12,8 @@
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
+#include "../support/progress_line.hpp"
 
-#include <duet/core/text/progress_line.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 
 #include <chrono>
@@ -33,7 +33,7 @@ plan_type plan(const problem& p) {
   auto result = std::async(std::launch::async, [&] {
     return duet::plan_screw_motion(p.arm, p.start, p.goal, {}, {}, p.scene);
   });
-  duet::progress_line line("");
+  example::progress_line line("");
   constexpr std::chrono::milliseconds tick(100);
   std::chrono::duration<double> time(0);
   do {

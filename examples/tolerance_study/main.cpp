@@ -13,11 +13,11 @@
 #include "../support/folder.hpp"
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
+#include "../support/progress_line.hpp"
 #include "../wheel_carrier/hardpoints_file.hpp"
 
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/progress_line.hpp>
 
 #include <cmath>
 #include <cstddef>
@@ -50,7 +50,7 @@ void compute_share(const block_store& blocks, const toleranced_carrier& mechanis
   for (std::size_t i = all.rank(); i < missing.size(); i += all.size()) {
     share.push_back(missing[i]);
   }
-  duet::progress_line line("blocks");
+  example::progress_line line("blocks");
   duet::execution execution{threads};
   if (all.rank() == 0) {
     execution.report = line;

@@ -16,8 +16,8 @@
 /// io/mesh_file.hpp, io/srdf.hpp),
 /// plans over time (robotics/time_parametrised.hpp), tables, recordings and plans as files
 /// (io/table_file.hpp, io/recording.hpp, io/save_plan.hpp, core/text/csv.hpp),
-/// progress_line (core/text/progress_line.hpp), the notes' own planner (motion/printed_plan.hpp),
-/// the nearest point of a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
+/// the notes' own planner (motion/printed_plan.hpp), the nearest point of a screw motion
+/// (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>

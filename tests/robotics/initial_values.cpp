@@ -3,7 +3,6 @@
 #include <duet/comparison/numeric_derivative.hpp>
 #include <duet/core/progress.hpp>
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/progress_line.hpp>
 #include <duet/derivative/second_order.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/dual_quaternion/nearest.hpp>
@@ -144,7 +143,6 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(execution);
   DUET_CHECK(progress);
   DUET_CHECK(csv_row);
-  DUET_CHECK(progress_display);
   DUET_CHECK(value_and_derivative<Vector3d, Vector3d>);
   DUET_CHECK(value_and_gradient<double, Vector3d>);
   DUET_CHECK(value_gradient_and_hessian<double, Vector3d, Matrix3d>);

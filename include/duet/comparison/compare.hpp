@@ -37,7 +37,7 @@ struct comparison_options {
   std::size_t samples = 1000;
   std::uint64_t seed = 1;        ///< seed of the random points; the same seed gives the same result
   double tolerance = 100;        ///< allowed error, in units of the last place
-  progress_callback report = {}; ///< called after every input, may end the run: see `progress_line`
+  progress_callback report = {}; ///< callback after every input; may end the run
 };
 
 namespace detail {

@@ -18,7 +18,7 @@
 /// \file
 /// Progress display for people.
 
-namespace duet {
+namespace example {
 
 /// Settings of a progress display.
 struct progress_display {
@@ -35,16 +35,17 @@ struct progress_display {
     const bool is_terminal = false;
 #endif
     const char* const text = std::getenv("DUET_PROGRESS_INTERVAL");
-    const double wanted = parse_number(text == nullptr ? "" : text)
+    const double wanted = duet::parse_number(text == nullptr ? "" : text)
                               .value_or(std::numeric_limits<double>::quiet_NaN());
     return {stderr, is_terminal, wanted >= 0 ? wanted : is_terminal ? 1.0 : 10.0};
   }
 };
 
 /// Shows the progress of a long run, `progress: 3 of 40 blocks`, and nothing for a short one: a
-/// report for `execution` or `comparison_options`.
+/// report for `duet::execution` or `duet::comparison_options`.
 ///
-/// Example: `progress_line line("blocks"); parallel_for(n, body, {.threads = 0, .report = line});`
+/// Example:
+/// `progress_line line("blocks"); duet::parallel_for(n, body, {.threads = 0, .report = line});`
 class progress_line {
 public:
   explicit progress_line(std::string things,
@@ -59,7 +60,7 @@ public:
   }
 
   /// Shows the number of completed elements, if a line is due.
-  void operator()(const progress& p) {
+  void operator()(const duet::progress& p) {
     say(std::to_string(p.done) + " of " + std::to_string(p.count) + " " + things_,
         p.done == p.count && has_spoken_);
   }
@@ -83,4 +84,4 @@ private:
   std::chrono::steady_clock::time_point spoke_ = std::chrono::steady_clock::now();
 };
 
-} // namespace duet
+} // namespace example

@@ -1,17 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../examples/support/progress_line.hpp"
+
 #include <duet/core/parallel_for.hpp>
-#include <duet/core/text/progress_line.hpp>
 
 #include <doctest/doctest.h>
 
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
+#include <new>
 #include <string>
 
-namespace test_core_progress_line {
+namespace test_examples_progress_line {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
@@ -20,7 +23,7 @@ constexpr double never = std::numeric_limits<double>::infinity();
 std::string said(bool is_terminal, double interval) {
   std::FILE* const file = std::tmpfile();
   {
-    duet::progress_line line("things", {file, is_terminal, interval});
+    example::progress_line line("things", {file, is_terminal, interval});
     for (std::size_t i = 1; i <= 3; ++i) {
       line({i, 3});
     }
@@ -46,14 +49,23 @@ TEST_CASE(
   CHECK(said(true, never).empty());
 }
 
+TEST_CASE("progress_display: default-initialization sets every field") {
+  alignas(example::progress_display) unsigned char memory[sizeof(example::progress_display)];
+  std::memset(memory, 0xA7, sizeof memory);
+  const auto* const display = new (memory) example::progress_display;
+  CHECK(display->stream == stderr);
+  CHECK(!display->is_terminal);
+  CHECK(display->interval == 10);
+}
+
 TEST_CASE("progress_line: the environment variable sets the interval") {
   const auto interval = [](const char* text) {
     setenv("DUET_PROGRESS_INTERVAL", text, 1);
-    return duet::progress_display::standard().interval;
+    return example::progress_display::standard().interval;
   };
   const char* const before = std::getenv("DUET_PROGRESS_INTERVAL");
   const std::string kept = before == nullptr ? "" : before;
-  const bool is_terminal = duet::progress_display::standard().is_terminal;
+  const bool is_terminal = example::progress_display::standard().is_terminal;
   const double otherwise = is_terminal ? 1 : 10;
   CHECK(interval("0") == 0);
   CHECK(interval("2.5") == 2.5);
@@ -70,11 +82,11 @@ TEST_CASE("progress_line: the environment variable sets the interval") {
 
 TEST_CASE("progress_line: serves as progress callback of a run") {
   std::FILE* const file = std::tmpfile();
-  duet::progress_line line("calls", {file, false, 0});
+  example::progress_line line("calls", {file, false, 0});
   duet::parallel_for_blocks(
       4, [](std::size_t, std::size_t) {}, {.threads = 1, .report = line}, 2);
   CHECK(std::ftell(file) == 2 * long(std::string("progress: 2 of 4 calls\n").size()));
   std::fclose(file);
 }
 
-} // namespace test_core_progress_line
+} // namespace test_examples_progress_line
