@@ -2,22 +2,20 @@
 #pragma once
 
 /// \file
-/// All of duet but what programs ask for by name, as it takes compilers long or is rare: sparse
-/// Jacobians and Hessians (derivative/sparse.hpp), robots' description files (io/urdf.hpp),
-/// trees of links and joints (kinematics/tree_jacobian.hpp, kinematics/centre_of_mass.hpp,
-/// kinematics/tree_limits.hpp), mechanisms with loops of them (io/loop_file.hpp,
-/// robotics/loop_positions.hpp, robotics/loop_trace.hpp, robotics/mobility.hpp), arms in many
-/// configurations (kinematics/sweep.hpp), curves near rows (spline/fit.hpp), all solutions of
-/// inverse kinematics and what moves along them (robotics/all_inverse_kinematics.hpp,
-/// robotics/differentiable_branch.hpp, robotics/self_motion_curves.hpp), partial goals, wishes and
-/// the start of a path (robotics/goals.hpp, robotics/equation_goal.hpp, robotics/choose_start.hpp),
-/// what keeps links apart from each other and the capsules that their shapes are in
-/// (robotics/pairs_apart.hpp, robotics/capsules_of.hpp, robotics/enclosing_capsule.hpp,
-/// io/mesh_file.hpp, io/srdf.hpp),
-/// plans over time (robotics/time_parametrised.hpp), tables, recordings and plans as files
-/// (io/table_file.hpp, io/recording.hpp, io/save_plan.hpp, core/text/csv.hpp),
-/// the notes' own planner (motion/printed_plan.hpp), the nearest point of a screw motion
-/// (dual_quaternion/nearest.hpp), and `interop/`.
+/// Everything in duet except headers that take long to compile or are rarely needed, which programs
+/// include explicitly: sparse Jacobians and Hessians (derivative/sparse.hpp), robot descriptions
+/// (io/urdf.hpp, io/srdf.hpp, io/mesh_file.hpp), kinematic trees (kinematics/tree_jacobian.hpp,
+/// kinematics/centre_of_mass.hpp, kinematics/tree_limits.hpp), closed chains (io/loop_file.hpp,
+/// robotics/loop_positions.hpp, robotics/loop_trace.hpp, robotics/mobility.hpp), sweeps over
+/// configurations (kinematics/sweep.hpp), fits (spline/fit.hpp), all solutions of inverse
+/// kinematics (robotics/all_inverse_kinematics.hpp, robotics/differentiable_branch.hpp,
+/// robotics/self_motion_curves.hpp), partial goals, objectives and start configurations
+/// (robotics/goals.hpp, robotics/equation_goal.hpp, robotics/choose_start.hpp), self-collision
+/// pairs and bounding capsules (robotics/pairs_apart.hpp, robotics/capsules_of.hpp,
+/// robotics/enclosing_capsule.hpp), time parametrisation (robotics/time_parametrised.hpp), tables,
+/// recordings and plans as files (io/table_file.hpp, io/recording.hpp, io/save_plan.hpp,
+/// core/text/csv.hpp), the planner of the lecture notes (motion/printed_plan.hpp), the nearest pose
+/// on a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
@@ -90,6 +88,6 @@
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/look_up_table.hpp>
+#include <duet/spline/lookup_table.hpp>
 #include <duet/spline/printed.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>

@@ -8,7 +8,7 @@
 #include <duet/io/table_file.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/look_up_table.hpp>
+#include <duet/spline/lookup_table.hpp>
 
 #include <doctest/doctest.h>
 

@@ -7,7 +7,7 @@
 #include <duet/core/text/printable.hpp>
 #include <duet/io/table_file.hpp>
 #include <duet/io/tables/row_reader.hpp>
-#include <duet/spline/look_up_table.hpp>
+#include <duet/spline/lookup_table.hpp>
 
 #include <algorithm>
 #include <cstddef>

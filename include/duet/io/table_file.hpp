@@ -12,7 +12,7 @@
 #include <duet/io/tables/row_reader.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/look_up_table.hpp>
+#include <duet/spline/lookup_table.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/adaptive_table.hpp>
-#include <duet/spline/look_up_table.hpp>
+#include <duet/spline/lookup_table.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace test_spline_look_up_table {
+namespace test_spline_lookup_table {
 namespace {
 
 using duet::vector3;
@@ -199,4 +199,4 @@ TEST_CASE("adaptive_table, estimated_errors: errors name invalid bounds and too 
       duet::invalid_input);
 }
 
-} // namespace test_spline_look_up_table
+} // namespace test_spline_lookup_table
