@@ -69,7 +69,7 @@ template <Formula F, Symbol U, FrameConstant Frame>
 
 /// Without a frame it is not clear which is meant.
 template <Formula F, Symbol U>
-DUET_REFUSED("in which axes? motion(f, u, frame::spatial) or frame::body")
+DUET_REFUSED("the frame is missing: motion(f, u, frame::spatial) or frame::body")
 detail::called_by_name<detail::motion_of<typename U::node_type, body_frame>, F> motion(const F&,
                                                                                        const U&);
 

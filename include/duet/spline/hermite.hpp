@@ -59,8 +59,9 @@ template <class Q, class V, FrameConstant Frame>
 
 /// Rejected: velocities without their frame, which would be ambiguous.
 template <class T, class V>
-DUET_REFUSED("in which axes? hermite_spline(parameters, elements, velocities, frame::spatial) or "
-             "frame::body")
+DUET_REFUSED(
+    "the frame is missing: hermite_spline(parameters, elements, velocities, frame::spatial) or "
+    "frame::body")
 rotation_vector_spline<T, 4> hermite_spline(const std::vector<real_type_t<T>>&,
                                             const std::vector<quaternion<T>>&,
                                             const std::vector<V>&);

@@ -65,7 +65,7 @@ public:
   }
   /// Rejected: a motion without its frame, which would be ambiguous.
   template <class S>
-  DUET_REFUSED("in which axes? motion(u, frame::spatial) or frame::body, of poses also "
+  DUET_REFUSED("the frame is missing: motion(u, frame::spatial) or frame::body, of poses also "
                "frame::hybrid")
   auto motion(const S& u) const -> decltype(motion(u, frame::body));
 

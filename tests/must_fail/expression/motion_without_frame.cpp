@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: in which axes
+// expect: duet: the frame is missing
 // within: 2
 // forms: 2
 
