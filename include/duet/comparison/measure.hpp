@@ -99,7 +99,7 @@ void for_each_shaped(const Y& y, const Visit& visit) {
 
 /// The scalars of a result in a row.
 ///
-/// \param found  becomes its makeup, but keeps fewer digits if it had them
+/// \param properties  properties of the result; fewer digits, if it had them, are kept
 template <class T, class Y>
 [[nodiscard]] std::vector<T> components_of(const Y& y, makeup& properties) {
   std::vector<T> components;

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/robotics/branches/connecting_rotation.hpp>
 #include <duet/robotics/branches/loop_equation.hpp>
 #include <duet/robotics/branches/loop_solution_set.hpp>
 #include <duet/robotics/branches/orthonormalise.hpp>
