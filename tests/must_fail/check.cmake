@@ -31,6 +31,7 @@ endfunction()
 # A line that a formatter has wrapped would lose the keys behind it.
 file(READ ${snippet} text)
 string(REGEX MATCH "^([^\n]+\n)+" comments "${text}")
+string(REPLACE ";" "," comments "${comments}")
 string(REGEX MATCHALL "\n// [^\n]*" comments "${comments}")
 foreach(comment IN LISTS comments)
   if(NOT comment MATCHES "^\n// (expect|flags|within|forms|wrong flags): ")

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: a chain has three Jacobians, say which
+// expect: duet: a chain has three Jacobians, name the frame
 // within: 5
 // forms: 2
 
