@@ -12,7 +12,7 @@ endif()
 
 foreach(name IN ITEMS "curve_through<" "fit_result<[^\n]*> duet::fit<" "::path_planner<8>::plan\\("
         "::inverse_kinematics_search<8,[^\n]*>::operator\\(\\)" "::chain_model<[^\n]*>::set\\(" "::screw_path<"
-        "::read_urdf_contents<" "::compared<" "::closed_chain_mechanism::closed\\(" "duet::find_assembly_configurations\\(" "duet::mobility\\(" "::driven_motion::followed\\("
+        "::read_urdf_contents<" "::compared<" "::closed_chain_mechanism::assemble\\(" "duet::find_assembly_configurations\\(" "duet::mobility\\(" "::driven_motion::followed\\("
         "duet::trace\\(")
   if(NOT names_of_header_only MATCHES "${name}")
     message(FATAL_ERROR "the program of headers alone does not define ${name}")

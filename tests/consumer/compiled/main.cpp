@@ -71,7 +71,7 @@ void move_a_mechanism() {
   const auto assemblies =
       duet::find_assembly_configurations(mechanism, {0}, Eigen::VectorXd::Constant(1, 1));
   for (const duet::assembly_configuration& each : assemblies.positions) {
-    std::printf("found %d times, mobility %d\n", each.found,
+    std::printf("found %d times, mobility %d\n", each.hits,
                 duet::mobility(mechanism, each.coordinates).mobility);
     print("position", each.coordinates, 3);
     const duet::driven_motion motion(mechanism, each.coordinates, {0});
