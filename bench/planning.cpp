@@ -54,8 +54,8 @@ std::vector<problem> problems(family kind, unsigned seed) {
       if (kind == family::from_gripper_down) {
         p.end[i] = std::clamp(down[i] + random.uniform(-.5, .5), lower, upper);
       } else {
-        const double room = kind == family::near_goals ? half - .5 : half;
-        p.start[i] = centre + room * random.uniform(-1, 1);
+        const double spread = kind == family::near_goals ? half - .5 : half;
+        p.start[i] = centre + spread * random.uniform(-1, 1);
         p.end[i] =
             kind == family::unrelated_goals
                 ? centre + half * random.uniform(-1, 1)

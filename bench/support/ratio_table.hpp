@@ -66,7 +66,7 @@ private:
   template <class Value>
   using named = std::vector<std::pair<std::string, Value>>;
 
-  /// The entry of that name, appended if there is none.
+  /// The entry of that name, appended if absent.
   template <class Value>
   static Value& find(named<Value>& entries, const std::string& name) {
     const auto at = std::find_if(entries.begin(), entries.end(),

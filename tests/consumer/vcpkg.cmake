@@ -45,7 +45,7 @@ function(vcpkg_check_features)
   set(result "")
   while(arg_FEATURES)
     list(POP_FRONT arg_FEATURES feature option)
-    string(JSON unused GET "${manifest}" features ${feature}) # fails where there is none
+    string(JSON unused GET "${manifest}" features ${feature}) # fails if it is absent
     set(is_on OFF)
     if(feature IN_LIST FEATURES)
       set(is_on ON)

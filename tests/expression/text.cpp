@@ -176,6 +176,9 @@ TEST_CASE("LaTeX of what does not commute") {
   CHECK(to_latex(A * cross(n, 2 * v)) == R"(2 A \left(\vec{n} \times \vec{v}\right))");
   CHECK(to_latex(A * rotate(q, n)) == R"(A \left(q \vec{n} q^{*}\right))");
   CHECK(to_latex(transpose(n) * A * n / 2) == R"(\frac{\vec{n}^{\top} A \vec{n}}{2})");
+  CHECK(to_text(translation_along(axis::x, x)) == "translation_along(e1, x)");
+  CHECK(to_latex(translation_along(axis::x, x)) ==
+        R"(\operatorname{Trans}\left(\vec{e}_{1}, x\right))");
   CHECK(to_latex(x * dot(n, v) * norm(v)) ==
         R"(x \left(\vec{n} \cdot \vec{v}\right) \left|\vec{v}\right|)");
   CHECK(

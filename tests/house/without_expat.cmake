@@ -6,7 +6,7 @@
 
 cmake_minimum_required(VERSION 3.22)
 
-# The header that includes it, as it is where there is none.
+# The header that includes it, as on a machine without expat.
 set(header duet/io/xml_parser.hpp)
 file(READ ${include}/${header} text)
 string(REPLACE "<expat.h>" "<no_such_expat.h>" changed "${text}")

@@ -256,7 +256,7 @@ TEST_CASE("closest_points: results in 50 digits are exact, in double accurate to
     const capsule<> c(from, vector(from + point(random, 2)), .1);
     for_each_obstacle(random, [&](auto obstacle) {
       if constexpr (requires { obstacle.pose; }) {
-        // The unit of double is none of 50 digits.
+        // A unit vector in double is not a unit vector to 50 digits.
         const dual_quaternion<real_50> exact = normalized(dual_quaternion<real_50>(obstacle.pose));
         const box<real_50> b{exact, obstacle.half_extents.template cast<real_50>()};
         const capsule<real_50> d(c.from.cast<real_50>(), c.to.cast<real_50>(), c.radius);

@@ -153,7 +153,7 @@ TEST_CASE("inverse_kinematics: all joint types; revolute joints are wrapped into
   const auto same = inverse_kinematics(ur5e, ur5e.pose(theta), rotated);
   CHECK(same.iterations == 0);
   CHECK(is_solution(ur5e, same, ur5e.pose(theta)));
-  // Through the limit at 2π, which is none.
+  // Through 2π, which does not limit the motion.
   vector beyond = theta;
   beyond[5] = 6.5;
   CHECK(is_solution(ur5e, inverse_kinematics(ur5e, ur5e.pose(beyond), theta, {.max_restarts = 0}),

@@ -138,9 +138,9 @@ TEST_CASE("many goals: invalid arguments are rejected before the first search") 
   std::vector<result> out(20);
   out[0].iterations = -1;
   const preferred_posture preference{start};
-  const auto text_of = [&](const auto& goals, std::size_t room, const auto& objective) {
+  const auto text_of = [&](const auto& goals, std::size_t count, const auto& objective) {
     return duet_test::message_of<invalid_input>([&] {
-      inverse_kinematics(arm, goals, start, std::span(out).first(room), {}, all_cores, objective);
+      inverse_kinematics(arm, goals, start, std::span(out).first(count), {}, all_cores, objective);
     });
   };
   CHECK(text_of(regions, 7, preference) ==

@@ -122,9 +122,9 @@ TEST_CASE("layered_search: verdict for paths with known results") {
   const auto rotating = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u)), vector3<double>(0, 0, 0)) * panda.pose(start);
   };
-  const seven room = (seven() << .1, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3).finished();
+  const seven margin = (seven() << .1, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3).finished();
   const auto stopped =
-      layered(with_limits(panda, seven(start - room), seven(start + room)), rotating, start);
+      layered(with_limits(panda, seven(start - margin), seven(start + margin)), rotating, start);
   CHECK(stopped.why == stop_reason::joint_limit);
   CHECK(std::abs(stopped.end - .05) < .005);
   // Outwards, without limits to speak of: as far as the arm reaches.

@@ -143,8 +143,8 @@ struct turn {
 };
 
 /// The translation by d along the unit vector n.
-struct slide {
-  static constexpr detail::function_name name = {"slide", ""};
+struct translation_along {
+  static constexpr detail::function_name name = {"translation_along", "\\operatorname{Trans}"};
   static constexpr kind kind_of(kind, kind) { return kind::pose; }
   template <class N, class D>
   static auto value(const N& n, const D& d) {
@@ -199,7 +199,7 @@ template <class N, Operands<N> Angle, class Tag = decltype([](op::turn*) {})>
 template <class N, Operands<N> D, class Tag = decltype([](op::turn*) {})>
 [[nodiscard]] constexpr auto translation_along(const N& n, const D& d) {
   const auto direction = apply<op::part_of_dual<false>>(detail::term<Tag>(n));
-  return apply<op::slide>(direction, detail::term<Tag>(d));
+  return apply<op::translation_along>(direction, detail::term<Tag>(d));
 }
 namespace axis {
 

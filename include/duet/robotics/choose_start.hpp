@@ -65,15 +65,15 @@ find_start(const C& chain, const path_function& path, double first, double last,
   static_assert(planning_types<Objective, Scene>::are_good);
   require_options(options);
   require_objective(objective, chain.size());
-  constexpr int room = std::max(16, joint_room(C::joints)); // 16 is compiled once
-  using joints = typename start_problem<room>::joints;
-  start_problem<room> problem{chain, nullptr, path, first, last, options, {}, {}};
+  constexpr int capacity = std::max(16, joint_capacity(C::joints)); // 16 is compiled once
+  using joints = typename start_problem<capacity>::joints;
+  start_problem<capacity> problem{chain, nullptr, path, first, last, options, {}, {}};
   if constexpr (std::same_as<Scene, scene>) {
     require_scene(chain, around);
     problem.around = &around;
   }
   problem.follow = [&](const joints& start, const plan_options& how) {
-    return with_vectors_of<-room>(follow(to_chain_joints(chain, start), how));
+    return with_vectors_of<-capacity>(follow(to_chain_joints(chain, start), how));
   };
   if constexpr (!std::same_as<Objective, no_objective>) {
     problem.objective = [&](const joints& x) {

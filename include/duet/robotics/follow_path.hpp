@@ -56,8 +56,8 @@ template <class C, class Start, class Objective, class Scene>
                                             const plan_options& options, const Objective& objective,
                                             const Scene& around, bool may_be_out_of_reach = false) {
   static_assert(planning_types<Objective, Scene>::are_good);
-  constexpr int room = joint_room(C::joints);
-  using vector = small_vector<room>;
+  constexpr int capacity = joint_capacity(C::joints);
+  using vector = small_vector<capacity>;
   require_options(options, may_be_out_of_reach ? "plan_screw_motion" : "follow_path");
   require_objective(objective, chain.size());
   const std::conditional_t<std::same_as<Scene, scene>, chain_with_obstacles<C>, chain_model<C>>
@@ -70,7 +70,7 @@ template <class C, class Start, class Objective, class Scene>
           start_error.translation, " units of length and ", start_error.rotation,
           " rad away from the tip at the start");
   model.require_clearance(theta, options.tolerance.translation);
-  if (const auto joints = to_chain_joints(chain, scaled_joints<room>(start, chain.size()));
+  if (const auto joints = to_chain_joints(chain, scaled_joints<capacity>(start, chain.size()));
       is_nan_at(objective, joints)) {
     fail_not_a_number("duet: follow_path: the objective is nan at the start,", joints);
   }
@@ -80,17 +80,17 @@ template <class C, class Start, class Objective, class Scene>
       const auto joints = to_chain_joints(chain, model.unscaled_joints(x));
       // Gradient with respect to coordinates in the planner's units.
       return model.unscaled_joints(
-          scaled_joints<room>(gradient_of(objective, joints), chain.size()));
+          scaled_joints<capacity>(gradient_of(objective, joints), chain.size()));
     };
   }
   const bool is_out_of_reach =
       may_be_out_of_reach &&
       model.reach.is_beyond(scaled_path(stops.back()), model.tolerance(options.tolerance));
-  path_planner<room> planner(model, scaled_path, std::move(stops), options, objective_gradient);
+  path_planner<capacity> planner(model, scaled_path, std::move(stops), options, objective_gradient);
   const auto joint_path = is_out_of_reach ? planner.stay(theta) : planner.plan(theta);
   motion_plan<C::joints> plan;
   for (const auto& w : joint_path.waypoints) {
-    const vector joints = plan.joints.empty() ? scaled_joints<room>(start, chain.size())
+    const vector joints = plan.joints.empty() ? scaled_joints<capacity>(start, chain.size())
                                               : model.unscaled_joints_within_limits(w.state.theta);
     add_waypoint(plan, chain, to_chain_joints(chain, joints), model.unscaled_pose(w.state.tip), w.u,
                  model.unscaled_error(w.residual));

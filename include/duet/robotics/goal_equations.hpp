@@ -14,17 +14,17 @@
 namespace duet::detail {
 
 /// Equations J Δ = e of a goal at some θ.
-template <int Room>
+template <int Capacity>
 struct goal_equations {
-  chain_state<Room> at;
+  chain_state<Capacity> at;
   small_twist e;
   pose_error residual;
   std::array<bool, 6> is_free{}; ///< true for each of the six rows without an equation
 };
 
 /// Sets the equations of a pose: all six components of the twist.
-template <int Room>
-void set_equations(goal_equations<Room>& x, const tip_pose& goal) {
+template <int Capacity>
+void set_equations(goal_equations<Capacity>& x, const tip_pose& goal) {
   x.e = error_twist(x.at.tip, goal);
   x.residual = {length_of(goal.translation - x.at.tip.translation), deviation_of(x.e).rotation};
 }

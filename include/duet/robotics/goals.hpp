@@ -40,25 +40,25 @@ namespace detail {
 ///
 /// \tparam Model  model of the chain, with or without obstacles
 template <class C, class Model, class Objective>
-class preferences_of final : public solution_preferences<joint_room(C::joints)> {
-  static constexpr int room = joint_room(C::joints);
+class preferences_of final : public solution_preferences<joint_capacity(C::joints)> {
+  static constexpr int capacity = joint_capacity(C::joints);
 
 public:
-  using typename solution_preferences<room>::vector;
+  using typename solution_preferences<capacity>::vector;
   preferences_of(const Model& model, const Objective& objective)
       : model_(model), objective_(objective) {}
 
   [[nodiscard]] bool has_objective() const override {
     return !std::same_as<Objective, no_objective>;
   }
-  [[nodiscard]] double objective(const small_vector<room>& theta) const override {
+  [[nodiscard]] double objective(const small_vector<capacity>& theta) const override {
     if constexpr (std::same_as<Objective, no_objective>) {
       return 0;
     } else {
       return objective_(chain_joints(theta));
     }
   }
-  [[nodiscard]] vector gradient(const small_vector<room>& theta) const override {
+  [[nodiscard]] vector gradient(const small_vector<capacity>& theta) const override {
     if constexpr (std::same_as<Objective, no_objective>) {
       return vector::Zero(model_.size);
     } else {
@@ -70,7 +70,7 @@ public:
     }
   }
   [[nodiscard]] std::vector<inequality<vector>>
-  clear_of_obstacles(const small_vector<room>& theta) const override {
+  clear_of_obstacles(const small_vector<capacity>& theta) const override {
     std::vector<inequality<vector>> result;
     if constexpr (requires { model_.margins(theta); }) {
       for (const auto& each : model_.margins(theta)) {
@@ -81,7 +81,7 @@ public:
   }
 
 private:
-  [[nodiscard]] auto chain_joints(const small_vector<room>& theta) const {
+  [[nodiscard]] auto chain_joints(const small_vector<capacity>& theta) const {
     return to_chain_joints(model_.chain(), model_.unscaled_joints(theta));
   }
 
@@ -93,11 +93,11 @@ private:
 template <class C, class Start, class Objective, class Scene>
 class preferred_solutions {
   static_assert(planning_types<Objective, Scene>::are_good);
-  static constexpr int room = joint_room(C::joints);
+  static constexpr int capacity = joint_capacity(C::joints);
   static constexpr bool is_among_obstacles = std::same_as<Scene, scene>;
   using model = std::conditional_t<is_among_obstacles, chain_with_obstacles<C>, chain_model<C>>;
   using result = inverse_kinematics_result<C::joints>;
-  using known_solutions = typename solution_search<room>::known_solutions;
+  using known_solutions = typename solution_search<capacity>::known_solutions;
   static constexpr bool has_objective = !std::same_as<Objective, no_objective>;
 
 public:
@@ -148,7 +148,8 @@ private:
 
   /// Rejects nan: the best candidate is nan only if all candidates are.
   template <class Name>
-  void require_numbers(const typename solution_search<room>::attempt& x, const Name& name) const {
+  void require_numbers(const typename solution_search<capacity>::attempt& x,
+                       const Name& name) const {
     const auto fail = [&](const std::string& what) {
       fail_not_a_number("duet: inverse_kinematics: " + what,
                         to_chain_joints(model_.chain(), model_.unscaled_joints(x.joints)));
@@ -166,7 +167,7 @@ private:
   const inverse_kinematics_options& options_;
   model model_;
   preferences_of<C, model, Objective> preferences_;
-  solution_search<room> search_;
+  solution_search<capacity> search_;
 };
 
 /// \throws invalid_input for a region that contains no pose, and for a goal that is not a pose

@@ -45,7 +45,7 @@ public:
 
 private:
   chain_model<C> model_;
-  inverse_kinematics_search<joint_room(C::joints)> search_;
+  inverse_kinematics_search<joint_capacity(C::joints)> search_;
 };
 
 } // namespace detail

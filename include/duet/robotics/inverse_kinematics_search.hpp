@@ -37,9 +37,9 @@ namespace detail {
 /// Common part of all searches for configurations of a chain.
 ///
 /// \tparam Goal  a pose, or a type with its own `set_equations` and `is_beyond`
-template <int Room, class Goal = tip_pose>
+template <int Capacity, class Goal = tip_pose>
 class inverse_kinematics_search {
-  using vector = small_vector<Room>;
+  using vector = small_vector<Capacity>;
 
 public:
   struct attempt {
@@ -51,7 +51,7 @@ public:
     stop_reason reason = stop_reason::no_progress;
   };
 
-  inverse_kinematics_search(const planning_model<Room>& model, const vector& start,
+  inverse_kinematics_search(const planning_model<Capacity>& model, const vector& start,
                             const inverse_kinematics_options& options)
       : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
         start_(start) {
@@ -138,7 +138,7 @@ public:
   [[nodiscard]] const vector& period() const { return period_; }
 
 private:
-  using equations = goal_equations<Room>;
+  using equations = goal_equations<Capacity>;
   [[nodiscard]] equations equations_at(const vector& theta, const Goal& goal) const {
     equations result{model_.at(theta), {}, {}};
     set_equations(result, goal);
@@ -195,8 +195,8 @@ private:
     vector theta;
     pose_error residual;
     double error; ///< squared distance of the origins plus |ω|²
-    squared_error<Room> to_second_order;
-    std::array<bool, std::size_t(Room)> is_fixed{}; ///< true if fixed at a limit that blocks it
+    squared_error<Capacity> to_second_order;
+    std::array<bool, std::size_t(Capacity)> is_fixed{}; ///< true if fixed at a limit that blocks it
     double max_gradient = 0; ///< largest entry of the gradient of joints that are not fixed
   };
   template <std::same_as<tip_pose> Pose>
@@ -205,7 +205,7 @@ private:
     const three_vector<double> displacement = goal.translation - x.at.tip.translation;
     const small_twist e{{displacement.x, displacement.y, displacement.z, x.e[3], x.e[4], x.e[5]}};
     point result{theta, x.residual, dot(e, e), squared_error_of(x.at.jacobian, e)};
-    for (std::ptrdiff_t i = 0; i < Room; ++i) {
+    for (std::ptrdiff_t i = 0; i < Capacity; ++i) {
       const double gradient = result.to_second_order.gradient[i];
       const bool is_at_limit = period_[i] == 0 && (gradient > 0 ? theta[i] <= model_.lower[i]
                                                                 : theta[i] >= model_.upper[i]);
@@ -230,7 +230,7 @@ private:
     return theta;
   }
 
-  const planning_model<Room>& model_;
+  const planning_model<Capacity>& model_;
   inverse_kinematics_options options_;
   pose_tolerance tolerance_;
   vector period_;
@@ -239,9 +239,9 @@ private:
   vector start_;
 };
 
-template <int Room, class Goal>
-typename inverse_kinematics_search<Room, Goal>::attempt
-inverse_kinematics_search<Room, Goal>::operator()(const Goal& goal) const {
+template <int Capacity, class Goal>
+typename inverse_kinematics_search<Capacity, Goal>::attempt
+inverse_kinematics_search<Capacity, Goal>::operator()(const Goal& goal) const {
   const bool is_out_of_reach = is_beyond(model_.reach, goal, tolerance_);
   const auto search = [&](const vector& from) {
     if constexpr (std::same_as<Goal, tip_pose>) {

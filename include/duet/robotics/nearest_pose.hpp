@@ -19,10 +19,10 @@
 namespace duet::detail {
 
 /// Squared error ½|e|², e = [displacement of the origin; 2 log r] from the tip to a goal.
-template <int Room>
+template <int Capacity>
 struct squared_error {
-  small_vector<Room> gradient;        ///< gradient
-  small_matrix<Room, Room> curvature; ///< second derivatives (Hessian), the lower half
+  small_vector<Capacity> gradient;            ///< gradient
+  small_matrix<Capacity, Capacity> curvature; ///< second derivatives (Hessian), the lower half
 };
 
 /// Squared error to second order. With [v_k; ω_k] the columns of J in `frame::hybrid` and e = [w;
@@ -32,14 +32,14 @@ struct squared_error {
 ///
 /// as ∂v_k/∂θ_j = ω_j × v_k, ∂ω_k/∂θ_j = ω_j × ω_k, and −∂φ/∂θ_j = ω_j + ½ φ × ω_j +
 /// c φ × (φ × ω_j), c = (1 − ½|φ| cot ½|φ|)/|φ|².
-template <int Room>
-[[nodiscard]] squared_error<Room> squared_error_of(const small_matrix<6, Room>& jacobian,
-                                                   const small_twist& e) {
+template <int Capacity>
+[[nodiscard]] squared_error<Capacity> squared_error_of(const small_matrix<6, Capacity>& jacobian,
+                                                       const small_twist& e) {
   const three_vector<double> w{e[0], e[1], e[2]}, phi{e[3], e[4], e[5]};
   const double angle = std::sqrt(dot(phi, phi)), half = angle / 2;
   // The error of the constant moves the solution less than round-off of the gradient does.
   const double c = angle > 1e-3 ? (1 - half / std::tan(half)) / (angle * angle) : 1. / 12;
-  squared_error<Room> result;
+  squared_error<Capacity> result;
   for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
     const auto& column = jacobian.columns[std::size_t(k)];
     const three_vector<double> v_k{column[0], column[1], column[2]};
@@ -59,20 +59,20 @@ template <int Room>
 
 /// Newton step to the minimum of ½|e|² in the coordinates that are not fixed; nothing if the
 /// curvature and λ together are not positive definite.
-template <int Room>
-[[nodiscard]] std::optional<small_vector<Room>>
-newton_step(const squared_error<Room>& error, const std::array<bool, std::size_t(Room)>& is_fixed,
-            double lambda) {
-  small_matrix<Room, Room> matrix;
-  small_vector<Room> right;
-  for (std::ptrdiff_t j = 0; j < Room; ++j) {
+template <int Capacity>
+[[nodiscard]] std::optional<small_vector<Capacity>>
+newton_step(const squared_error<Capacity>& error,
+            const std::array<bool, std::size_t(Capacity)>& is_fixed, double lambda) {
+  small_matrix<Capacity, Capacity> matrix;
+  small_vector<Capacity> right;
+  for (std::ptrdiff_t j = 0; j < Capacity; ++j) {
     matrix(j, j) = 1;
     if (is_fixed[std::size_t(j)]) {
       continue;
     }
     right[j] = -error.gradient[j];
     matrix(j, j) = error.curvature(j, j) + lambda;
-    for (std::ptrdiff_t k = j + 1; k < Room; ++k) {
+    for (std::ptrdiff_t k = j + 1; k < Capacity; ++k) {
       matrix(k, j) = is_fixed[std::size_t(k)] ? 0 : error.curvature(k, j);
     }
   }

@@ -21,17 +21,17 @@
 namespace duet::detail {
 
 /// Planner along a path, first without stopping; if that ends early, with self-motions.
-template <int Room>
+template <int Capacity>
 class path_planner {
 public:
-  using tracker = path_tracker<Room>;
+  using tracker = path_tracker<Capacity>;
   using vector = typename tracker::vector;
   using waypoint = typename tracker::waypoint;
   using partial_plan = typename tracker::partial_plan;
 
   /// Arguments as in `path_tracker`.
-  path_planner(const planning_model<Room>& model, const tip_path& target, std::vector<double> stops,
-               const plan_options& options,
+  path_planner(const planning_model<Capacity>& model, const tip_path& target,
+               std::vector<double> stops, const plan_options& options,
                const typename tracker::gradient_function& objective_gradient)
       : steps_(model, target, std::move(stops), options, objective_gradient) {}
 
@@ -133,7 +133,7 @@ private:
 
   /// Plan along a continuation from the search, and beyond.
   [[nodiscard]] partial_plan
-  along(partial_plan x, const typename self_motion_search<Room>::configurations& continuation) {
+  along(partial_plan x, const typename self_motion_search<Capacity>::configurations& continuation) {
     for (std::size_t i = 1; i < continuation.size(); ++i) {
       const std::size_t count = x.waypoints.size();
       const auto track_to = [&](bool is_back) {
@@ -176,7 +176,7 @@ private:
 
   /// Continues to a configuration from the singular one before it: the path back from it is
   /// tracked and reversed, and a self-motion leads to the end of that path.
-  [[nodiscard]] bool track_backwards(partial_plan& x, const search_node<Room>& to) {
+  [[nodiscard]] bool track_backwards(partial_plan& x, const search_node<Capacity>& to) {
     partial_plan back({to.state, to.u, {}, smallest_singular_value_of(to.state.jacobian)});
     back.step = steps_.options.search_step;
     const double u = x.back().u;
@@ -211,8 +211,8 @@ private:
   tracker steps_;
 };
 
-template <int Room>
-typename path_planner<Room>::partial_plan path_planner<Room>::plan(const vector& start) {
+template <int Capacity>
+typename path_planner<Capacity>::partial_plan path_planner<Capacity>::plan(const vector& start) {
   partial_plan best = steps_.continued(stay(start));
   // Search from the last waypoint; if that fails, from the start.
   for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {

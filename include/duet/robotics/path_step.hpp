@@ -40,9 +40,9 @@ using path_function = std::function<dual_quaternion<double>(double)>;
 using tip_path = std::function<tip_pose(double)>;
 
 /// Result of an attempt to bring the tip to a pose.
-template <int Room>
+template <int Capacity>
 struct step_result {
-  chain_state<Room> state;
+  chain_state<Capacity> state;
   pose_error residual = {}; ///< error of the tip relative to the pose
   /// Smallest singular value of the Jacobians of all iterates, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
@@ -61,11 +61,11 @@ struct step_result {
 };
 
 /// Solver that brings the tip of a chain to poses nearby, to a tolerance.
-template <int Room>
+template <int Capacity>
 struct pose_solver {
-  using vector = small_vector<Room>;
+  using vector = small_vector<Capacity>;
 
-  const planning_model<Room>& model;
+  const planning_model<Capacity>& model;
   pose_tolerance tolerance;
   vector lower = model.lower, upper = model.upper; ///< limits in use
   double damped_below = damping_threshold; ///< singular value below which steps are damped first
@@ -109,8 +109,9 @@ struct pose_solver {
   /// Result of the step nearest to the desired joint step that takes the tip from a
   /// state nearby to the target to first order, and then of Newton's method by least-norm steps,
   /// without damping if that prevents convergence. No step leaves the limits.
-  [[nodiscard]] step_result<Room> approach(const chain_state<Room>& from, const tip_pose& target,
-                                           const vector& desired_step) const {
+  [[nodiscard]] step_result<Capacity> approach(const chain_state<Capacity>& from,
+                                               const tip_pose& target,
+                                               const vector& desired_step) const {
     auto result = approach(from, target, desired_step, damped_below);
     if (damped_below > undamped_threshold && result.smallest_singular_value < damped_below &&
         !result.is_within(tolerance)) {
@@ -122,7 +123,7 @@ struct pose_solver {
   }
 
   /// Length of the joint step to a target near a state, to first order, without damping.
-  [[nodiscard]] double joint_distance_to(const chain_state<Room>& from,
+  [[nodiscard]] double joint_distance_to(const chain_state<Capacity>& from,
                                          const tip_pose& target) const {
     const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
                                    upper - from.theta, {undamped_threshold_near_singularity});
@@ -131,9 +132,10 @@ struct pose_solver {
 
 private:
   /// \param threshold  singular value below which steps are damped
-  [[nodiscard]] step_result<Room> approach(const chain_state<Room>& from, const tip_pose& target,
-                                           const vector& desired_step, double threshold) const {
-    step_result<Room> result;
+  [[nodiscard]] step_result<Capacity> approach(const chain_state<Capacity>& from,
+                                               const tip_pose& target, const vector& desired_step,
+                                               double threshold) const {
+    step_result<Capacity> result;
     if (!move(result, from, error_twist(from.tip, target), desired_step, threshold)) {
       result.state = from;
       return result;
@@ -162,8 +164,9 @@ private:
 
   /// Takes the step nearest to `desired_step` that moves the tip by `e` to first order, from a
   /// state that may be that of x; false if obstacles prevent every step.
-  [[nodiscard]] bool move(step_result<Room>& x, const chain_state<Room>& from, const small_twist& e,
-                          const vector& desired_step, double threshold) const {
+  [[nodiscard]] bool move(step_result<Capacity>& x, const chain_state<Capacity>& from,
+                          const small_twist& e, const vector& desired_step,
+                          double threshold) const {
     ++x.iterations;
     const auto collision_free = model.find_collision_free_step(from, e, desired_step);
     x.smallest_singular_value =

@@ -21,14 +21,14 @@
 namespace duet::detail {
 
 /// Moves the joints along a path as far as possible without self-motions.
-template <int Room>
+template <int Capacity>
 class path_tracker {
 public:
-  using vector = small_vector<Room>;
+  using vector = small_vector<Capacity>;
   /// Gradient of the secondary objective.
   using gradient_function = std::function<vector(const vector&)>;
   struct waypoint {
-    chain_state<Room> state;
+    chain_state<Capacity> state;
     double u;
     pose_error residual = {};
     /// Smallest singular value of the Jacobians up to it, in the planner's units.
@@ -46,7 +46,7 @@ public:
   /// \param parameters  parameters that become waypoints, increasing; the first and the last are
   /// the ends of the path
   /// \param objective_gradient  gradient of the objective, or nothing
-  path_tracker(const planning_model<Room>& model, const tip_path& path,
+  path_tracker(const planning_model<Capacity>& model, const tip_path& path,
                std::vector<double> parameters, const plan_options& how,
                const gradient_function& objective_gradient)
       : solver{model, model.tolerance(how.tolerance)}, target(path), stops(std::move(parameters)),
@@ -54,7 +54,7 @@ public:
         remaining_iterations(how.max_iterations), deviation_(model.tolerance(how.deviation)),
         objective_gradient_(objective_gradient) {}
 
-  pose_solver<Room> solver;
+  pose_solver<Capacity> solver;
   const tip_path& target;
   std::vector<double> stops;
   plan_options options;
@@ -108,7 +108,7 @@ public:
 
   /// Partial plan continued without damping.
   [[nodiscard]] partial_plan undamped(partial_plan x) {
-    const pose_solver<Room> damped = solver;
+    const pose_solver<Capacity> damped = solver;
     solver.without_damping();
     x.step = options.smallest_step;
     advance(x);
@@ -161,9 +161,9 @@ private:
   const gradient_function& objective_gradient_;
 };
 
-template <int Room>
-bool path_tracker<Room>::track(partial_plan& x, double end, double part,
-                               const null_space_task& task) {
+template <int Capacity>
+bool path_tracker<Capacity>::track(partial_plan& x, double end, double part,
+                                   const null_space_task& task) {
   const double begin = x.back().u;
   double progress = 0; // fraction of the path up to `end`
   while (progress < 1) {

@@ -37,14 +37,14 @@ struct no_scene {};
 namespace duet::detail {
 
 /// Capacity of a planner's vectors for a chain of N joints: 8, 16, 32 …
-[[nodiscard]] constexpr int joint_room(int n) {
+[[nodiscard]] constexpr int joint_capacity(int n) {
   return int(std::bit_ceil(unsigned(std::max({8, n, -n}))));
 }
 
 /// Coordinates in a planner's vector; entries beyond the joints of the chain are 0 and remain so.
-template <int Room, class X>
-[[nodiscard]] small_vector<Room> scaled_joints(const X& theta, int size) {
-  small_vector<Room> result;
+template <int Capacity, class X>
+[[nodiscard]] small_vector<Capacity> scaled_joints(const X& theta, int size) {
+  small_vector<Capacity> result;
   for (int i = 0; i < size; ++i) {
     result[i] = vector_argument<X>::get(theta, i);
   }
@@ -52,11 +52,11 @@ template <int Room, class X>
 }
 
 /// Configuration of a chain, with its tip's pose and Jacobian in `frame::hybrid`.
-template <int Room>
+template <int Capacity>
 struct chain_state {
-  small_vector<Room> theta;
+  small_vector<Capacity> theta;
   tip_pose tip;
-  small_matrix<6, Room> jacobian;
+  small_matrix<6, Capacity> jacobian;
 };
 
 /// Reach of a chain: the origin of the first joint is fixed in the base, that of the last in the
@@ -75,7 +75,7 @@ struct chain_reach {
     return has_joints && distance > (links + travel) * (1 + 1e-12) + tolerance.translation +
                                         tolerance.rotation * tool;
   }
-  /// Characteristic length of the chain, 1 if there is none in its table; proportional to the
+  /// Characteristic length of the chain, 1 if its table contains no length; proportional to the
   /// unit of length of the input.
   [[nodiscard]] double scale() const {
     const double all = links + tool + limited_travel;
@@ -89,9 +89,9 @@ struct chain_reach {
 };
 
 /// Step in the presence of obstacles.
-template <int Room>
+template <int Capacity>
 struct collision_free_step {
-  std::optional<small_vector<Room>> step; ///< empty if obstacles leave none
+  std::optional<small_vector<Capacity>> step; ///< empty if obstacles leave none
   /// Smallest singular value of the Jacobian, from above.
   double smallest_singular_value = std::numeric_limits<double>::infinity();
   bool is_free = true; ///< true if nothing is near, or the step fails without obstacles too
@@ -100,11 +100,11 @@ struct collision_free_step {
 /// Model of a chain without obstacles. Lengths, also displacements of prismatic joints and those in
 /// Jacobians, are relative to the chain's characteristic length, so that planning does not depend
 /// on the unit of length. They are converted nowhere else.
-template <int Room>
+template <int Capacity>
 class planning_model {
 public:
-  using vector = small_vector<Room>;
-  using state = chain_state<Room>;
+  using vector = small_vector<Capacity>;
+  using state = chain_state<Capacity>;
 
   template <class C>
   explicit planning_model(const C& chain) : size(chain.size()) {
@@ -135,7 +135,7 @@ public:
     reach.has_joints = size > 0;
     length = reach.scale();
     reach = reach.in_units_of(length);
-    for (int i = 0; i < Room; ++i) {
+    for (int i = 0; i < Capacity; ++i) {
       unit[i] = i >= size || is_rotational[std::size_t(i)] ? 1 : length;
       row_unit_[i] = unit[i] / length;
       unscaled_lower_[i] = lower[i];
@@ -151,14 +151,14 @@ public:
   /// \param theta  a vector of any kind
   template <class X>
   [[nodiscard]] vector joints(const X& theta) const {
-    vector result = scaled_joints<Room>(theta, size);
+    vector result = scaled_joints<Capacity>(theta, size);
     for (int i = 0; i < size; ++i) {
       result[i] /= unit[i];
     }
     return result;
   }
   [[nodiscard]] vector unscaled_joints(vector theta) const {
-    for (int i = 0; i < Room; ++i) {
+    for (int i = 0; i < Capacity; ++i) {
       theta[i] *= unit[i];
     }
     return theta;
@@ -178,7 +178,7 @@ public:
   [[nodiscard]] dual_quaternion<double> unscaled_pose(const tip_pose& a) const {
     return detail::to_dual_quaternion({a.rotation, length * a.translation});
   }
-  [[nodiscard]] small_matrix<6, Room> unscaled_jacobian(small_matrix<6, Room> j) const {
+  [[nodiscard]] small_matrix<6, Capacity> unscaled_jacobian(small_matrix<6, Capacity> j) const {
     for (int i = 0; i < size; ++i) {
       for (int k = 0; k < 3; ++k) {
         j(k, i) *= length / unit[i];
@@ -197,7 +197,7 @@ public:
   double length = 1; ///< characteristic length of the chain, in the user's unit
   vector unit;       ///< unit of each coordinate, in the user's
   vector lower, upper;
-  std::array<bool, std::size_t(Room)> is_rotational{}, is_translational{};
+  std::array<bool, std::size_t(Capacity)> is_rotational{}, is_translational{};
   chain_reach reach;
   double margin = 0; ///< minimum distance from obstacles
 
@@ -220,7 +220,7 @@ public:
   }
   /// Step nearest to the desired joint step that moves the tip by `e` to first order and
   /// keeps the margin.
-  [[nodiscard]] virtual collision_free_step<Room>
+  [[nodiscard]] virtual collision_free_step<Capacity>
   find_collision_free_step(const state& /*from*/, const small_twist& /*e*/,
                            const vector& /*desired_step*/) const {
     return {};
@@ -235,9 +235,9 @@ private:
 
 /// Model of a chain of the type C.
 template <class C>
-class chain_model : public planning_model<joint_room(C::joints)> {
+class chain_model : public planning_model<joint_capacity(C::joints)> {
 public:
-  using base = planning_model<joint_room(C::joints)>;
+  using base = planning_model<joint_capacity(C::joints)>;
   using typename base::state;
   using typename base::vector;
 

@@ -19,9 +19,9 @@ namespace duet::detail {
 
 /// Configuration that can be reached, and its predecessor: one at the same parameter, by a
 /// self-motion, or one before.
-template <int Room>
+template <int Capacity>
 struct search_node {
-  chain_state<Room> state;
+  chain_state<Capacity> state;
   double u;
   std::ptrdiff_t from;              ///< index of the predecessor, −1 for none
   bool escapes_singularity = false; ///< true if the predecessor is singular, and this one near it
@@ -29,14 +29,14 @@ struct search_node {
 };
 
 /// Collects configurations, and with each the self-motion component that contains it.
-template <int Room>
+template <int Capacity>
 class self_motion_components {
 public:
-  using vector = small_vector<Room>;
+  using vector = small_vector<Capacity>;
 
   /// \param spacing     joint step from one configuration of a component to the next
   /// \param iterations  maximum number of iterations of Newton's method
-  self_motion_components(const pose_solver<Room>& solver, double spacing, int iterations)
+  self_motion_components(const pose_solver<Capacity>& solver, double spacing, int iterations)
       : solver_(solver), spacing_(spacing), remaining_iterations_(iterations) {
     for (std::ptrdiff_t i = 0; i < solver.model.size; ++i) {
       is_endless_ = is_endless_ || solver.is_endless(i);
@@ -44,8 +44,8 @@ public:
   }
 
 protected:
-  [[nodiscard]] step_result<Room> tried(const chain_state<Room>& from, const tip_pose& target,
-                                        const vector& desired_step) {
+  [[nodiscard]] step_result<Capacity> tried(const chain_state<Capacity>& from,
+                                            const tip_pose& target, const vector& desired_step) {
     auto result = solver_.approach(from, target, desired_step);
     remaining_iterations_ -= result.iterations;
     return result;
@@ -72,10 +72,10 @@ protected:
     }
   }
 
-  const pose_solver<Room>& solver_;
+  const pose_solver<Capacity>& solver_;
   double spacing_;
   int remaining_iterations_;
-  std::vector<search_node<Room>> nodes_;
+  std::vector<search_node<Capacity>> nodes_;
 
 private:
   /// True if near each other except for full turns of joints without limits.
@@ -113,7 +113,7 @@ private:
 
   /// Takes one step on; false at the end of the component.
   bool extend_by_step(front& end, const tip_pose& target) {
-    const chain_state<Room>& current = nodes_[end.at].state;
+    const chain_state<Capacity>& current = nodes_[end.at].state;
     // Step length up to the limits.
     double reach = end.step;
     for (std::ptrdiff_t i = 0; i < current.theta.size(); ++i) {

@@ -27,9 +27,9 @@ namespace duet::detail {
 /// from all its points one step is taken to the next parameter, where those components are traced
 /// that are new. With several degrees of redundancy one curve of the manifold is traced, with none
 /// a component is a point.
-template <int Room>
-class self_motion_search : self_motion_components<Room> {
-  using base = self_motion_components<Room>;
+template <int Capacity>
+class self_motion_search : self_motion_components<Capacity> {
+  using base = self_motion_components<Capacity>;
   using base::follow, base::nodes_, base::is_known, base::remaining_iterations_, base::solver_,
       base::spacing_, base::tried;
 
@@ -38,18 +38,18 @@ public:
 
   /// \param singular  singular value below which configurations on both sides are tried, too
   /// \param min_step     minimum parameter step of the search for the ends of continuations
-  self_motion_search(const pose_solver<Room>& solver, const tip_path& target, double spacing,
+  self_motion_search(const pose_solver<Capacity>& solver, const tip_path& target, double spacing,
                      double singular, double min_step, int iterations)
       : base(solver, spacing, iterations), target_(target), singular_(singular),
         min_step_(min_step) {}
 
   /// Sequence of configurations, each a step from the one before.
-  using configurations = std::vector<search_node<Room>>;
+  using configurations = std::vector<search_node<Capacity>>;
 
   /// Continuations from a state at u.front() to u.back(), or as far as they go: the one that
   /// gets furthest, the one that gets furthest in full steps, and one to each other isolated
   /// component.
-  [[nodiscard]] std::vector<configurations> run(const chain_state<Room>& start,
+  [[nodiscard]] std::vector<configurations> run(const chain_state<Capacity>& start,
                                                 const std::vector<double>& u) {
     nodes_.push_back({start, u.front(), -1});
     follow(0, target_(u.front()));
@@ -112,9 +112,9 @@ private:
   void advance(std::size_t first, std::size_t end, double u, double to) {
     const tip_pose target = target_(to);
     for (std::size_t i = first; i < end && remaining_iterations_ > 0; ++i) {
-      const chain_state<Room> current = nodes_[i].state;
+      const chain_state<Capacity> current = nodes_[i].state;
       const bool is_singular = smallest_singular_value_of(current.jacobian) < singular_;
-      const auto add = [&](const step_result<Room>& next) {
+      const auto add = [&](const step_result<Capacity>& next) {
         if (next.is_within(solver_.tolerance) && !is_known(next.state.theta, end) &&
             (!is_singular || leads(next.state, to, current, u))) {
           nodes_.push_back({next.state, to, std::ptrdiff_t(i), is_singular});
@@ -143,8 +143,8 @@ private:
   }
 
   /// Result of a step to another parameter, in up to 2^`remaining_halvings` parts.
-  [[nodiscard]] step_result<Room> move_to_parameter(const chain_state<Room>& from, double u,
-                                                    double to, int remaining_halvings) {
+  [[nodiscard]] step_result<Capacity> move_to_parameter(const chain_state<Capacity>& from, double u,
+                                                        double to, int remaining_halvings) {
     auto direct = tried(from, target_(to), {});
     const bool is_jump = norm(direct.state.theta - from.theta) > .15;
     if ((direct.is_within(solver_.tolerance) && !is_jump) || remaining_halvings == 0) {
@@ -164,8 +164,8 @@ private:
 
   /// Adds configurations on both sides of a singular one, for a target near its pose.
   template <class Add>
-  void leave(const chain_state<Room>& singular, const tip_pose& target, const Add& add) {
-    const singular_point<Room> current(singular.jacobian);
+  void leave(const chain_state<Capacity>& singular, const tip_pose& target, const Add& add) {
+    const singular_point<Capacity> current(singular.jacobian);
     const small_twist e = error_twist(singular.tip, target);
     const vector escape = current.escape_direction();
     const auto [step, other] = current.steps_for(e);
@@ -190,11 +190,11 @@ private:
   /// configurations, from where joint velocities can produce the twist to the target. Newton's
   /// method does not converge from other configurations nearby.
   template <class Add>
-  void leave_between(chain_state<Room> a, chain_state<Room> b, const tip_pose& target,
+  void leave_between(chain_state<Capacity> a, chain_state<Capacity> b, const tip_pose& target,
                      const Add& add) {
     const tip_pose current = a.tip;
     small_twist w = left_singular_twist(a.jacobian);
-    const auto residual = [&](const chain_state<Room>& x) {
+    const auto residual = [&](const chain_state<Capacity>& x) {
       const small_twist next = left_singular_twist(x.jacobian);
       w = dot(next, w) < 0 ? -1 * next : next;
       return dot(w, error_twist(x.tip, target));
@@ -218,8 +218,8 @@ private:
   }
 
   /// True if the path back leads to the configuration `to`.
-  [[nodiscard]] bool leads(const chain_state<Room>& from, double u, const chain_state<Room>& to,
-                           double back) {
+  [[nodiscard]] bool leads(const chain_state<Capacity>& from, double u,
+                           const chain_state<Capacity>& to, double back) {
     const auto end = move_to_parameter(from, u, back, halvings);
     return end.is_within(solver_.tolerance) && norm(end.state.theta - to.theta) < spacing_;
   }

@@ -19,13 +19,13 @@ namespace duet::detail {
 inline constexpr double singularity_threshold = 1e-5;
 
 /// Null space of the Jacobian: joint motion with the tip fixed. Keeps a reference to the Jacobian.
-template <int Room>
+template <int Capacity>
 class self_motion_space {
 public:
-  using vector = small_vector<Room>;
+  using vector = small_vector<Capacity>;
 
   /// \param none  singular values up to this count as zero
-  explicit self_motion_space(const small_matrix<6, Room>& jacobian,
+  explicit self_motion_space(const small_matrix<6, Capacity>& jacobian,
                              double none = singularity_threshold)
       : jacobian_(jacobian), gram_(gram_of(jacobian), {0, none * none}) {}
 
@@ -67,16 +67,16 @@ public:
   }
 
 private:
-  const small_matrix<6, Room>& jacobian_;
+  const small_matrix<6, Capacity>& jacobian_;
   damped_gram gram_;
 };
 
 /// Sign of the determinant of J with a direction of self-motion below it for one degree of
 /// redundancy, else 1. It is constant along a self-motion curve, and changes beyond a crossing of
 /// curves, and on the curve beyond a near crossing.
-template <int Room>
-[[nodiscard]] double orientation(const small_matrix<6, Room>& jacobian,
-                                 const small_vector<Room>& direction) {
+template <int Capacity>
+[[nodiscard]] double orientation(const small_matrix<6, Capacity>& jacobian,
+                                 const small_vector<Capacity>& direction) {
   if (jacobian.cols() != 7) {
     return 1;
   }
@@ -105,8 +105,8 @@ template <int Room>
 
 /// Left singular twist: left singular vector w of J for its smallest singular value; wᵀJ = 0 in a
 /// singular configuration.
-template <int Room>
-[[nodiscard]] small_twist left_singular_twist(const small_matrix<6, Room>& jacobian) {
+template <int Capacity>
+[[nodiscard]] small_twist left_singular_twist(const small_matrix<6, Capacity>& jacobian) {
   constexpr double none = 1e-6;
   const damped_gram gram(gram_of(jacobian), {0, none * none});
   small_twist w{{1, .7, -.4, .9, -.6, .5}};
@@ -121,10 +121,10 @@ template <int Room>
 /// of the tip's displacement along w,
 ///
 /// H_jk = w · [ω_j × v_k; ½ ω_j × ω_k], j ≤ k, of the columns [v; ω] of J in `frame::hybrid`.
-template <int Room>
+template <int Capacity>
 class singular_point {
 public:
-  explicit singular_point(const small_matrix<6, Room>& jacobian)
+  explicit singular_point(const small_matrix<6, Capacity>& jacobian)
       : jacobian_(jacobian), w_(left_singular_twist(jacobian)) {
     const three_vector<double> force{w_[0], w_[1], w_[2]}, moment{w_[3], w_[4], w_[5]};
     for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
@@ -143,8 +143,8 @@ public:
   /// Escape direction, of unit length, in which the singularity is left fastest; its opposite is as
   /// good. Joint velocities n of the null space move the tip at θ + s d by s wᵀHd·n: d is the unit
   /// vector that maximises this over all n of length 1.
-  [[nodiscard]] small_vector<Room> escape_direction() const {
-    small_vector<Room> d;
+  [[nodiscard]] small_vector<Capacity> escape_direction() const {
+    small_vector<Capacity> d;
     for (std::ptrdiff_t i = 0; i < jacobian_.cols(); ++i) {
       d[i] = 1 + .1 * double(i);
     }
@@ -162,12 +162,12 @@ public:
 
   /// Two steps s n, n the direction of least motion of the tip, that move it along w as a small
   /// twist does: wᵀJn s + ½ s² nᵀHn = w·e. Zero if there are none.
-  [[nodiscard]] std::array<small_vector<Room>, 2> steps_for(const small_twist& e) const {
+  [[nodiscard]] std::array<small_vector<Capacity>, 2> steps_for(const small_twist& e) const {
     const auto n = self_motion_space(jacobian_, damping_threshold).any_direction();
     const double linear = -dot(w_, residual_after_step({}, jacobian_, n)),
                  quadratic = dot(n, times_h(n));
     const double root = std::sqrt(linear * linear + 2 * quadratic * dot(w_, e));
-    std::array<small_vector<Room>, 2> result;
+    std::array<small_vector<Capacity>, 2> result;
     for (std::size_t k = 0; k < 2; ++k) {
       const double s = ((k == 0 ? root : -root) - linear) / quadratic;
       if (std::abs(s) < 1) { // not NaN either
@@ -178,22 +178,22 @@ public:
   }
 
 private:
-  [[nodiscard]] small_vector<Room> times_h(const small_vector<Room>& x) const {
-    small_vector<Room> result;
+  [[nodiscard]] small_vector<Capacity> times_h(const small_vector<Capacity>& x) const {
+    small_vector<Capacity> result;
     for (std::ptrdiff_t k = 0; k < jacobian_.cols(); ++k) {
       result = result + x[k] * h_.columns[std::size_t(k)];
     }
     return result;
   }
 
-  const small_matrix<6, Room>& jacobian_;
+  const small_matrix<6, Capacity>& jacobian_;
   small_twist w_;
-  small_matrix<Room, Room> h_;
+  small_matrix<Capacity, Capacity> h_;
 };
 
 /// Smallest singular value of a Jacobian, from above.
-template <int Room>
-[[nodiscard]] double smallest_singular_value_of(const small_matrix<6, Room>& jacobian) {
+template <int Capacity>
+[[nodiscard]] double smallest_singular_value_of(const small_matrix<6, Capacity>& jacobian) {
   return damped_gram(gram_of(jacobian)).smallest();
 }
 

@@ -49,13 +49,13 @@ struct small_vector {
   [[nodiscard]] friend double norm(const small_vector& a) { return std::sqrt(dot(a, a)); }
 };
 
-/// Matrix of `Rows` rows and up to `Room` columns.
-template <int Rows, int Room>
+/// Matrix of `Rows` rows and up to `Capacity` columns.
+template <int Rows, int Capacity>
 struct small_matrix {
   using Scalar = double;
 
-  std::array<small_vector<Rows>, std::size_t(Room)> columns{};
-  std::ptrdiff_t count = Room; ///< number of columns
+  std::array<small_vector<Rows>, std::size_t(Capacity)> columns{};
+  std::ptrdiff_t count = Capacity; ///< number of columns
 
   void resize(std::ptrdiff_t, std::ptrdiff_t n) { count = n; }
   [[nodiscard]] static constexpr std::ptrdiff_t rows() { return Rows; }

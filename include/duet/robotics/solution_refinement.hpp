@@ -24,34 +24,35 @@
 
 namespace duet::detail {
 
-/// Vector of up to `Room` coordinates.
-template <int Room>
-using room_vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Room, 1>;
+/// Vector of up to `Capacity` coordinates.
+template <int Capacity>
+using bounded_vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Capacity, 1>;
 
 /// Preferences among the solutions of a goal: objective and obstacles.
-template <int Room>
+template <int Capacity>
 class solution_preferences {
 public:
-  using vector = room_vector<Room>;
+  using vector = bounded_vector<Capacity>;
   virtual ~solution_preferences() = default;
   [[nodiscard]] virtual bool has_objective() const = 0;
-  [[nodiscard]] virtual double objective(const small_vector<Room>& theta) const = 0;
-  [[nodiscard]] virtual vector gradient(const small_vector<Room>& theta) const = 0;
+  [[nodiscard]] virtual double objective(const small_vector<Capacity>& theta) const = 0;
+  [[nodiscard]] virtual vector gradient(const small_vector<Capacity>& theta) const = 0;
   /// Inequalities that keep a step at the margin to obstacles.
   [[nodiscard]] virtual std::vector<inequality<vector>>
-  clear_of_obstacles(const small_vector<Room>& theta) const = 0;
+  clear_of_obstacles(const small_vector<Capacity>& theta) const = 0;
 };
 
 /// Sequential quadratic programming within the solutions of a goal: each step keeps goal, limits
 /// and margins to first order, and Newton's method leads back to them. The curvature is that of the
 /// function on the set of solutions, after Broyden, Fletcher, Goldfarb and Shanno (BFGS) with
 /// Powell's damping, from the change of the projected gradient.
-template <int Room>
+template <int Capacity>
 class solution_refinement {
 public:
-  using joints = small_vector<Room>;
-  using vector = room_vector<Room>;
-  using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Room, Room>;
+  using joints = small_vector<Capacity>;
+  using vector = bounded_vector<Capacity>;
+  using matrix =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Capacity, Capacity>;
 
   struct point {
     joints theta;
@@ -62,8 +63,8 @@ public:
     vector gradient;
   };
 
-  solution_refinement(const planning_model<Room>& model, const tip_goal& goal,
-                      const solution_preferences<Room>& preferences,
+  solution_refinement(const planning_model<Capacity>& model, const tip_goal& goal,
+                      const solution_preferences<Capacity>& preferences,
                       const pose_tolerance& tolerance)
       : model_(model), goal_(goal), preferences_(preferences), tolerance_(tolerance) {}
 
@@ -195,15 +196,15 @@ private:
     return curvature;
   }
 
-  const planning_model<Room>& model_;
+  const planning_model<Capacity>& model_;
   const tip_goal& goal_;
-  const solution_preferences<Room>& preferences_;
+  const solution_preferences<Capacity>& preferences_;
   pose_tolerance tolerance_;
 };
 
-template <int Room>
-std::optional<typename solution_refinement<Room>::point>
-solution_refinement<Room>::operator()(const joints& theta, int iterations) const {
+template <int Capacity>
+std::optional<typename solution_refinement<Capacity>::point>
+solution_refinement<Capacity>::operator()(const joints& theta, int iterations) const {
   auto best = solution(theta);
   if (!best || !preferences_.has_objective()) {
     return best;

@@ -23,38 +23,38 @@ namespace duet::detail {
 
 /// Search for solutions from the start and from random configurations, of which each is refined by
 /// `solution_refinement`.
-template <int Room>
+template <int Capacity>
 class solution_search {
-  using search = inverse_kinematics_search<Room, tip_goal>;
+  using search = inverse_kinematics_search<Capacity, tip_goal>;
 
 public:
   using attempt = typename search::attempt;
 
-  solution_search(const planning_model<Room>& model, const small_vector<Room>& start,
+  solution_search(const planning_model<Capacity>& model, const small_vector<Capacity>& start,
                   const inverse_kinematics_options& options)
       : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
         search_(model, start, options) {}
 
   /// Solutions within the limits, up to full turns, that are known before the search.
   struct known_solutions {
-    std::vector<small_vector<Room>> joints;
+    std::vector<small_vector<Capacity>> joints;
     bool is_complete = false; ///< true if there are no others
   };
 
   /// \param preferences  null if the first solution is as good as any
   [[nodiscard]] attempt operator()(const tip_goal& goal,
-                                   const solution_preferences<Room>* preferences,
+                                   const solution_preferences<Capacity>* preferences,
                                    const known_solutions& known = {}) const;
 
 private:
   /// Joints moved by full turns within the limits as long as that lowers the objective.
-  [[nodiscard]] small_vector<Room>
-  improved_by_full_turns(small_vector<Room> theta,
-                         const solution_preferences<Room>& preferences) const {
+  [[nodiscard]] small_vector<Capacity>
+  improved_by_full_turns(small_vector<Capacity> theta,
+                         const solution_preferences<Capacity>& preferences) const {
     constexpr double max_change = 0x1p20;
     double min_value = preferences.objective(theta);
     const auto is_lower_by = [&](int i, double change) {
-      small_vector<Room> other = theta;
+      small_vector<Capacity> other = theta;
       other[i] += change;
       const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
       const double value = is_within ? preferences.objective(other) : min_value;
@@ -81,27 +81,27 @@ private:
     return theta;
   }
 
-  const planning_model<Room>& model_;
+  const planning_model<Capacity>& model_;
   inverse_kinematics_options options_;
   pose_tolerance tolerance_;
   search search_;
 };
 
-template <int Room>
-typename solution_search<Room>::attempt
-solution_search<Room>::operator()(const tip_goal& goal,
-                                  const solution_preferences<Room>* preferences,
-                                  const known_solutions& known) const {
+template <int Capacity>
+typename solution_search<Capacity>::attempt
+solution_search<Capacity>::operator()(const tip_goal& goal,
+                                      const solution_preferences<Capacity>* preferences,
+                                      const known_solutions& known) const {
   if (preferences == nullptr || is_beyond(model_.reach, goal, tolerance_)) {
     return search_(goal);
   }
-  const solution_refinement<Room> refine(model_, goal, *preferences, tolerance_);
+  const solution_refinement<Capacity> refine(model_, goal, *preferences, tolerance_);
   attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
   double min_value = std::numeric_limits<double>::infinity(); // of the objective
   int iterations = 0, candidates = 0, restarts = 0;
-  const auto consider = [&](small_vector<Room> theta) {
+  const auto consider = [&](small_vector<Capacity> theta) {
     constexpr int rounds = 4; // after self-motions other full turns may be better
-    std::optional<typename solution_refinement<Room>::point> refined;
+    std::optional<typename solution_refinement<Capacity>::point> refined;
     for (int k = 0; k < rounds; ++k) {
       const auto other =
           preferences->has_objective() ? improved_by_full_turns(theta, *preferences) : theta;
@@ -120,7 +120,7 @@ solution_search<Room>::operator()(const tip_goal& goal,
     }
     return refined.has_value();
   };
-  for (const small_vector<Room>& theta : known.joints) {
+  for (const small_vector<Capacity>& theta : known.joints) {
     consider(theta);
   }
   if (known.is_complete && best.reason == stop_reason::reached) {

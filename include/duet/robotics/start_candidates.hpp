@@ -27,11 +27,11 @@
 namespace duet::detail {
 
 /// Solutions for poses of the tip of a chain, among obstacles if there are any.
-template <int Room>
+template <int Capacity>
 class pose_solutions {
 public:
-  using chain = serial_chain<-Room>;
-  using joints = joint_vector<double, -Room>;
+  using chain = serial_chain<-Capacity>;
+  using joints = joint_vector<double, -Capacity>;
   /// Solutions that are connected by self-motions.
   using family = std::vector<joints>;
 
@@ -66,12 +66,12 @@ public:
     return result;
   }
 
-  /// One solution, or the reason why there is none.
+  /// One solution, or the reason for its absence.
   ///
   /// \param part  fraction of the tolerance
-  [[nodiscard]] inverse_kinematics_result<-Room> from(const joints& start,
-                                                      const dual_quaternion<double>& goal,
-                                                      int restarts, double part = 1) const {
+  [[nodiscard]] inverse_kinematics_result<-Capacity> from(const joints& start,
+                                                          const dual_quaternion<double>& goal,
+                                                          int restarts, double part = 1) const {
     const inverse_kinematics_options options{
         .tolerance = {part * tolerance_.translation, part * tolerance_.rotation},
         .max_restarts = restarts};

@@ -59,16 +59,16 @@ struct start_search_result {
 namespace detail {
 
 /// Chain and path as the search uses them, independent of their types.
-template <int Room>
+template <int Capacity>
 struct start_problem {
-  using joints = joint_vector<double, -Room>;
+  using joints = joint_vector<double, -Capacity>;
 
-  serial_chain<-Room> chain;
+  serial_chain<-Capacity> chain;
   const scene* around; ///< or null
   const path_function& path;
   double first, last;
   const start_options& options;
-  std::function<motion_plan<-Room>(const joints&, const plan_options&)> follow;
+  std::function<motion_plan<-Capacity>(const joints&, const plan_options&)> follow;
   std::function<double(const joints&)> objective; ///< or empty
 };
 

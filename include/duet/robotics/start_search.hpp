@@ -28,11 +28,11 @@ namespace duet::detail {
 
 /// Search for a start configuration.
 ///
-/// \tparam Room  capacity for joints
-template <int Room>
+/// \tparam Capacity  capacity for joints
+template <int Capacity>
 class start_search {
-  using joints = joint_vector<double, -Room>;
-  using choice = start_search_result<-Room>;
+  using joints = joint_vector<double, -Capacity>;
+  using choice = start_search_result<-Capacity>;
   struct candidate {
     joints start;
     std::size_t rank; ///< rank in its family
@@ -40,7 +40,7 @@ class start_search {
   };
 
 public:
-  explicit start_search(const start_problem<Room>& problem)
+  explicit start_search(const start_problem<Capacity>& problem)
       : problem_(problem), chain_(problem.chain), options_(problem.options),
         solutions_(chain_, problem.around, options_.plan.tolerance) {}
 
@@ -76,7 +76,7 @@ public:
 
 private:
   /// Keeps the better plan; true if it is the last one needed.
-  static bool keep(choice& of, motion_plan<-Room> plan) {
+  static bool keep(choice& of, motion_plan<-Capacity> plan) {
     ++of.starts;
     if (of.plan.tau.empty() || plan.tau.back() > of.plan.tau.back() ||
         plan.reason == stop_reason::reached) {
@@ -147,7 +147,7 @@ private:
   }
 
   /// Start in which the joints that end at a limit in `plan` are moved a full turn away from it.
-  [[nodiscard]] joints moved_by_full_turns(joints start, const motion_plan<-Room>& plan) const {
+  [[nodiscard]] joints moved_by_full_turns(joints start, const motion_plan<-Capacity>& plan) const {
     constexpr double full_turn = 2 * std::numbers::pi, close = 1e-2;
     const joints& end = plan.joints.back();
     for (int i = 0; i < chain_.size() && plan.reason == stop_reason::joint_limit; ++i) {
@@ -230,15 +230,15 @@ private:
     return result;
   }
 
-  const start_problem<Room>& problem_;
-  const serial_chain<-Room>& chain_;
+  const start_problem<Capacity>& problem_;
+  const serial_chain<-Capacity>& chain_;
   const start_options& options_;
-  pose_solutions<Room> solutions_;
+  pose_solutions<Capacity> solutions_;
 };
 
-template <int Room>
-[[nodiscard]] start_search_result<-Room> find_start(const start_problem<Room>& problem) {
-  return start_search<Room>(problem).choose();
+template <int Capacity>
+[[nodiscard]] start_search_result<-Capacity> find_start(const start_problem<Capacity>& problem) {
+  return start_search<Capacity>(problem).choose();
 }
 
 #ifdef DUET_COMPILED

@@ -90,10 +90,11 @@ struct residual_twist {
 };
 
 /// Row of M J, J in `frame::hybrid`.
-template <int Room>
-[[nodiscard]] small_vector<Room> goal_row(const twist_constraint& constraint, std::ptrdiff_t row,
-                                          const small_matrix<6, Room>& jacobian) {
-  small_vector<Room> result;
+template <int Capacity>
+[[nodiscard]] small_vector<Capacity> goal_row(const twist_constraint& constraint,
+                                              std::ptrdiff_t row,
+                                              const small_matrix<6, Capacity>& jacobian) {
+  small_vector<Capacity> result;
   for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
     for (std::ptrdiff_t i = 0; i < 6; ++i) {
       result[k] += constraint.matrix(row, i) * jacobian(i, k);
@@ -103,19 +104,19 @@ template <int Room>
 }
 
 /// Sets the equations M J Δ = e of a goal; rows within their bounds impose no equation.
-template <int Room>
-void set_equations(goal_equations<Room>& x, const tip_goal& goal) {
+template <int Capacity>
+void set_equations(goal_equations<Capacity>& x, const tip_goal& goal) {
   const twist_constraint constraint = goal.constraint(x.at.tip);
   const residual_twist unsatisfied(constraint);
   x.e = unsatisfied.e;
   x.residual = unsatisfied.residual;
-  const small_matrix<6, Room> jacobian = x.at.jacobian;
+  const small_matrix<6, Capacity> jacobian = x.at.jacobian;
   for (std::ptrdiff_t i = 0; i < 6; ++i) {
     const bool is_equation =
         constraint.lower[i] == constraint.upper[i] && !constraint.matrix.row(i).isZero(0);
     x.is_free[std::size_t(i)] = x.e[i] == 0 && !is_equation;
     const auto row =
-        x.is_free[std::size_t(i)] ? small_vector<Room>{} : goal_row(constraint, i, jacobian);
+        x.is_free[std::size_t(i)] ? small_vector<Capacity>{} : goal_row(constraint, i, jacobian);
     for (std::ptrdiff_t k = 0; k < jacobian.cols(); ++k) {
       x.at.jacobian(i, k) = row[k];
     }

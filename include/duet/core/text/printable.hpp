@@ -14,8 +14,9 @@ namespace duet {
 
 namespace detail {
 
-/// Number of bytes of the UTF-8 character that a text begins with; 0 if there is none, or if it
-/// controls a terminal: a control character, a line separator, a change of the writing direction.
+/// Number of bytes of the UTF-8 character that a text begins with; 0 if it begins with no such
+/// character, or if it controls a terminal: a control character, a line separator, a change of the
+/// writing direction.
 [[nodiscard]] inline std::size_t escaped_bytes(std::string_view text) {
   const auto byte = [text](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;

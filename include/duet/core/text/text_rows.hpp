@@ -22,7 +22,7 @@ namespace duet::detail {
 
 /// Opens a file for reading, byte by byte as it is.
 ///
-/// \return the problem, empty if there is none
+/// \return the problem, empty if valid
 [[nodiscard]] inline std::string open_input(const std::string& path, std::ifstream& in) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) { // opens, and fails when it is read
@@ -174,7 +174,7 @@ inline void split_cells(std::string_view text, std::vector<std::string_view>& ce
 
 /// The number of a cell.
 ///
-/// \return the problem with it as a number, empty if there is none
+/// \return the problem with it as a number, empty if valid
 /// \throws file_error if it is not a number
 [[nodiscard]] inline std::string read_cell(const std::string& path, std::size_t line,
                                            const std::string& name, std::string_view cell,

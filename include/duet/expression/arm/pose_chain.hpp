@@ -62,7 +62,7 @@ struct link_of<applied_node<op::turn, unit_vector_node<kind::dual_vector, I>, An
   using twist = rate_t<Angle, Motion>;
 };
 template <int I, class D>
-struct link_of<applied_node<op::slide, unit_vector_node<kind::vector, I>, D>> {
+struct link_of<applied_node<op::translation_along, unit_vector_node<kind::vector, I>, D>> {
   using link = frame_with_z_axis<I>;
   using nodes = mp11::mp_list<D>;
   template <class Motion>

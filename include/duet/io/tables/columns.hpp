@@ -33,7 +33,7 @@ struct column_name {
   bool is_a_time = false; ///< `u` in seconds, or in a unit of time
   bool is_of_ros = false; ///< time as `rostopic echo -p` writes it
   std::string name;
-  std::string unit; ///< as written, empty if there is none
+  std::string unit; ///< as written, empty if absent
 
   explicit column_name(std::string_view cell) {
     if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') { // as spreadsheets write
@@ -128,7 +128,7 @@ struct table_layout {
   /// \param has_u         true if the rows must have a parameter
   /// \param has_position  true if the rows must have positions
   /// \param angles        columns of Euler angles; null: rotations are quaternions
-  /// \return problem with the header, empty if there is none
+  /// \return problem with the header, empty if valid
   [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_u,
                                  bool has_position, const euler_columns* angles = nullptr) {
     columns = header.size();

@@ -33,7 +33,7 @@ namespace duet::detail {
 /// Reads the rotation nearest to a matrix, by Newton's method for the polar factor, R ← ½(R + R⁻ᵀ):
 /// from `rotation_matrix_tolerance` three steps reach round-off.
 ///
-/// \return problem with the matrix, empty if there is none
+/// \return problem with the matrix, empty if valid
 [[nodiscard]] inline std::string read_rotation(matrix3<double> r, quaternion<double>& q) {
   const double defect = (r * r.transpose() - matrix3<double>::Identity()).cwiseAbs().maxCoeff();
   if (!(defect <= rotation_matrix_tolerance)) {

@@ -40,7 +40,7 @@ struct table_row {
 /// Reads a file line by line.
 class table_row_reader {
 public:
-  /// \param times_path    file of times, empty if there is none
+  /// \param times_path    file of times, empty if times are in the rows
   /// \param has_position  true if rows must have positions
   /// \param angles        columns of Euler angles; null: rotations are quaternions
   /// \throws file_error for an invalid file of times

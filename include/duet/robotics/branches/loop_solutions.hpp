@@ -57,7 +57,7 @@ public:
 
   /// Refines θ and adds the solution it leads to, and its neighbour near a singularity.
   ///
-  /// \return the index of the solution, or `not_found` if there is none
+  /// \return the index of the solution, or `not_found` if it leads to no solution
   std::size_t add(six_coordinates theta) {
     constexpr std::size_t max_count = 100; // more than there are isolated ones
     if (all_.size() == max_count || !close_loop(loop_, theta)) {

@@ -86,7 +86,7 @@ private:
     });
   }
 
-  /// Step on the component in a direction; empty if there is none.
+  /// Step on the component in a direction; empty if no step stays on it.
   [[nodiscard]] std::optional<seven_coordinates>
   step(const seven_coordinates& x, const seven_coordinates& direction, double max_length) const {
     const auto basis = set_.kernel(x);

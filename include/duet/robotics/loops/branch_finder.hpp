@@ -32,8 +32,8 @@ class branch_finder {
 public:
   explicit branch_finder(const solution_curve& curve) : curve_(curve) {}
 
-  /// The branch point ahead of a point of the curve, to round-off; empty if there is none, or if
-  /// branches touch there, so that second derivatives do not separate them.
+  /// The branch point ahead of a point of the curve, to round-off; empty if no branch point is
+  /// near, or if branches touch there, so that second derivatives do not separate them.
   ///
   /// \param step  half of the last rejected step; a branch point is near if it is small
   [[nodiscard]] std::optional<branch_point_data> ahead(const curve_point& from, double step) const {

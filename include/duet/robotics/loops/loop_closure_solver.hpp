@@ -87,7 +87,7 @@ public:
   [[nodiscard]] const Eigen::VectorXd& coordinates() const { return q_; }
 
 private:
-  /// Makes a step that reduces the residual; false if there is none.
+  /// Makes a step that reduces the residual; false if no step reduces it.
   [[nodiscard]] bool step() {
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q_), free_);
     const rank_revealing_svd svd(j);

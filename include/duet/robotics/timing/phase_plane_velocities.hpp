@@ -49,7 +49,7 @@ struct feasible_path_velocities {
 };
 
 /// Nearest value to x for which some y between `lower` and `upper` satisfies all constraints;
-/// NaN if there is none. The length of the interval of such y is a concave function of x.
+/// NaN if no such y exists. The length of the interval of such y is a concave function of x.
 /// Newton's method approaches its nearer zero from outside without passing it, from one pair of
 /// active lines to the next.
 [[nodiscard]] inline double nearest_speed(std::span<const speed_bound> bounds, double x,
