@@ -131,8 +131,8 @@ std::vector<problem_near_ball> problems_near_balls(unsigned seed) {
   return result;
 }
 
-/// One iteration plans all problems; `reached` and the smallest clearance, at waypoints and half
-/// way between them, are of the first.
+/// One iteration plans all problems; `reached` and the smallest clearance, at waypoints and at
+/// midpoints between them, are those of the first.
 void plan_near_balls(benchmark::State& state, unsigned seed) {
   const auto all = problems_near_balls(seed);
   stopwatch times;

@@ -88,14 +88,13 @@ DUET_COMPILED_FUNCTION loop_solution_set eliminated(const loop_equation& loop) {
 DUET_COMPILED_FUNCTION branch_search::branch_search(const loop_equation& loop) {
   search(loop);
   const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop),
-             is_general =
-                 method_ == solution_method::elimination ||
-                 method_ == solution_method::two_prismatic; // these search near the goal themselves
+             is_general = method_ == solution_method::elimination || // search near the goal, too
+                          method_ == solution_method::two_prismatic;
   if (answer_.solutions.empty() && !is_certain && !is_general) {
     search_near_goal(loop);
   }
-  if (method_ !=
-      solution_method::two_prismatic) { // that method detects permanent self-motion itself
+  // `two_prismatic` detects permanent self-motion itself.
+  if (method_ != solution_method::two_prismatic) {
     answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
   }
 }
