@@ -63,7 +63,7 @@ void require_size(const C& chain, const X& theta) {
 /// the other.
 ///
 /// \tparam S  scalar of the results
-/// \tparam N  number of joints; negative: up to −N
+/// \tparam N  number of joints; negative: up to −N; 0: any
 /// \tparam X  type of the configuration θ
 template <class S, int N, class X>
 class half_angle_sincos {

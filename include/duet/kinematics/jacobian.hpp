@@ -26,7 +26,7 @@ namespace detail {
 /// A matrix with one column for each joint of a chain.
 template <class S, int Rows, int N>
 using joint_columns =
-    Eigen::Matrix<S, Rows, (N > 0 ? N : Eigen::Dynamic), Eigen::ColMajor, Rows, (N > 0 ? N : -N)>;
+    Eigen::Matrix<S, Rows, (N > 0 ? N : Eigen::Dynamic), Eigen::ColMajor, Rows, max_joints<N>>;
 
 template <class C, class X>
 using chain_jacobian = joint_columns<chain_scalar<C, X>, 6, C::joints>;

@@ -26,10 +26,16 @@ namespace duet {
 
 namespace detail {
 
-/// Column of joint coordinates, of fixed size N or of up to −N.
+/// Largest number of joints for N as in `serial_chain`; `Eigen::Dynamic` if N is 0.
+template <int N>
+inline constexpr int max_joints = N > 0   ? N
+                                  : N < 0 ? -N
+                                          : Eigen::Dynamic;
+
+/// Column of joint coordinates, of fixed size N, of up to −N, or of any size if N is 0.
 template <class S, int N>
 using joint_vector =
-    Eigen::Matrix<S, (N > 0 ? N : Eigen::Dynamic), 1, Eigen::ColMajor, (N > 0 ? N : -N), 1>;
+    Eigen::Matrix<S, (N > 0 ? N : Eigen::Dynamic), 1, Eigen::ColMajor, max_joints<N>, 1>;
 
 /// Forward kinematics of a chain.
 template <class C>
@@ -119,10 +125,14 @@ public:
 
   /// A chain of any other type without its number of joints in the type, so that code is compiled
   /// once for all chains of up to −N joints.
+  ///
+  /// \throws invalid_input if a `chain_view` has more joints
   template <SerialChain C>
-    requires(C::joints != N && N < 0 && (C::joints > 0 ? C::joints : -C::joints) <= -N &&
+    requires(C::joints != N && N < 0 && detail::max_joints<C::joints> <= -N &&
              std::same_as<typename C::scalar_type, T>)
   constexpr serial_chain(const C& other) : tip_(other.tip()), size_(other.size()) {
+    detail::require(size_ <= -N, "duet: serial_chain: ", size_, " joints (expected at most ", -N,
+                    ")");
     for (int i = 0; i < size_; ++i) {
       take(other, i, std::size_t(i));
     }

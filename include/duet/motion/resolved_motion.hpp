@@ -28,7 +28,7 @@ template <SerialChain C, VectorLike X>
   const Eigen::Matrix<S, 6, 7> rates = pose_rate_matrix(a);
   const matrix6<S> gram = m.lazyProduct(m.transpose());
   Eigen::Matrix<S, (C::joints > 0 ? C::joints : Eigen::Dynamic), 7, Eigen::ColMajor,
-                (C::joints > 0 ? C::joints : -C::joints), 7>
+                detail::max_joints<C::joints>, 7>
       b = m.transpose().lazyProduct(solve(gram, rates));
   // J Jᵀ has the squared condition number of J. Solving once more for the residual of J B = J2
   // takes that back: the error is that of a QR decomposition of Jᵀ (corrected seminormal
