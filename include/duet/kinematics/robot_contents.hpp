@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include <duet/core/config.hpp>
 #include <duet/kinematics/collision_shape.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/serial_chain.hpp>

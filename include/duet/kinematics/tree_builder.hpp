@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
 #include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/kinematics/joint.hpp>
@@ -13,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -263,16 +261,9 @@ private:
 
 /// The table of a description.
 ///
-/// \tparam T  scalar of the table
 /// \throws as `tree_builder`
-template <class T>
-[[nodiscard]] tree_table table_of(const robot_description& robot) {
-  static_assert(std::same_as<T, double>);
+[[nodiscard]] inline tree_table table_of(const robot_description& robot) {
   return tree_builder(robot).table();
 }
-
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE tree_table table_of<double>(const robot_description&);
-#endif
 
 } // namespace duet::detail
