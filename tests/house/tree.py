@@ -1,6 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-"""Fails if a file breaks a rule of its folder: layers, includes and length of headers, first lines of pages, lists of tests.
+"""Fails if a file breaks a rule of its folder: layers, includes and length of headers and sources, first lines of pages,
+lists of tests.
 
 usage: python3 tests/house/tree.py
 """
@@ -55,7 +56,9 @@ def problem_if(wrong, text):
 
 
 texts = {path.relative_to(TOP / "include").as_posix(): read(path) for path in sorted((TOP / "include/duet").rglob("*.hpp"))}
-includes = {header: re.findall(r"^[ \t]*#[ \t]*include[ \t]*(.*)", text, re.M) for header, text in texts.items()}
+# Sources of compiled libraries and their private headers, in src/<layer>/.
+sources = {path.relative_to(TOP).as_posix(): read(path) for path in sorted((TOP / "src").glob("*/*.[ch]pp"))}
+includes = {header: re.findall(r"^[ \t]*#[ \t]*include[ \t]*(.*)", text, re.M) for header, text in (texts | sources).items()}
 
 
 def check_text(header, text):
@@ -63,7 +66,7 @@ def check_text(header, text):
     problem_if(lines > MOST_LINES, f"{header} has {lines} lines, more than {MOST_LINES}")
     same = re.search(r"/// The same.*", text)
     problem_if(same, f"{header}: a docstring must stand alone: {same and same[0]}")
-    problem_if("\n#pragma once\n" not in text, f"{header} has no #pragma once")
+    problem_if("\n#pragma once\n" not in text and header.endswith(".hpp"), f"{header} has no #pragma once")
     code = re.sub(r"//.*", "", text)
     problem_if(re.search(r"[ ;{](throw[ ;]|try [{]|catch [(])", code) and header != "duet/core/error_handler.hpp",
                f"{header} has a throw, try or catch: raise, catching of core/error_handler.hpp, which do without exceptions too")
@@ -80,6 +83,7 @@ def check_layer(header, layer):
     for include in includes[header] if layer in LAYERS else ():
         duet = re.match(r"<duet/([^/]*)/", include)
         library = re.match(r"<((Eigen|boost)[/a-z0-9_]*|expat\.h(?=>$))", include)
+        private = re.fullmatch(r'"([a-z_]+\.hpp)"', include)
         if duet and duet[1] == "interop" != layer:
             problems.append(f"{header} includes {include}, but interop/ is for users alone")
         elif duet:
@@ -88,6 +92,8 @@ def check_layer(header, layer):
             bridge = library[2] and re.fullmatch(r"duet/dual/eigen[/_][a-z]*\.hpp", header)
             problem_if(not bridge and ALLOWED[layer].isdisjoint({"/".join(library[1].split("/")[:2]), library[2]}),
                        f"{header} includes {include}, but {layer}/ does without that library")
+        elif private and header in sources:
+            problem_if(f"src/{layer}/{private[1]}" not in sources, f"{header} includes {include}, which is not in its folder")
         else:
             problem_if(not STD_INCLUDE.fullmatch(include),
                        f"{header} includes {include}, which is neither <duet/…>, nor Eigen, Boost, expat or std")
@@ -103,10 +109,16 @@ def reached_from(headers, without=()):
     return reached
 
 
+for source, text in sources.items():
+    check_text(source, text)
+    check_layer(source, source.split("/")[1])
 for header, text in texts.items():
     check_text(header, text)
-    if header != "duet/duet.hpp":
+    if header.count("/") > 1:
         check_layer(header, header.split("/")[1])
+    elif header != "duet/duet.hpp": # duet/<layer>.hpp
+        of_layer = {f"<{other}>" for other in texts if re.fullmatch(rf"{header[:-4]}/[a-z_]+\.hpp", other)}
+        problem_if(set(includes[header]) != of_layer, f"{header} does not include exactly the headers of {header[:-4]}/")
     # Before C++20 a header says so within five lines: config.hpp is its first include, or that of one or two in between.
     first = header
     for _ in range(3):
@@ -124,7 +136,7 @@ for header, text in texts.items():
 problem_if(not texts, f"no headers in {TOP}/include/duet")
 by_name = [f"duet/{name}" for name in re.findall(r"([a-z_/]+\.hpp)[,)]", texts.get("duet/duet.hpp", ""))]
 for header in sorted(texts.keys() - reached_from(["duet/duet.hpp", *by_name])):
-    problem_if(not header.startswith("duet/interop/"), f"<duet/duet.hpp> neither includes nor names {header}")
+    problem_if(header.count("/") > 1 and not header.startswith("duet/interop/"), f"<duet/duet.hpp> neither includes nor names {header}")
 
 for path in sorted((TOP / "docs").glob("*.md")):
     page, text = f"docs/{path.name}", read(path)
