@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include <duet/core/text/csv.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/io/save_plan.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 

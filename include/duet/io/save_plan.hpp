@@ -1,43 +1,41 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
-#include <duet/core/text/csv.hpp>
-#include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/joint_trajectory.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 
 #include <Eigen/Core>
 
-#include <cstddef>
+#include <array>
+#include <functional>
 #include <string>
 #include <vector>
 
 /// \file
 /// Plans and trajectories as CSV files.
 
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Writes a plan, given by its parts, of which there are equally many.
+void save_waypoints(const std::string& path, const std::vector<double>& tau,
+                    const std::vector<Eigen::VectorXd>& joints,
+                    const std::vector<dual_quaternion<double>>& poses,
+                    const std::vector<pose_error>& deviations);
+
+/// Writes a trajectory, given by its duration and its coordinates, velocities and accelerations at
+/// any time.
+void save_samples(const std::string& path,
+                  const std::function<std::array<Eigen::VectorXd, 3>(double)>& motion,
+                  double duration, double step);
+
+DUET_ABI_END
+} // namespace duet::detail
+
 namespace duet {
-
-namespace detail {
-
-/// `,name0 [unit],name1 [unit] …`
-[[nodiscard]] inline std::string numbered_columns(const std::string& name, const std::string& unit,
-                                                  Eigen::Index count) {
-  std::string result;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    result += "," + name + std::to_string(i) + " [" + unit + "]";
-  }
-  return result;
-}
-
-template <class V>
-void append_components(std::vector<double>& row, const V& values) {
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    row.push_back(values[i]);
-  }
-}
-
-} // namespace detail
+DUET_ABI_BEGIN
 
 /// Writes the waypoints of a plan as CSV, atomically, with all digits and independently of the
 /// locale: τ, joint coordinates, the tip's position and rotation, its deviations. Units in the
@@ -46,19 +44,8 @@ void append_components(std::vector<double>& row, const V& values) {
 /// \throws invalid_input for a plan without waypoints, file_error
 template <int N>
 void save_plan(const std::string& path, const motion_plan<N>& plan) {
-  detail::require(!plan.joints.empty(), "duet: save_plan: the plan has no waypoints");
-  std::string text = "tau" +
-                     detail::numbered_columns("theta", "rad or m", plan.joints.front().size()) +
-                     ",x [m],y [m],z [m],qw,qx,qy,qz,deviation [m],deviation [rad]\n";
-  for (std::size_t k = 0; k < plan.joints.size(); ++k) {
-    std::vector<double> row{plan.tau[k]};
-    detail::append_components(row, plan.joints[k]);
-    detail::append_components(row, pose_coordinates(plan.poses[k]));
-    row.push_back(plan.deviations[k].translation);
-    row.push_back(plan.deviations[k].rotation);
-    text += csv_line(row);
-  }
-  write_file(path, text);
+  detail::save_waypoints(path, plan.tau, {plan.joints.begin(), plan.joints.end()}, plan.poses,
+                         plan.deviations);
 }
 
 /// Writes joint coordinates, velocities and accelerations as CSV at times `step` apart and at the
@@ -67,27 +54,12 @@ void save_plan(const std::string& path, const motion_plan<N>& plan) {
 /// \throws invalid_input for a step that is not positive, file_error
 template <int N>
 void save_trajectory(const std::string& path, const joint_trajectory<N>& trajectory, double step) {
-  detail::require(step > 0, "duet: save_trajectory: the step is ", to_text(step),
-                  " (expected a positive number)");
-  const Eigen::Index n = trajectory(0).value.size();
-  std::string text = "t [s]" + detail::numbered_columns("theta", "rad or m", n) +
-                     detail::numbered_columns("rate", "rad/s or m/s", n) +
-                     detail::numbered_columns("acceleration", "rad/s^2 or m/s^2", n) + "\n";
-  const double duration = trajectory.duration();
-  for (std::size_t k = 0;; ++k) {
-    const double t = double(k) * step;
-    const bool is_last = t >= duration;
-    const auto motion = trajectory(is_last ? duration : t);
-    std::vector<double> row{is_last ? duration : t};
-    detail::append_components(row, motion.value);
-    detail::append_components(row, motion.velocity);
-    detail::append_components(row, motion.acceleration);
-    text += csv_line(row);
-    if (is_last) {
-      break;
-    }
-  }
-  write_file(path, text);
+  const auto motion = [&](double t) -> std::array<Eigen::VectorXd, 3> {
+    const auto state = trajectory(t);
+    return {state.value, state.velocity, state.acceleration};
+  };
+  detail::save_samples(path, motion, trajectory.duration(), step);
 }
 
+DUET_ABI_END
 } // namespace duet

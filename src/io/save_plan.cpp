@@ -1,0 +1,81 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/core/errors.hpp>
+#include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/io/save_plan.hpp>
+
+#include <array>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace duet::detail {
+
+namespace {
+
+/// `,name0 [unit],name1 [unit] …`
+[[nodiscard]] std::string numbered_columns(const std::string& name, const std::string& unit,
+                                           Eigen::Index count) {
+  std::string result;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    result += "," + name + std::to_string(i) + " [" + unit + "]";
+  }
+  return result;
+}
+
+void append_components(std::vector<double>& row, const auto& values) {
+  row.insert(row.end(), values.begin(), values.end());
+}
+
+} // namespace
+
+DUET_ABI_BEGIN
+
+void save_waypoints(const std::string& path, const std::vector<double>& tau,
+                    const std::vector<Eigen::VectorXd>& joints,
+                    const std::vector<dual_quaternion<double>>& poses,
+                    const std::vector<pose_error>& deviations) {
+  require(!joints.empty(), "duet: save_plan: the plan has no waypoints");
+  std::string text = "tau" + numbered_columns("theta", "rad or m", joints.front().size()) +
+                     ",x [m],y [m],z [m],qw,qx,qy,qz,deviation [m],deviation [rad]\n";
+  for (std::size_t k = 0; k < joints.size(); ++k) {
+    std::vector<double> row{tau[k]};
+    append_components(row, joints[k]);
+    append_components(row, pose_coordinates(poses[k]));
+    row.push_back(deviations[k].translation);
+    row.push_back(deviations[k].rotation);
+    text += csv_line(row);
+  }
+  write_file(path, text);
+}
+
+void save_samples(const std::string& path,
+                  const std::function<std::array<Eigen::VectorXd, 3>(double)>& motion,
+                  double duration, double step) {
+  require(step > 0, "duet: save_trajectory: the step is ", to_text(step),
+          " (expected a positive number)");
+  const Eigen::Index n = motion(0)[0].size();
+  std::string text = "t [s]" + numbered_columns("theta", "rad or m", n) +
+                     numbered_columns("rate", "rad/s or m/s", n) +
+                     numbered_columns("acceleration", "rad/s^2 or m/s^2", n) + "\n";
+  for (std::size_t k = 0;; ++k) {
+    const double t = double(k) * step;
+    const bool is_last = t >= duration;
+    std::vector<double> row{is_last ? duration : t};
+    for (const Eigen::VectorXd& values : motion(row[0])) {
+      append_components(row, values);
+    }
+    text += csv_line(row);
+    if (is_last) {
+      break;
+    }
+  }
+  write_file(path, text);
+}
+
+DUET_ABI_END
+} // namespace duet::detail
