@@ -7,14 +7,13 @@
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/io/tables/columns.hpp>
 #include <duet/quaternion/norm.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <vector>
 
 /// \file
@@ -68,31 +67,44 @@ struct pose_row {
   duet::dual_quaternion<double> pose;
 };
 
+/// The columns of x, y, z, qw, qx, qy, qz in a header.
+/// \throws duet::file_error if one is missing
+inline std::vector<std::size_t>
+pose_columns(const std::string& path, const std::vector<std::string>& header, std::size_t line) {
+  std::vector<std::size_t> result;
+  for (const char* name : {"x", "y", "z", "qw", "qx", "qy", "qz"}) {
+    const auto found = std::find(header.begin(), header.end(), name);
+    if (found == header.end()) {
+      throw duet::file_error(path, line, std::string("the header names no column ") + name);
+    }
+    result.push_back(std::size_t(found - header.begin()));
+  }
+  return result;
+}
+
 /// A pose on each line of a file, as `parse_pose` has it. A header must name `x,y,z,qw,qx,qy,qz`,
 /// in the order of the rows.
 /// \throws duet::file_error
 inline std::vector<pose_row> read_poses(const std::string& path) {
   const duet::csv_file file(path);
-  duet::detail::table_layout layout;
-  if (!file.header().empty()) {
-    const std::vector<std::string_view> names(file.header().begin(), file.header().end());
-    if (const std::string problem = layout.read(names, false, true); !problem.empty()) {
-      throw duet::file_error(path, file.header_line(), problem);
-    }
+  const std::vector<std::string>& header = file.header();
+  std::vector<std::size_t> columns;
+  if (!header.empty()) {
+    columns = pose_columns(path, header, file.header_line());
   }
   std::vector<pose_row> result;
   for (const duet::csv_row& row : file.rows()) {
     std::vector<double> numbers = row.numbers;
-    if (!file.header().empty()) {
-      if (numbers.size() != layout.columns) {
+    if (!header.empty()) {
+      if (numbers.size() != header.size()) {
         throw duet::file_error(path, row.line,
-                               std::to_string(layout.columns) + " numbers expected, got " +
+                               std::to_string(header.size()) + " numbers expected, got " +
                                    std::to_string(numbers.size()));
       }
-      for (std::size_t k = 1; k < 8; ++k) {
-        numbers[k - 1] = row.numbers[layout.at[k]];
+      numbers.clear();
+      for (const std::size_t column : columns) {
+        numbers.push_back(row.numbers[column]);
       }
-      numbers.resize(7);
     }
     try {
       result.push_back({row.line, parse_pose(numbers)});

@@ -3,6 +3,7 @@
 #include "support/message.hpp"
 #include "support/random.hpp"
 
+#include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/io/recording.hpp>
 #include <duet/io/table_file.hpp>
@@ -34,6 +35,11 @@ using rotation = duet::quaternion<double>;
 using screw = duet::screw_dual<double>;
 using rotations = duet::lookup_table<double>;
 using poses = duet::lookup_table<screw>;
+
+/// What messages about headers end with.
+const std::string known_columns =
+    "known columns are u (tau, t, time, timestamp), x y z (tx, px, p_x, p_RS_R_x ...) and qw qx qy "
+    "qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need `euler_columns`";
 
 /// Temporary file that is removed at the end.
 class scratch_file {
@@ -364,7 +370,7 @@ TEST_CASE("load_table with euler_columns: Euler angles of every sequence and uni
     return message.substr(begin.size());
   };
   CHECK(error_message("t,roll,pitch\n0,1,2\n", aircraft) ==
-        std::string("1: the header names no column yaw: ") + duet::detail::known_columns);
+        "1: the header names no column yaw: " + known_columns);
   CHECK(error_message("t,roll,pitch,yaw [rad]\n0,1,2,3\n", aircraft) ==
         "1: the header has the column yaw [rad], but euler_columns expects degrees");
   CHECK(error_message("t,a,b [deg],c\n0,1,2,3\n",
@@ -451,14 +457,20 @@ TEST_CASE(
   CHECK(error_message().ends_with(":1: the header has both 'time' and 'field.header.stamp'"));
 }
 
-TEST_CASE("read_rotation: the rotation nearest to a matrix of few digits") {
+TEST_CASE("load_table: the rotation nearest to a matrix of few digits") {
   // It is the nearest if every small rotation increases the distance.
   const rotation q = normalized(rotation(0.3, -0.5, 0.7, 0.2));
   duet::matrix3<double> m = duet::rotation_matrix(q);
   m(0, 1) += 2e-4;
   m(2, 0) -= 3e-4;
-  rotation nearest;
-  CHECK(duet::detail::read_rotation(m, nearest).empty());
+  std::string row;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      row += duet::to_text(m(i, k)) + " ";
+    }
+    row += "0 ";
+  }
+  const rotation nearest = loaded<double>(row + "\n").elements.at(0);
   CHECK(norm(nearest - q) > 2e-5);
   const auto distance = [&](const rotation& p) {
     return (duet::rotation_matrix(p) - m).squaredNorm();
@@ -517,19 +529,20 @@ TEST_CASE("load_table: times have all digits of the file in every unit") {
   CHECK(taken("100000000000") == 1e8);
   CHECK(taken("1403636580868.5") == 1403636580868.5);
 
-  using duet::detail::file_time;
+  // Differences of times have all digits, too, and the order of rows does not matter.
+  const auto since = [](const std::string& unit, const std::string& start,
+                        const std::string& cell) {
+    const scratch_file file("times.csv", "t [" + unit + "],qw,qx,qy,qz\n" + cell + ",1,0,0,0\n" +
+                                             start + ",1,0,0,0\n");
+    return duet::load_recording<double>(file.path).table.parameters.at(1);
+  };
   for (const char* cell : {"1.4036365808435553280e+09", "14036365808.43555328e-1",
                            "0.000014036365808435553280E14", "+1.403636580843555328e9"}) {
-    CHECK(std::abs(file_time(cell, 0).since(file_time("1403636580.838555648", 0)) - 4999680e-9) <
-          1.2e-16);
+    CHECK(std::abs(since("s", "1403636580.838555648", cell) - 4999680e-9) < 1.2e-16);
   }
-  const file_time first("1403636580838555648", 9), second("1403636580843555328", 9);
-  CHECK(std::abs(second.since(first) - 4999680e-9) < 1e-16);
-  CHECK(first < second);
-  CHECK_FALSE(second < first);
-  CHECK(file_time("-1.75", 0).since(file_time("-3.5", 0)) == 1.75);
-  CHECK(file_time("20.825545", 0).since(file_time("0", 0)) == 20.825545); // not 20 + 0.825545
-  CHECK(file_time("-1.75", 0) < file_time("-1.5", 0));
+  CHECK(std::abs(since("ns", "1403636580838555648", "1403636580843555328") - 4999680e-9) < 1e-16);
+  CHECK(since("s", "-3.5", "-1.75") == 1.75);
+  CHECK(since("s", "0", "20.825545") == 20.825545); // not 20 + 0.825545
 }
 
 TEST_CASE("load_table: columns are identified by the names in a header; ambiguous ones throw") {
@@ -567,7 +580,7 @@ TEST_CASE("load_table: columns are identified by the names in a header; ambiguou
         [&] { static_cast<void>(duet::load_table<double>(path)); });
   };
   const auto names_known_columns = [](const std::string& message) {
-    return message.ends_with(duet::detail::known_columns);
+    return message.ends_with(known_columns);
   };
   // Without names, w may be first or last.
   for (const char* unnamed :
@@ -640,9 +653,9 @@ TEST_CASE("load_table: errors name the line, the column and the value") {
         "2: parameter -1 does not increase, the row before has 0");
   CHECK(error_message("u,x,y,z,qw,qx,qy,qz\n0,1,,3,1,0,0,0\n") == "2: y is not a number: ''");
   CHECK(error_message("u,x,y,z,qw,qx,qy\n0,1,2,3,1,0,0\n") ==
-        std::string("1: the header names no column qz: ") + duet::detail::known_columns);
+        "1: the header names no column qz: " + known_columns);
   CHECK(error_message("u,x,y,qw,qx,qy,qz\n0,1,2,1,0,0,0\n") ==
-        std::string("1: the header names no column z: ") + duet::detail::known_columns);
+        "1: the header names no column z: " + known_columns);
   CHECK(error_message("t [h],x,y,z,qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==
         "2: the unit of timestamps is 'h' (expected s, ms, us or ns)");
   CHECK(error_message("t,x [m],y [m],z [mm],qw,qx,qy,qz\n0,0,0,0,1,0,0,0\n") ==

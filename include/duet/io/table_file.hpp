@@ -2,32 +2,36 @@
 #pragma once
 
 #include <duet/core/compiler/refused.hpp>
-#include <duet/core/errors.hpp>
-#include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
-#include <duet/core/text/number_text.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/pose_coordinates.hpp>
-#include <duet/io/tables/euler_columns.hpp>
-#include <duet/io/tables/row_reader.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/rotation.hpp>
 #include <duet/spline/lookup_table.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
+#include <array>
 #include <string>
 #include <type_traits>
-#include <vector>
 
 /// \file
 /// Files of rotations and poses: CSV, TUM, EuRoC, KITTI. Files that may have bad rows:
-/// io/recording.hpp.
+/// io/recording.hpp. The format of a file is detected from
+///
+/// - a header, a first line of names or a comment before the first row: columns by their names,
+///   others ignored. A comment counts if its names and their number fit the columns. Times are in
+///   the unit given there, in nanoseconds in files with the names of the EuRoC data set, else in
+///   seconds; integers that as seconds would be later than the year 5000 are read as milliseconds
+///   (from 1e11 on), microseconds (1e14) or nanoseconds (1e17). Times of rostopic (%time, or
+///   field.header.stamp if present) are nanoseconds if they are integers, seconds if they have a
+///   decimal point, as it prints them. Columns u and tau are not times and are read unchanged;
+/// - 8 numbers separated by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, times by the same rule;
+/// - 8 numbers separated by commas, the first 1e17 or more: EuRoC's `timestamp,x,y,z,qw,qx,qy,qz`.
+///   Smaller ones are rejected, as w may be first or last (likewise with semicolons instead of
+///   commas);
+/// - 12 numbers: KITTI's matrix [R t], row by row; the time is the row's index from 0 on, or in a
+///   file of times.
 
 namespace duet {
+DUET_ABI_BEGIN
 
 /// File format in which a table is written. Reading detects it from the file.
 enum class table_format {
@@ -38,10 +42,46 @@ enum class table_format {
   kitti        ///< matrix [R t] row by row, 12 numbers; the parameters in a separate file
 };
 
-namespace detail {
+/// Unit of angles in a file.
+enum class angle_unit {
+  radian, ///< radian, as everywhere else in duet
+  degree  ///< degree, 180 to π
+};
 
-template <class T>
-inline constexpr bool is_rotation_scalar = std::is_same_v<T, double>;
+/// Columns of a file that hold intrinsic Euler angles, with their sequence and unit.
+///
+/// Example, for an aircraft's log: `euler_columns(zyx, {"yaw", "pitch", "roll"},
+/// angle_unit::degree)`
+class euler_columns {
+public:
+  /// \param sequence  axes of the moving body, rotated about one after the other (intrinsic)
+  /// \param names     names of the columns with the angles about these axes, in the same order
+  /// \param unit      unit of the angles
+  /// \throws invalid_input for an invalid sequence, and for names that are empty or equal
+  euler_columns(euler_sequence sequence, std::array<std::string, 3> names, angle_unit unit);
+
+  /// Names of the columns, in the order of the sequence.
+  [[nodiscard]] const std::array<std::string, 3>& names() const { return names_; }
+  /// Unit of the angles.
+  [[nodiscard]] angle_unit unit() const { return unit_; }
+  /// Rotation by angles in this unit, in the order of the sequence: R_first R_second R_third.
+  [[nodiscard]] quaternion<double> rotation(const std::array<double, 3>& angles) const;
+
+private:
+  euler_sequence sequence_;
+  std::array<std::string, 3> names_;
+  angle_unit unit_;
+};
+
+/// Tolerance for R Rᵀ = 1 of a matrix in a file, entry by entry; loose, as files are printed with
+/// few digits.
+inline constexpr double rotation_matrix_tolerance = 1e-3;
+
+DUET_ABI_END
+} // namespace duet
+
+namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Scalar of the rotations or poses that T names: T is the scalar itself or a quaternion over it.
 template <class T>
@@ -56,97 +96,26 @@ struct table_numbers<quaternion<T>> : table_numbers<T> {};
 template <class T>
 using table_numbers_t = typename table_numbers<T>::type;
 
-/// Rotation or pose of a row in a file, depending on T.
+/// \throws as `save_table`
+void write_table(const std::string& path, const lookup_table<double>& table, table_format format,
+                 const std::string& times);
+void write_table(const std::string& path, const lookup_table<screw_dual<double>>& table,
+                 table_format format, const std::string& times);
+
+/// \throws as `load_table`
 template <class T>
-[[nodiscard]] quaternion<T> element_of(const table_row& row) {
-  if constexpr (is_rotation_scalar<T>) {
-    return row.rotation;
-  } else {
-    return pose(row.rotation, row.position);
-  }
-}
+[[nodiscard]] lookup_table<T> loaded_table(const std::string& path, const std::string& times,
+                                           const euler_columns* angles);
+extern template lookup_table<double> loaded_table(const std::string&, const std::string&,
+                                                  const euler_columns*);
+extern template lookup_table<screw_dual<double>>
+loaded_table(const std::string&, const std::string&, const euler_columns*);
 
-/// Name of the parameter column in CSV files.
-[[nodiscard]] inline std::string parameter_name(table_format format) {
-  return format == table_format::csv_seconds ? "t [s]" : "u";
-}
+DUET_ABI_END
+} // namespace duet::detail
 
-[[nodiscard]] inline bool is_csv(table_format format) {
-  return format == table_format::csv || format == table_format::csv_seconds;
-}
-
-[[nodiscard]] inline std::string blank_line(const std::vector<double>& numbers) {
-  std::string line = csv_line(numbers);
-  std::replace(line.begin(), line.end(), ',', ' ');
-  return line;
-}
-
-/// Nearest integer number of nanoseconds, for times below 2^63 ns.
-[[nodiscard]] inline std::int64_t nanoseconds_of(double seconds) {
-  require(std::abs(seconds) < 9.2e9, "duet: save_table: the time ", to_text(seconds),
-          " s is beyond 9.2e18 nanoseconds");
-  const double integral = std::floor(seconds);
-  return std::int64_t(integral) * 1'000'000'000 + std::llround((seconds - integral) * 1e9);
-}
-
-/// Header and rows of a file of poses.
-[[nodiscard]] inline std::string text_of(const lookup_table<screw_dual<double>>& table,
-                                         table_format format) {
-  std::string text;
-  if (format == table_format::tum) {
-    text = "# timestamp [s] tx [m] ty [m] tz [m] qx qy qz qw\n";
-  } else if (format == table_format::euroc) {
-    text = "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
-           "q_RS_z []\n";
-  } else if (is_csv(format)) {
-    text = parameter_name(format) + ",x,y,z,qw,qx,qy,qz\n";
-  }
-  std::int64_t last = 0;
-  for (std::size_t i = 0; i < table.parameters.size(); ++i) {
-    const double u = table.parameters[i];
-    const auto x = pose_coordinates(table.elements[i]);
-    if (is_csv(format)) {
-      text += csv_line({u, x[0], x[1], x[2], x[3], x[4], x[5], x[6]});
-    } else if (format == table_format::tum) {
-      text += blank_line({u, x[0], x[1], x[2], x[4], x[5], x[6], x[3]});
-    } else if (format == table_format::euroc) {
-      const std::int64_t now = nanoseconds_of(u);
-      require(i == 0 || now > last, "duet: save_table: sample ", i, " at ", to_text(u),
-              " s is less than a nanosecond after the sample before");
-      last = now;
-      text += std::to_string(now) + "," + csv_line({x[0], x[1], x[2], x[3], x[4], x[5], x[6]});
-    } else {
-      const Eigen::Matrix4d m = transform_matrix(table.elements[i]);
-      std::vector<double> numbers;
-      for (Eigen::Index k = 0; k < 12; ++k) {
-        numbers.push_back(m(k / 4, k % 4));
-      }
-      text += blank_line(numbers);
-    }
-  }
-  return text;
-}
-[[nodiscard]] inline std::string text_of(const lookup_table<double>& table, table_format format) {
-  require(is_csv(format),
-          "duet: save_table: TUM, EuRoC and KITTI files hold poses, not rotations alone");
-  std::string text = parameter_name(format) + ",qw,qx,qy,qz\n";
-  for (std::size_t i = 0; i < table.parameters.size(); ++i) {
-    const quaternion<double>& q = table.elements[i];
-    text += csv_line({table.parameters[i], q.w(), q.x(), q.y(), q.z()});
-  }
-  return text;
-}
-
-/// True if two paths lead to one file, existing or not; false for devices and pipes.
-[[nodiscard]] inline bool is_same_file(const std::string& first, const std::string& second) {
-  const auto real_path = [](const std::string& path) {
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(link_target(path)));
-  };
-  return !is_written_directly(first) && !is_written_directly(second) &&
-         real_path(first) == real_path(second);
-}
-
-} // namespace detail
+namespace duet {
+DUET_ABI_BEGIN
 
 /// Writes a lookup table of rotations or poses with all digits and independently of the locale.
 /// Writes atomically: the complete file or nothing. `times` is written first, and remains if `path`
@@ -166,58 +135,14 @@ template <class T>
 template <class T>
 void save_table(const std::string& path, const lookup_table<T>& table,
                 table_format format = table_format::csv, const std::string& times = {}) {
-  detail::require(table.parameters.size() == table.elements.size(),
-                  "duet: save_table: ", table.parameters.size(), " parameters for ",
-                  table.elements.size(), " elements");
-  detail::require(times.empty() || format == table_format::kitti,
-                  "duet: save_table: only KITTI files have times in a separate file");
-  const std::string text = detail::text_of(table, format);
-  if (!times.empty()) {
-    if (detail::is_same_file(times, path)) {
-      detail::raise(file_error(path, "is the same file as " + times));
-    }
-    std::string column;
-    for (const double u : table.parameters) {
-      column += csv_line({u});
-    }
-    write_file(times, column);
-  }
-  write_file(path, text);
+  detail::write_table(path, table, format, times);
 }
-
-namespace detail {
-
-template <class T>
-[[nodiscard]] lookup_table<T> loaded_table(const std::string& path, const std::string& times,
-                                           const euler_columns* angles) {
-  lookup_table<T> table;
-  for_each_table_row(path, times, !is_rotation_scalar<T>, angles, [&](const table_row& row) {
-    if (!row.issue.empty()) {
-      raise(file_error(path, row.line, row.issue));
-    }
-    const double u = row.time.seconds();
-    if (!table.parameters.empty() && !(u > table.parameters.back())) {
-      raise(file_error(path, row.line,
-                       "parameter " + to_text(u) + " does not increase, the row before has " +
-                           to_text(table.parameters.back())));
-    }
-    table.parameters.push_back(u);
-    table.elements.push_back(detail::element_of<T>(row));
-  });
-  if (table.parameters.empty()) {
-    raise(file_error(path, "holds no rows"));
-  }
-  return table;
-}
-
-} // namespace detail
 
 /// Reads a lookup table of rotations (T = double) or poses (T = screw_dual<double>) from any format
 /// that `save_table` writes; `quaternion<double>` and `dual_quaternion<double>` are accepted for T,
 /// too. Also reads files of `rostopic echo -p`, and semicolons instead of commas. Rotations are
 /// read from files of poses, too, ignoring the positions. The format and the order of columns are
-/// detected from a header (a first line or a comment) or the number of columns, see
-/// io/tables/row_format.hpp.
+/// detected as the beginning of io/table_file.hpp says.
 ///
 /// Parameters are the doubles nearest to the seconds of the file, whatever its unit of time, with
 /// positions in metres; columns named u or tau are taken as they are. (Doubles of seconds since
@@ -252,4 +177,5 @@ template <class T = void, class... More>
 DUET_REFUSED("load_table<double> reads rotations, load_table<screw_dual<double>> poses")
 lookup_table<double> load_table(const std::string&, const More&...);
 
+DUET_ABI_END
 } // namespace duet

@@ -1,0 +1,718 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "table_rows.hpp"
+
+#include <duet/core/text/file.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/core/text/text_rows.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace duet::detail {
+namespace {
+
+// Columns by their names in a header.
+
+/// Contents of a column; `other` is ignored.
+enum class table_column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
+
+constexpr const char* known_columns =
+    "known columns are u (tau, t, time, timestamp), x y z (tx, px, p_x, p_RS_R_x ...) and qw qx qy "
+    "qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need `euler_columns`";
+
+/// Name in a header, with its meaning and unit.
+struct column_name {
+  table_column what = table_column::other;
+  bool is_a_time = false; ///< `u` in seconds, or in a unit of time
+  bool is_of_ros = false; ///< time as `rostopic echo -p` writes it
+  std::string name;
+  std::string unit; ///< as written, empty if absent
+
+  explicit column_name(std::string_view cell) {
+    if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') { // as spreadsheets write
+      cell = cell.substr(1, cell.size() - 2);
+    }
+    const std::size_t bracket = std::min(cell.find_first_of("[("), cell.size());
+    name = lower(trimmed(cell.substr(0, bracket)));
+    if (bracket < cell.size()) {
+      unit = lower(cell.substr(bracket + 1, cell.find_first_of("])", bracket) - bracket - 1));
+    }
+    what = meaning();
+  }
+
+private:
+  [[nodiscard]] static std::string lower(std::string_view text) {
+    std::string result(trimmed(text));
+    for (char& c : result) {
+      c = c == '.' ? '_' : char(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return result;
+  }
+
+  /// Column that the name denotes; also sets `is_a_time`, `is_of_ros` and `unit`.
+  [[nodiscard]] table_column meaning() {
+    if (name == "u" || name == "tau") {
+      return table_column::u;
+    }
+    is_of_ros = name == "%time" || name == "field_header_stamp";
+    if (is_time(name) || is_of_ros) {
+      is_a_time = true;
+      return table_column::u;
+    }
+    const std::size_t cut = name.rfind('_');
+    const std::string last = cut == std::string::npos ? "" : name.substr(cut + 1);
+    if ((last == "s" || last == "ms" || last == "us" || last == "ns") &&
+        is_time(name.substr(0, cut)) && unit.empty()) {
+      unit = last; // timestamp_ns
+      is_a_time = true;
+      return table_column::u;
+    }
+    const std::string_view axes = "wxyz";
+    const std::size_t axis = name.empty() ? axes.npos : axes.find(name.back());
+    if (axis == axes.npos) {
+      return table_column::other;
+    }
+    const bool has_cut = cut != std::string::npos && cut + 2 == name.size();
+    const std::string of = name.substr(0, has_cut ? cut : name.size() - 1);
+    const auto ends_with = [&](std::string_view end) { return has_cut && of.ends_with(end); };
+    if (of == "q" || (has_cut && of.starts_with("q_")) || ends_with("quat") ||
+        ends_with("quaternion") || ends_with("orientation") || ends_with("rotation")) {
+      return table_column(std::size_t(table_column::qw) + axis);
+    }
+    if (axis > 0 && (of.empty() || of == "t" || of == "p" || (has_cut && of.starts_with("p_")) ||
+                     ends_with("pos") || ends_with("position") || ends_with("translation"))) {
+      return table_column(std::size_t(table_column::x) + axis - 1);
+    }
+    return table_column::other;
+  }
+
+  [[nodiscard]] static bool is_time(const std::string& text) {
+    return text == "t" || text == "time" || text == "timestamp" || text == "stamp";
+  }
+};
+
+/// Columns of the eight numbers of a row: u, x y z, qw qx qy qz; or of seven, with three Euler
+/// angles instead of the last four.
+struct table_layout {
+  static constexpr std::size_t absent = std::size_t(-1);
+
+  std::array<std::size_t, 8> at;
+  std::array<std::string, 8> names; ///< names as in the header
+  std::size_t columns = 0;
+  std::array<std::string, 8> units;
+  bool has_time = false;   ///< true if the parameter is a time
+  bool is_euroc = false;   ///< true if named as in the files of the EuRoC data set
+  bool is_of_ros = false;  ///< true if the time is as `rostopic echo -p` writes it
+  bool has_angles = false; ///< true for Euler angles instead of a quaternion
+
+  table_layout() { at.fill(absent); }
+  /// Layout with columns in this order.
+  table_layout(const std::vector<table_column>& order, const std::vector<std::string>& their_names)
+      : table_layout() {
+    columns = order.size();
+    for (std::size_t i = 0; i < columns; ++i) {
+      at[std::size_t(order[i])] = i;
+      names[std::size_t(order[i])] = their_names[i];
+    }
+  }
+
+  /// Reads a header.
+  ///
+  /// \param has_u         true if the rows must have a parameter
+  /// \param has_position  true if the rows must have positions
+  /// \param angles        columns of Euler angles; null: rotations are quaternions
+  /// \return problem with the header, empty if valid
+  [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_u,
+                                 bool has_position, const euler_columns* angles = nullptr) {
+    columns = header.size();
+    has_angles = angles != nullptr;
+    for (std::size_t i = 0; i < columns; ++i) {
+      const column_name cell(header[i]);
+      const std::size_t k = has_angles ? angle_column(*angles, cell) : std::size_t(cell.what);
+      if (k == std::size_t(table_column::other)) {
+        continue;
+      }
+      // ROS writes two times: the second, in the header of the message, is that of the measurement.
+      const bool is_better_time = names[k] == "%time" && cell.name == "field_header_stamp";
+      if (at[k] != absent && !is_better_time) {
+        return "the header has both '" + names[k] + "' and '" + std::string(header[i]) + "'";
+      }
+      at[k] = i;
+      names[k] = header[i];
+      units[k] = cell.unit;
+      has_time = has_time || cell.is_a_time;
+      is_euroc = is_euroc || cell.name.starts_with("p_rs_");
+      is_of_ros = is_of_ros || cell.is_of_ros;
+    }
+    return missing(has_u, has_position, angles);
+  }
+
+private:
+  /// Index of a column of angles, which take the positions of the first three numbers of a
+  /// quaternion.
+  [[nodiscard]] static std::size_t angle_column(const euler_columns& angles,
+                                                const column_name& cell) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (cell.name == column_name(angles.names()[k]).name) {
+        return std::size_t(table_column::qw) + k;
+      }
+    }
+    return std::size_t(cell.what < table_column::qw ? cell.what : table_column::other);
+  }
+
+  [[nodiscard]] static bool is_unit_of(const euler_columns& angles, const std::string& unit) {
+    return unit.empty() ||
+           (angles.unit() == angle_unit::degree
+                ? unit == "deg" || unit == "degree" || unit == "degrees" || unit == "\u00b0"
+                : unit == "rad" || unit == "radian" || unit == "radians");
+  }
+
+  /// Problem with the header: missing columns, or units of angles other than the given one.
+  [[nodiscard]] std::string missing(bool has_u, bool has_position,
+                                    const euler_columns* angles) const {
+    constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
+    for (std::size_t k = 0; k < (has_angles ? 7 : 8); ++k) {
+      if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_position)) {
+        const std::string name = has_angles && k >= 4 ? angles->names()[k - 4] : short_names[k];
+        return "the header names no column " + name + ": " + known_columns;
+      }
+      if (has_angles && k >= 4 && !is_unit_of(*angles, units[k])) {
+        return "the header has the column " + names[k] + ", but euler_columns expects " +
+               (angles->unit() == angle_unit::degree ? "degrees" : "radians");
+      }
+    }
+    return {};
+  }
+};
+
+/// Comment before the first row that seems to name the columns.
+class commented_header {
+public:
+  void inspect(std::size_t line, std::string_view comment, const euler_columns* angles) {
+    std::vector<std::string_view> cells;
+    split_cells(comment, cells);
+    if (cells.size() > 1 && cells[0].ends_with(':')) { // `columns: t x y z ...`
+      cells.erase(cells.begin());
+    }
+    std::array<bool, 9> has{};
+    for (const std::string_view cell : cells) {
+      has[std::size_t(column_name(cell).what)] = true;
+    }
+    const auto has_angle = [&](const std::string& name) {
+      return std::any_of(cells.begin(), cells.end(), [&](std::string_view cell) {
+        return column_name(cell).name == column_name(name).name;
+      });
+    };
+    const bool has_rotation =
+        angles == nullptr ? has[4] && has[5] && has[6] && has[7]
+                          : std::all_of(angles->names().begin(), angles->names().end(), has_angle);
+    if (has_rotation ||
+        (!is_certain_ && cells.size() > 1 && column_name(cells[0]).what == table_column::u)) {
+      line_ = line;
+      cells_.assign(cells.begin(), cells.end());
+      is_certain_ = has_rotation;
+    }
+  }
+
+  /// Layout that the comment gives to rows with this number of columns. Empty if the comment is not
+  /// a header: its names or their number do not fit the rows, and no name contradicts the usual
+  /// layout of such rows.
+  ///
+  /// \throws file_error if it is ambiguous
+  [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
+                                                   bool has_u, bool has_position,
+                                                   const euler_columns* angles,
+                                                   const std::optional<table_layout>& usual) const {
+    table_layout result;
+    std::string problem;
+    if (cells_.size() == columns) {
+      const std::vector<std::string_view> header(cells_.begin(), cells_.end());
+      problem = result.read(header, has_u, has_position, angles);
+      if (problem.empty()) {
+        return result;
+      }
+    } else if (is_certain_) {
+      problem = "the comment names " + std::to_string(cells_.size()) +
+                " columns, but the rows have " + std::to_string(columns);
+    }
+    if (problem.empty() || (usual && angles == nullptr && agrees_with(*usual))) {
+      return std::nullopt;
+    }
+    raise(file_error(path, line_, problem));
+  }
+
+  /// Remark on a comment that could be a header of this number of columns, but is not; empty
+  /// otherwise.
+  [[nodiscard]] std::string remark(std::size_t columns) const {
+    return is_certain_ || (columns > 0 && cells_.size() == columns)
+               ? "the names in the comment of line " + std::to_string(line_) + " do not fit"
+               : "";
+  }
+
+private:
+  /// True if every known name is that of the column at its index. An unknown name may be of a
+  /// scalar part, which must be in the usual column, or of four numbers in ambiguous order.
+  [[nodiscard]] bool agrees_with(const table_layout& usual) const {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const column_name cell(cells_[i]);
+      const std::string& name = cell.name;
+      const bool is_w = name == "w" || name.ends_with("_w") || (name.size() == 2 && name[1] == 'w');
+      const bool has_number =
+          name.size() == 2 && name[0] == 'q' && name[1] >= '0' && name[1] <= '9';
+      const table_column what =
+          cell.what == table_column::other && is_w ? table_column::qw : cell.what;
+      if (has_number || (what != table_column::other && usual.at[std::size_t(what)] != i)) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  std::size_t line_ = 0;
+  std::vector<std::string> cells_;
+  bool is_certain_ = false;
+};
+
+// Formats, as io/table_file.hpp describes them.
+
+/// Format of the rows of a file.
+struct row_format {
+  table_layout layout;
+  bool is_matrix = false;   ///< true for [R t] row by row, without the layout
+  std::size_t digits = 0;   ///< times are in units of 10^−digits s
+  std::string guessed_unit; ///< unit guessed from the size of times, which must then be integers
+  std::string remark;       ///< assumptions about the format, empty if there were none
+};
+
+/// Unit of time that no header names, guessed from the size of the first time.
+struct guessed_time_unit {
+  std::size_t digits = 0; ///< unit is 10^−digits s
+  std::string name;       ///< name of the unit, empty for seconds
+
+  explicit guessed_time_unit(std::size_t digits_of_second)
+      : digits(digits_of_second), name(digits == 9   ? "nanoseconds"
+                                       : digits == 6 ? "microseconds"
+                                       : digits == 3 ? "milliseconds"
+                                                     : "") {}
+  /// Guesses the unit of times from the years 1973 to 5138. A number with a fraction is in seconds,
+  /// except one from 1e17 to 1e20, so that files of times in seconds keep their unit when they are
+  /// written and read again.
+  explicit guessed_time_unit(std::string_view cell)
+      : guessed_time_unit([&]() -> std::size_t {
+          const double size = std::abs(parse_number(cell).value_or(0));
+          const bool is_integer = size == std::floor(size);
+          return size >= 1e20                 ? 0
+                 : size >= 1e17               ? 9
+                 : !is_integer || size < 1e11 ? 0
+                 : size >= 1e14               ? 6
+                                              : 3;
+        }()) {}
+};
+
+/// Layout of a row of numbers without a header: TUM's or EuRoC's, empty for others.
+[[nodiscard]] std::optional<table_layout> usual_layout(const std::vector<std::string_view>& cells,
+                                                       bool has_commas) {
+  using enum table_column;
+  if (cells.size() != 8 || (has_commas && guessed_time_unit(cells[0]).digits != 9)) {
+    return std::nullopt;
+  }
+  return has_commas ? table_layout({u, x, y, z, qw, qx, qy, qz},
+                                   {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"})
+                    : table_layout({u, x, y, z, qx, qy, qz, qw},
+                                   {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
+}
+
+/// Detects the format from the first row, without a header.
+///
+/// \param cells  cells of the first row
+/// \throws file_error if it could be more than one format, or is not a known one
+[[nodiscard]] row_format format_of_row(const std::string& path, std::size_t line,
+                                       const std::vector<std::string_view>& cells,
+                                       bool has_commas) {
+  row_format result;
+  if (cells.size() == 12) {
+    result.is_matrix = true;
+    result.layout.columns = 12;
+    result.remark = "12 columns: read as in KITTI files, the matrix [R t] row by row";
+    return result;
+  }
+  const std::optional<table_layout> layout = usual_layout(cells, has_commas);
+  if (!layout) {
+    raise(
+        file_error(path, line,
+                   std::to_string(cells.size()) +
+                       " columns without a header before the first row (expected a header such as "
+                       "`u,x,y,z,qw,qx,qy,qz`; TUM files, timestamp tx ty tz qx qy qz qw separated "
+                       "by blanks, and KITTI files, 12 numbers, need none): " +
+                       known_columns));
+  }
+  result.layout = *layout;
+  const guessed_time_unit unit(cells[0]);
+  result.digits = unit.digits;
+  result.guessed_unit = unit.name;
+  if (!unit.name.empty()) {
+    result.remark = "timestamps in " + unit.name + ": read as " +
+                    (has_commas ? "in EuRoC files, timestamp, x, y, z, qw, qx, qy, qz"
+                                : "timestamp tx ty tz qx qy qz qw");
+  }
+  return result;
+}
+
+/// Number of digits of a unit of time in a header: 9 for ns, 0 for s.
+///
+/// \throws file_error for an unknown unit
+[[nodiscard]] std::size_t digits_of_time_unit(const std::string& path, std::size_t line,
+                                              const std::string& unit) {
+  const std::size_t digits = unit == "ns" ? 9 : unit == "us" ? 6 : unit == "ms" ? 3 : 0;
+  if (digits == 0 && unit != "s" && unit != "sec" && unit != "seconds") {
+    raise(file_error(path, line,
+                     "the unit of timestamps is '" + unit + "' (expected s, ms, us or ns)"));
+  }
+  return digits;
+}
+
+/// Detects the format from a header and the first row.
+///
+/// \param cells         cells of the first row
+/// \param has_position  true if positions are needed
+/// \throws file_error for unknown units
+[[nodiscard]] row_format format_of_header(const std::string& path, std::size_t line,
+                                          const table_layout& header,
+                                          const std::vector<std::string_view>& cells,
+                                          bool has_position) {
+  row_format result;
+  result.layout = header;
+  const std::string& unit = header.units[0];
+  if (header.has_time && unit.empty()) {
+    const std::string_view first = header.at[0] < cells.size() ? cells[header.at[0]] : "";
+    const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
+    const guessed_time_unit guess =
+        header.is_euroc || is_of_ros ? guessed_time_unit(9) : guessed_time_unit(first);
+    result.digits = guess.digits;
+    result.guessed_unit = guess.name;
+    if (!guess.name.empty()) {
+      result.remark = header.is_euroc ? "a EuRoC file: timestamps in nanoseconds"
+                      : is_of_ros     ? header.names[0] + " as rostopic writes it, in nanoseconds"
+                                      : "timestamps of this size are taken for " + guess.name;
+    }
+  } else if (header.has_time) {
+    result.digits = digits_of_time_unit(path, line, unit);
+    if (result.digits > 0) {
+      result.remark =
+          std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
+    }
+  }
+  for (std::size_t k = 1; has_position && k < 4; ++k) {
+    if (!header.units[k].empty() && header.units[k] != "m") {
+      raise(file_error(path, line,
+                       "the unit of positions is '" + header.units[k] + "' (expected m)"));
+    }
+  }
+  return result;
+}
+
+// Numbers of rows.
+
+/// Normalised quaternion. A quaternion that is a unit to round-off is returned unchanged, because
+/// files preserve all digits.
+[[nodiscard]] quaternion<double> unit_of_file(const quaternion<double>& q) {
+  return std::abs(norm(q) - 1) <= 4e-16 ? q : normalized(q);
+}
+
+/// Reads the rotation nearest to a matrix, by Newton's method for the polar factor, R ← ½(R + R⁻ᵀ):
+/// from `rotation_matrix_tolerance` three steps reach round-off.
+///
+/// \return problem with the matrix, empty if valid
+[[nodiscard]] std::string read_rotation(matrix3<double> r, quaternion<double>& q) {
+  const double defect = (r * r.transpose() - matrix3<double>::Identity()).cwiseAbs().maxCoeff();
+  if (!(defect <= rotation_matrix_tolerance)) {
+    return "the matrix is not a rotation: |R R^T - 1| = " + to_text(defect);
+  }
+  if (const double determinant = r.determinant(); determinant < 0) {
+    return "the matrix is a reflection: det R = " + to_text(determinant);
+  }
+  for (int step = 0; step < 3; ++step) {
+    r = (r + r.inverse().transpose().eval()) / 2;
+  }
+  q = normalized(from_rotation_matrix(r));
+  return {};
+}
+
+/// Value of a number; 0 if the text is empty or the number nearer to 0 than any double.
+[[nodiscard]] double number_of(std::string_view text) {
+  double number = 0;
+  static_cast<void>(read_number(text, number));
+  return number;
+}
+
+/// Reads a file line by line.
+class table_row_reader {
+public:
+  /// \param times_path    file of times, empty if times are in the rows
+  /// \param has_position  true if rows must have positions
+  /// \param angles        columns of Euler angles; null: rotations are quaternions
+  /// \throws file_error for an invalid file of times
+  table_row_reader(std::string path, std::string times_path, bool has_position,
+                   const euler_columns* angles)
+      : path_(std::move(path)), times_path_(std::move(times_path)), has_position_(has_position),
+        angles_(angles) {
+    if (!times_path_.empty()) {
+      read_times();
+    }
+  }
+
+  /// Row in a line, empty if the line holds none.
+  ///
+  /// \throws file_error with the line of an invalid row, or for an ambiguous header
+  [[nodiscard]] std::optional<table_row> read(std::size_t line, std::string_view text) {
+    const split_line parts(text);
+    const bool is_begin = !format_ && !header_;
+    if (parts.text.empty()) {
+      if (is_begin) {
+        comment_.inspect(line, parts.comment, angles_);
+      }
+      return std::nullopt;
+    }
+    split_cells(parts.text, cells_);
+    if (is_begin && are_words(cells_)) {
+      header_.emplace();
+      if (const std::string problem = header_->read(cells_, true, has_position_, angles_);
+          !problem.empty()) {
+        raise(file_error(path_, line, problem));
+      }
+      return std::nullopt;
+    }
+    if (!format_) {
+      choose_format(line, parts.text.find_first_of(",;") != parts.text.npos);
+    }
+    if (cells_.size() != format_->layout.columns) {
+      raise(file_error(path_, line,
+                       std::to_string(format_->layout.columns) + " columns expected, got " +
+                           std::to_string(cells_.size())));
+    }
+    table_row row;
+    row.line = line;
+    if (format_->is_matrix) {
+      read_matrix(row);
+    } else {
+      read_columns(row);
+    }
+    ++row_count_;
+    return row;
+  }
+
+  /// Checks the number of times, after the last line.
+  ///
+  /// \throws file_error for more times than rows
+  void finish() const {
+    if (row_count_ > 0 && row_count_ < times_.size()) {
+      raise(file_error(times_path_, times_[row_count_].line,
+                       "more times than the " + std::to_string(row_count_) + " rows of " + path_));
+    }
+  }
+
+  /// Assumptions about the format, empty if there were none.
+  [[nodiscard]] std::string remark() const {
+    return format_ ? format_->remark + times_remark_ : "";
+  }
+
+private:
+  /// Time in the file of times.
+  struct time_row {
+    std::size_t line;
+    file_time time;
+  };
+
+  /// Reads one time a line, in the unit of a header if there is one.
+  void read_times() {
+    std::optional<guessed_time_unit> unit;
+    for_each_line(times_path_, [&](std::size_t line, std::string_view text) {
+      split_cells(split_line(text).text, cells_);
+      if (cells_.empty()) {
+        return;
+      }
+      if (!unit && are_words(cells_)) {
+        const std::string name = column_name(cells_[0]).unit;
+        unit.emplace(name.empty() ? 0 : digits_of_time_unit(times_path_, line, name));
+        return;
+      }
+      double number = 0;
+      if (const std::string issue = read_cell(times_path_, line, "column 1", cells_[0], number);
+          !issue.empty()) {
+        raise(file_error(times_path_, line, issue));
+      }
+      if (cells_.size() != 1) {
+        raise(file_error(times_path_, line,
+                         "1 numbers expected, got " + std::to_string(cells_.size())));
+      }
+      if (!unit) {
+        unit.emplace(cells_[0]);
+        times_remark_ = unit->name.empty() ? "" : "; times read as " + unit->name;
+      }
+      require_integer(times_path_, line, "time", number, times_remark_.empty() ? "" : unit->name);
+      times_.push_back({line, file_time(cells_[0], unit->digits)});
+    });
+    if (times_.empty()) {
+      raise(file_error(times_path_, "holds no rows"));
+    }
+  }
+
+  /// \throws file_error for a fraction of a unit that was guessed
+  static void require_integer(const std::string& path, std::size_t line, const std::string& name,
+                              double x, const std::string& unit) {
+    if (!unit.empty() && x != std::floor(x)) {
+      raise(file_error(path, line,
+                       name + " " + to_text(x) + " is not an integer number of " + unit +
+                           " (other units need a header, as in `timestamp [s]`)"));
+    }
+  }
+
+  void choose_format(std::size_t line, bool has_commas) {
+    if (!header_) {
+      header_ = comment_.layout(path_, cells_.size(), true, has_position_, angles_,
+                                usual_layout(cells_, has_commas));
+    }
+    if (!header_ && angles_ != nullptr) {
+      raise(file_error(path_, line,
+                       "there is no header before the first row (expected names of the columns of "
+                       "angles)"));
+    }
+    format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_position_)
+                      : format_of_row(path_, line, cells_, has_commas);
+    if (const std::string remark = comment_.remark(cells_.size()); !header_ && !remark.empty()) {
+      format_->remark += (format_->remark.empty() ? "" : "; ") + remark;
+    }
+    if (!times_path_.empty() && !format_->is_matrix) {
+      raise(file_error(path_, line, "the rows have times, and so does " + times_path_));
+    }
+  }
+
+  void read_columns(table_row& row) const {
+    const table_layout& layout = format_->layout;
+    std::array<double, 8> x{};
+    for (std::size_t k = 0; k < 8; ++k) {
+      if (layout.at[k] != table_layout::absent) {
+        note(row, read_cell(path_, row.line, layout.names[k], cells_[layout.at[k]], x[k]));
+      }
+    }
+    if (!row.issue.empty()) {
+      return;
+    }
+    const quaternion<double> q = layout.has_angles ? angles_->rotation({x[4], x[5], x[6]})
+                                                   : quaternion<double>(x[4], x[5], x[6], x[7]);
+    if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
+      row.issue = "the quaternion of " + layout.names[4] + ", " + layout.names[5] + ", " +
+                  layout.names[6] + ", " + layout.names[7] + " has norm " + to_text(length) +
+                  ", not 1";
+      return;
+    }
+    require_integer(path_, row.line, layout.names[0], x[0], format_->guessed_unit);
+    row.time = file_time(cells_[layout.at[0]], format_->digits);
+    row.position = {x[1], x[2], x[3]};
+    row.rotation = unit_of_file(q);
+  }
+
+  void read_matrix(table_row& row) const {
+    Eigen::Matrix<double, 3, 4> m;
+    for (std::size_t i = 0; i < 12; ++i) {
+      note(row, read_cell(path_, row.line, "column " + std::to_string(i + 1), cells_[i],
+                          m(Eigen::Index(i / 4), Eigen::Index(i % 4))));
+    }
+    if (row.issue.empty()) {
+      row.issue = read_rotation(m.leftCols<3>(), row.rotation);
+    }
+    row.position = m.col(3);
+    if (times_path_.empty()) {
+      row.time = file_time(double(row_count_));
+    } else if (row_count_ < times_.size()) {
+      row.time = times_[row_count_].time;
+    } else {
+      raise(file_error(path_, row.line,
+                       "more rows than the " + std::to_string(times_.size()) + " times of " +
+                           times_path_));
+    }
+  }
+
+  /// Records a problem with the row; the first one is kept.
+  static void note(table_row& row, std::string issue) {
+    if (row.issue.empty()) {
+      row.issue = std::move(issue);
+    }
+  }
+
+  std::string path_, times_path_;
+  bool has_position_;
+  const euler_columns* angles_;
+  std::vector<time_row> times_;
+  std::string times_remark_;
+  std::optional<table_layout> header_;
+  commented_header comment_;
+  std::optional<row_format> format_;
+  std::size_t row_count_ = 0;
+  std::vector<std::string_view> cells_;
+};
+
+} // namespace
+
+DUET_ABI_BEGIN
+
+file_time::file_time(std::string_view cell, std::size_t digits) {
+  cell = trimmed(cell);
+  const double sign = cell.starts_with('-') ? -1 : 1;
+  if (cell.starts_with('-') || cell.starts_with('+')) {
+    cell.remove_prefix(1);
+  }
+  const std::size_t e = std::min(cell.find_first_of("eE"), cell.size());
+  // With exponents beyond this bound a finite number is 0.
+  const double max_shift = double(cell.size() + digits) + 400;
+  const double exponent = number_of(cell.substr(std::min(e + 1, cell.size())));
+  const auto shift = int(std::clamp(exponent, -max_shift, max_shift)) - int(digits);
+  cell = cell.substr(0, e);
+  const std::size_t point = std::min(cell.find('.'), cell.size());
+  std::string before(cell.substr(0, point));
+  std::string after(cell.substr(std::min(point + 1, cell.size())));
+  if (const auto count = std::size_t(std::abs(shift)); shift < 0) {
+    before.insert(0, count, '0');
+    after.insert(0, before, before.size() - count, count);
+    before.resize(before.size() - count);
+  } else {
+    after.resize(std::max(after.size(), count), '0');
+    before.append(after, 0, count);
+    after.erase(0, count);
+  }
+  before = "0" + before;
+  after = "." + after + "0";
+  seconds_ = sign * number_of(before + after);
+  integral_ = sign * number_of(before);
+  fraction_ = sign * number_of("0" + after);
+}
+
+std::string for_each_table_row(const std::string& path, const std::string& times_path,
+                               bool has_position, const euler_columns* angles,
+                               const std::function<void(const table_row&)>& row) {
+  table_row_reader reader(path, times_path, has_position, angles);
+  for_each_line(path, [&](std::size_t line, std::string_view text) {
+    if (const std::optional<table_row> r = reader.read(line, text)) {
+      row(*r);
+    }
+  });
+  reader.finish();
+  return reader.remark();
+}
+
+DUET_ABI_END
+} // namespace duet::detail
