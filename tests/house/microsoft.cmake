@@ -16,8 +16,6 @@ endif()
 
 # Beside the libraries of headers alone there are those of another C library in /usr/include.
 file(MAKE_DIRECTORY ${folder})
-file(CREATE_LINK /usr/include/expat.h ${folder}/expat.h SYMBOLIC)
-file(CREATE_LINK /usr/include/expat_external.h ${folder}/expat_external.h SYMBOLIC)
 file(CREATE_LINK /usr/include/boost ${folder}/boost SYMBOLIC)
 file(CREATE_LINK /usr/include/eigen3/Eigen ${folder}/Eigen SYMBOLIC)
 file(CREATE_LINK /usr/include/eigen3/unsupported ${folder}/unsupported SYMBOLIC)

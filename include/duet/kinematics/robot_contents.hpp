@@ -84,27 +84,4 @@ struct urdf_contents {
   std::vector<urdf_unknown_element> unknown;
 };
 
-/// Tag of the library that reads XML, defined in `urdf_library.hpp`.
-struct xml_library;
-
-/// A template, so that only programs that read a file compile the parser.
-///
-/// \param max_joints  maximum number of moving joints
-/// \throws file_error as `read_urdf`
-template <class Xml>
-[[nodiscard]] urdf_contents read_urdf_contents(const std::string& path, const std::string& base,
-                                               const std::string& tip, std::size_t max_joints);
-
-/// Disabled collision pairs of an SRDF file.
-///
-/// \throws file_error as `read_disabled_collisions`
-template <class Xml>
-[[nodiscard]] std::vector<link_pair> read_disabled_collisions_in_srdf(const std::string& path);
-
-/// Names in a robot description.
-///
-/// \throws file_error as `read_urdf_summary`
-template <class Xml>
-[[nodiscard]] urdf_summary read_names_in_urdf(const std::string& path);
-
 } // namespace duet::detail

@@ -1,16 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
+
+#include "xml.hpp"
 
 #include <duet/core/errors.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/text_rows.hpp>
-#include <duet/io/xml_element.hpp>
 
-#if !__has_include(<expat.h>)
-// Compilers would continue after an #error, with undeclared names.
-#include "duet: read_urdf and read_mesh need expat (libexpat1-dev or expat-devel or expat): compile with its headers, link with -lexpat"
-#endif
+#if __has_include(<expat.h>) && !defined(DUET_WITHOUT_EXPAT)
+#define DUET_IO_HAS_EXPAT
 #include <expat.h>
+#endif
 
 #include <cstddef>
 #include <new>
@@ -18,21 +17,17 @@
 #include <utility>
 #include <vector>
 
-/// \file
-/// XML parser based on expat: everything that the standard calls an error is one.
-
 namespace duet::detail {
+#ifdef DUET_IO_HAS_EXPAT
 
-/// Treatment of text between elements.
-enum class xml_text { skipped, kept };
+namespace {
 
 /// Parser of one file.
 class xml_parser {
 public:
   static constexpr std::size_t max_depth = 100;
 
-  explicit xml_parser(const std::string& path, std::size_t max_megabytes = 16,
-                      xml_text text = xml_text::skipped)
+  xml_parser(const std::string& path, std::size_t max_megabytes, xml_text text)
       : path_(path), max_megabytes_(max_megabytes),
         parser_(XML_ParserCreate(nullptr)) { // the file defines its encoding
     if (parser_ == nullptr) {
@@ -49,10 +44,7 @@ public:
   xml_parser& operator=(const xml_parser&) = delete;
   ~xml_parser() { XML_ParserFree(parser_); }
 
-  /// The root element with all its contents.
-  ///
-  /// \throws file_error for XML that is not well formed, has a document type (and with it
-  /// entities), is nested too deep or too large
+  /// \throws as `read_xml`
   [[nodiscard]] xml_element root() {
     const std::string text = whole_content(path_, max_megabytes_);
     const bool is_good =
@@ -129,4 +121,23 @@ private:
   bool is_out_of_memory_ = false;
 };
 
+} // namespace
+
+DUET_ABI_BEGIN
+
+xml_element read_xml(const std::string& path, std::size_t max_megabytes, xml_text text) {
+  return xml_parser(path, max_megabytes, text).root();
+}
+
+DUET_ABI_END
+
+#else
+DUET_ABI_BEGIN
+
+xml_element read_xml(const std::string& path, std::size_t, xml_text) {
+  raise(file_error(path, "is XML, which cannot be read: the library was built without expat"));
+}
+
+DUET_ABI_END
+#endif
 } // namespace duet::detail

@@ -1,22 +1,21 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
 #include <duet/core/text/file.hpp>
-#include <duet/io/xml_element.hpp>
-#include <duet/kinematics/robot_contents.hpp>
+#include <duet/io/srdf.hpp>
+
+#include "xml.hpp"
 
 #include <string>
 #include <vector>
 
-/// \file
-/// Pairs of links in SRDF. For those who extend duet.
+namespace duet {
+DUET_ABI_BEGIN
 
-namespace duet::detail {
-
-[[nodiscard]] inline std::vector<link_pair> disabled_collisions(const std::string& path,
-                                                                const xml_element& robot) {
+std::vector<link_pair> read_disabled_collisions(const std::string& path) {
+  using detail::xml_element;
+  const xml_element robot = detail::read_xml(path);
   const auto fail = [&](const xml_element& in, const std::string& what) {
-    raise(file_error(path, in.line, what));
+    detail::raise(file_error(path, in.line, what));
   };
   if (robot.name != "robot") {
     fail(robot, "the root is <" + robot.name + "> (expected <robot>)");
@@ -52,4 +51,5 @@ namespace duet::detail {
   return result;
 }
 
-} // namespace duet::detail
+DUET_ABI_END
+} // namespace duet

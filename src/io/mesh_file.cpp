@@ -1,11 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
 #include <duet/core/compiler/bit_cast.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/text_rows.hpp>
+#include <duet/io/mesh_file.hpp>
+
+#include "collada.hpp"
 
 #include <algorithm>
 #include <array>
@@ -17,10 +19,8 @@
 #include <utility>
 #include <vector>
 
-/// \file
-/// Surfaces out of STL and OBJ.
-
 namespace duet::detail {
+namespace {
 
 /// Reads one file, strictly.
 class triangle_file {
@@ -264,4 +264,28 @@ private:
   std::vector<std::string_view> words_;
 };
 
+} // namespace
 } // namespace duet::detail
+
+namespace duet {
+DUET_ABI_BEGIN
+
+triangle_mesh read_mesh(const std::string& path) {
+  std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](char c) { return 'A' <= c && c <= 'Z' ? char(c + ('a' - 'A')) : c; });
+  constexpr std::size_t max_megabytes = 256;
+  triangle_mesh result;
+  if (ending == ".dae") {
+    result.vertices = detail::read_collada(path, max_megabytes);
+  } else {
+    result.vertices = detail::triangle_file(path, max_megabytes).read(ending);
+  }
+  if (result.vertices.empty()) {
+    detail::raise(file_error(path, "the file contains no triangles"));
+  }
+  return result;
+}
+
+DUET_ABI_END
+} // namespace duet

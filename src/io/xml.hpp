@@ -10,10 +10,12 @@
 #include <vector>
 
 /// \file
-/// XML elements, independent of the parser.
+/// XML files, read by expat: everything that the standard calls an error is one.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
+/// An XML element.
 struct xml_element {
   std::string name;
   std::size_t line = 0; ///< line where it begins
@@ -41,4 +43,16 @@ struct xml_element {
   }
 };
 
+/// Treatment of text between elements.
+enum class xml_text { skipped, kept };
+
+/// The root element of a file with all its contents.
+///
+/// \throws file_error for XML that is not well formed, has a document type (and with it
+/// entities), is nested more than 100 deep or too large; and for all files if the library was built
+/// without expat
+[[nodiscard]] xml_element read_xml(const std::string& path, std::size_t max_megabytes = 16,
+                                   xml_text text = xml_text::skipped);
+
+DUET_ABI_END
 } // namespace duet::detail
