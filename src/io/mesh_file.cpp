@@ -7,13 +7,15 @@
 #include <duet/core/text/text_rows.hpp>
 #include <duet/io/mesh_file.hpp>
 
-#include "collada.hpp"
+#include "imported_mesh.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <fstream>
+#include <ios>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -34,8 +36,6 @@ public:
     at_ = text_.starts_with("\xef\xbb\xbf") ? 3 : 0; // a byte order mark
     if (ending == ".obj") {
       read_obj();
-    } else if (ending != ".stl") {
-      fail("the format is unknown (expected .stl, .obj or .dae)");
     } else if (is_binary_stl()) {
       read_binary_stl();
     } else {
@@ -264,6 +264,17 @@ private:
   std::vector<std::string_view> words_;
 };
 
+/// \throws file_error if a file cannot be read, or is too large
+void require_readable(const std::string& path, std::size_t max_megabytes) {
+  std::ifstream in;
+  if (const std::string error_message = open_input(path, in); !error_message.empty()) {
+    raise(file_error(path, error_message));
+  }
+  if (in.seekg(0, std::ios::end).tellg() > std::streamoff(max_megabytes << 20U)) {
+    raise(file_error(path, "has more than " + std::to_string(max_megabytes) + " MB"));
+  }
+}
+
 } // namespace
 } // namespace duet::detail
 
@@ -276,10 +287,11 @@ triangle_mesh read_mesh(const std::string& path) {
                  [](char c) { return 'A' <= c && c <= 'Z' ? char(c + ('a' - 'A')) : c; });
   constexpr std::size_t max_megabytes = 256;
   triangle_mesh result;
-  if (ending == ".dae") {
-    result.vertices = detail::read_collada(path, max_megabytes);
-  } else {
+  if (ending == ".stl" || ending == ".obj") {
     result.vertices = detail::triangle_file(path, max_megabytes).read(ending);
+  } else {
+    detail::require_readable(path, max_megabytes);
+    result.vertices = detail::read_imported_mesh(path, ending, max_megabytes);
   }
   if (result.vertices.empty()) {
     detail::raise(file_error(path, "the file contains no triangles"));

@@ -20,7 +20,7 @@ read = functools.partial(Path.read_text, encoding="utf-8")
 LAYERS = {
     "core": "", "dual": "core", "derivative": "dual Eigen", "quaternion": "derivative",
     "dual_quaternion": "quaternion boost/math", "comparison": "dual_quaternion", "expression": "dual_quaternion boost/mp11",
-    "spline": "dual_quaternion", "kinematics": "dual_quaternion", "motion": "kinematics", "io": "kinematics spline expat.h",
+    "spline": "dual_quaternion", "kinematics": "dual_quaternion", "motion": "kinematics", "io": "kinematics spline expat.h assimp",
     "robotics": "io motion", "interop": "comparison expression spline robotics boost"}
 ALLOWED = {}
 for layer, used in LAYERS.items():
@@ -82,7 +82,7 @@ def check_layer(header, layer):
     problem_if(layer not in LAYERS, f"{header} is in no layer")
     for include in includes[header] if layer in LAYERS else ():
         duet = re.match(r"<duet/([^/]*)/", include)
-        library = re.match(r"<((Eigen|boost)[/a-z0-9_]*|expat\.h(?=>$))", include)
+        library = re.match(r"<((Eigen|boost|assimp)[/a-z0-9_]*|expat\.h(?=>$))", include)
         private = re.fullmatch(r'"([a-z_]+\.hpp)"', include)
         if duet and duet[1] == "interop" != layer:
             problems.append(f"{header} includes {include}, but interop/ is for users alone")
@@ -96,7 +96,7 @@ def check_layer(header, layer):
             problem_if(f"src/{layer}/{private[1]}" not in sources, f"{header} includes {include}, which is not in its folder")
         else:
             problem_if(not STD_INCLUDE.fullmatch(include),
-                       f"{header} includes {include}, which is neither <duet/…>, nor Eigen, Boost, expat or std")
+                       f"{header} includes {include}, which is neither <duet/…>, nor Eigen, Boost, expat, Assimp or std")
 
 
 def reached_from(headers, without=()):

@@ -194,7 +194,7 @@ TEST_CASE("read_mesh: OBJ lines joined by a backslash keep their line numbers in
 }
 
 TEST_CASE("read_mesh: unknown formats and missing files are rejected") {
-  CHECK(error_of(".ply", "ply\n") == " the format is unknown (expected .stl, .obj or .dae)");
+  CHECK(error_of(".xyzzy", "ply\n").starts_with(" the format is unknown (expected .stl"));
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("nowhere.stl"); }) ==
         "duet: nowhere.stl: cannot be read");
   CHECK(duet_test::message_of<file_error>([] { (void)read_mesh("."); }) ==

@@ -249,22 +249,9 @@ TEST_CASE("bounding_capsules: shapes of trees and chains have the poses of their
   CHECK(self_collision_pairs(tree, of_tree.bodies).size() == 2); // hand and base
   CHECK(self_collision_pairs(chain, of_chain.bodies).size() == 2);
 
-  // COLLADA, in centimetres, twice as large by the description.
-  std::ofstream(folder + ".dae")
-      << "<COLLADA><asset><unit meter=\".01\"/></asset><library_geometries><geometry "
-         "id=\"g\"><mesh>"
-         "<source id=\"s\"><float_array id=\"a\">0 0 0 30 0 0 0 40 "
-         "0</float_array><technique_common>"
-         "<accessor source=\"#a\" count=\"3\" stride=\"3\"><param name=\"X\"/><param name=\"Y\"/>"
-         "<param name=\"Z\"/></accessor></technique_common></source><vertices id=\"v\"><input "
-         "semantic=\"POSITION\" source=\"#s\"/></vertices><triangles><input semantic=\"VERTEX\" "
-         "source=\"#v\" offset=\"0\"/><p>0 1 "
-         "2</p></triangles></mesh></geometry></library_geometries>"
-         "<library_visual_scenes><visual_scene id=\"w\"><node><instance_geometry "
-         "url=\"#g\"/></node>"
-         "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#w\"/></scene>"
-         "</COLLADA>";
-  robot.links[3].collision = {{{}, collision_mesh{"package://" + folder + ".dae", {2, 2, 2}}}};
+  // Another format, twice as large by the description.
+  std::ofstream(folder + ".obj") << "v 0 0 0\nv .3 0 0\nv 0 .4 0\nf 1 2 3\n";
+  robot.links[3].collision = {{{}, collision_mesh{"package://" + folder + ".obj", {2, 2, 2}}}};
   const auto triangle = bounding_capsules(kinematic_tree(robot), ".").bodies.back().shape;
   check_touches(triangle, std::vector<point>{{0, 0, 0}, {.6, 0, 0}, {0, .8, 0}}, 1);
 
