@@ -22,6 +22,7 @@ struct xml_element {
   std::vector<std::pair<std::string, std::string>> attributes;
   std::string text; ///< text directly in the element, if kept
   std::vector<xml_element> children;
+  const xml_element* owner = nullptr; ///< for readers; null if they do not set it
 
   /// The value of an attribute, or `nullptr`.
   [[nodiscard]] const std::string* attribute(std::string_view key) const {
