@@ -9,6 +9,7 @@
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/LU>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <array>
@@ -120,24 +121,14 @@ struct table_layout {
   bool has_angles = false; ///< true for Euler angles instead of a quaternion
 
   table_layout() { at.fill(absent); }
-  /// Layout with columns in this order.
-  table_layout(const std::vector<table_column>& order, const std::vector<std::string>& their_names)
-      : table_layout() {
-    columns = order.size();
-    for (std::size_t i = 0; i < columns; ++i) {
-      at[std::size_t(order[i])] = i;
-      names[std::size_t(order[i])] = their_names[i];
-    }
-  }
 
   /// Reads a header.
   ///
-  /// \param has_u         true if the rows must have a parameter
   /// \param has_position  true if the rows must have positions
   /// \param angles        columns of Euler angles; null: rotations are quaternions
   /// \return problem with the header, empty if valid
-  [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_u,
-                                 bool has_position, const euler_columns* angles = nullptr) {
+  [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_position,
+                                 const euler_columns* angles) {
     columns = header.size();
     has_angles = angles != nullptr;
     for (std::size_t i = 0; i < columns; ++i) {
@@ -158,7 +149,7 @@ struct table_layout {
       is_euroc = is_euroc || cell.name.starts_with("p_rs_");
       is_of_ros = is_of_ros || cell.is_of_ros;
     }
-    return missing(has_u, has_position, angles);
+    return missing(has_position, angles);
   }
 
 private:
@@ -182,11 +173,10 @@ private:
   }
 
   /// Problem with the header: missing columns, or units of angles other than the given one.
-  [[nodiscard]] std::string missing(bool has_u, bool has_position,
-                                    const euler_columns* angles) const {
+  [[nodiscard]] std::string missing(bool has_position, const euler_columns* angles) const {
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < (has_angles ? 7 : 8); ++k) {
-      if (at[k] == absent && (k == 0 ? has_u : k >= 4 || has_position)) {
+      if (at[k] == absent && (k == 0 || k >= 4 || has_position)) {
         const std::string name = has_angles && k >= 4 ? angles->names()[k - 4] : short_names[k];
         return "the header names no column " + name + ": " + known_columns;
       }
@@ -234,14 +224,13 @@ public:
   ///
   /// \throws file_error if it is ambiguous
   [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
-                                                   bool has_u, bool has_position,
-                                                   const euler_columns* angles,
+                                                   bool has_position, const euler_columns* angles,
                                                    const std::optional<table_layout>& usual) const {
     table_layout result;
     std::string problem;
     if (cells_.size() == columns) {
       const std::vector<std::string_view> header(cells_.begin(), cells_.end());
-      problem = result.read(header, has_u, has_position, angles);
+      problem = result.read(header, has_position, angles);
       if (problem.empty()) {
         return result;
       }
@@ -298,10 +287,10 @@ struct row_format {
   std::string remark;       ///< assumptions about the format, empty if there were none
 };
 
-/// Unit of time that no header names, guessed from the size of the first time.
+/// Unit of time that no header names.
 struct guessed_time_unit {
-  std::size_t digits = 0; ///< unit is 10^−digits s
-  std::string name;       ///< name of the unit, empty for seconds
+  std::size_t digits; ///< unit is 10^−digits s
+  std::string name;   ///< name of the unit, empty for seconds
 
   explicit guessed_time_unit(std::size_t digits_of_second)
       : digits(digits_of_second), name(digits == 9   ? "nanoseconds"
@@ -312,28 +301,30 @@ struct guessed_time_unit {
   /// except one from 1e17 to 1e20, so that files of times in seconds keep their unit when they are
   /// written and read again.
   explicit guessed_time_unit(std::string_view cell)
-      : guessed_time_unit([&]() -> std::size_t {
-          const double size = std::abs(parse_number(cell).value_or(0));
-          const bool is_integer = size == std::floor(size);
-          return size >= 1e20                 ? 0
-                 : size >= 1e17               ? 9
-                 : !is_integer || size < 1e11 ? 0
-                 : size >= 1e14               ? 6
-                                              : 3;
-        }()) {}
+      : guessed_time_unit(digits_of(std::abs(parse_number(cell).value_or(0)))) {}
+
+private:
+  [[nodiscard]] static std::size_t digits_of(double size) {
+    return size >= 1e20                              ? 0
+           : size >= 1e17                            ? 9
+           : size < 1e11 || size != std::floor(size) ? 0
+           : size >= 1e14                            ? 6
+                                                     : 3;
+  }
 };
 
 /// Layout of a row of numbers without a header: TUM's or EuRoC's, empty for others.
 [[nodiscard]] std::optional<table_layout> usual_layout(const std::vector<std::string_view>& cells,
                                                        bool has_commas) {
-  using enum table_column;
   if (cells.size() != 8 || (has_commas && guessed_time_unit(cells[0]).digits != 9)) {
     return std::nullopt;
   }
-  return has_commas ? table_layout({u, x, y, z, qw, qx, qy, qz},
-                                   {"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"})
-                    : table_layout({u, x, y, z, qx, qy, qz, qw},
-                                   {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"});
+  table_layout result;
+  static_cast<void>(
+      has_commas
+          ? result.read({"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"}, true, nullptr)
+          : result.read({"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"}, true, nullptr));
+  return result;
 }
 
 /// Detects the format from the first row, without a header.
@@ -433,11 +424,10 @@ struct guessed_time_unit {
   return std::abs(norm(q) - 1) <= 4e-16 ? q : normalized(q);
 }
 
-/// Reads the rotation nearest to a matrix, by Newton's method for the polar factor, R ← ½(R + R⁻ᵀ):
-/// from `rotation_matrix_tolerance` three steps reach round-off.
+/// Reads the rotation nearest to a matrix.
 ///
 /// \return problem with the matrix, empty if valid
-[[nodiscard]] std::string read_rotation(matrix3<double> r, quaternion<double>& q) {
+[[nodiscard]] std::string read_rotation(const matrix3<double>& r, quaternion<double>& q) {
   const double defect = (r * r.transpose() - matrix3<double>::Identity()).cwiseAbs().maxCoeff();
   if (!(defect <= rotation_matrix_tolerance)) {
     return "the matrix is not a rotation: |R R^T - 1| = " + to_text(defect);
@@ -445,10 +435,8 @@ struct guessed_time_unit {
   if (const double determinant = r.determinant(); determinant < 0) {
     return "the matrix is a reflection: det R = " + to_text(determinant);
   }
-  for (int step = 0; step < 3; ++step) {
-    r = (r + r.inverse().transpose().eval()) / 2;
-  }
-  q = normalized(from_rotation_matrix(r));
+  const Eigen::JacobiSVD<matrix3<double>> svd(r, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  q = normalized(from_rotation_matrix(matrix3<double>(svd.matrixU() * svd.matrixV().transpose())));
   return {};
 }
 
@@ -490,7 +478,7 @@ public:
     split_cells(parts.text, cells_);
     if (is_begin && are_words(cells_)) {
       header_.emplace();
-      if (const std::string problem = header_->read(cells_, true, has_position_, angles_);
+      if (const std::string problem = header_->read(cells_, has_position_, angles_);
           !problem.empty()) {
         raise(file_error(path_, line, problem));
       }
@@ -583,7 +571,7 @@ private:
 
   void choose_format(std::size_t line, bool has_commas) {
     if (!header_) {
-      header_ = comment_.layout(path_, cells_.size(), true, has_position_, angles_,
+      header_ = comment_.layout(path_, cells_.size(), has_position_, angles_,
                                 usual_layout(cells_, has_commas));
     }
     if (!header_ && angles_ != nullptr) {
@@ -677,28 +665,16 @@ file_time::file_time(std::string_view cell, std::size_t digits) {
     cell.remove_prefix(1);
   }
   const std::size_t e = std::min(cell.find_first_of("eE"), cell.size());
-  // With exponents beyond this bound a finite number is 0.
-  const double max_shift = double(cell.size() + digits) + 400;
   const double exponent = number_of(cell.substr(std::min(e + 1, cell.size())));
-  const auto shift = int(std::clamp(exponent, -max_shift, max_shift)) - int(digits);
-  cell = cell.substr(0, e);
-  const std::size_t point = std::min(cell.find('.'), cell.size());
-  std::string before(cell.substr(0, point));
-  std::string after(cell.substr(std::min(point + 1, cell.size())));
-  if (const auto count = std::size_t(std::abs(shift)); shift < 0) {
-    before.insert(0, count, '0');
-    after.insert(0, before, before.size() - count, count);
-    before.resize(before.size() - count);
-  } else {
-    after.resize(std::max(after.size(), count), '0');
-    before.append(after, 0, count);
-    after.erase(0, count);
-  }
-  before = "0" + before;
-  after = "." + after + "0";
-  seconds_ = sign * number_of(before + after);
-  integral_ = sign * number_of(before);
-  fraction_ = sign * number_of("0" + after);
+  std::string all(cell.substr(0, e)); // digits, without the decimal point
+  const std::size_t point = std::min(all.find('.'), all.size());
+  all.erase(point, 1);
+  const int power = int(std::clamp(exponent, -1e9, 1e9)) - int(digits + all.size() - point);
+  const std::string scale = "e" + std::to_string(power);
+  const std::size_t cut = all.size() - std::min(all.size(), std::size_t(std::max(-power, 0)));
+  seconds_ = sign * number_of(all + scale);
+  integral_ = sign * number_of("0" + all.substr(0, cut) + (power > 0 ? scale : ""));
+  fraction_ = sign * number_of("0" + all.substr(cut) + scale);
 }
 
 std::string for_each_table_row(const std::string& path, const std::string& times_path,
