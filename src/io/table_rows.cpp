@@ -313,56 +313,6 @@ private:
   }
 };
 
-/// Layout of a row of numbers without a header: TUM's or EuRoC's, empty for others.
-[[nodiscard]] std::optional<table_layout> usual_layout(const std::vector<std::string_view>& cells,
-                                                       bool has_commas) {
-  if (cells.size() != 8 || (has_commas && guessed_time_unit(cells[0]).digits != 9)) {
-    return std::nullopt;
-  }
-  table_layout result;
-  static_cast<void>(
-      has_commas
-          ? result.read({"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"}, true, nullptr)
-          : result.read({"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"}, true, nullptr));
-  return result;
-}
-
-/// Detects the format from the first row, without a header.
-///
-/// \param cells  cells of the first row
-/// \throws file_error if it could be more than one format, or is not a known one
-[[nodiscard]] row_format format_of_row(const std::string& path, std::size_t line,
-                                       const std::vector<std::string_view>& cells,
-                                       bool has_commas) {
-  row_format result;
-  if (cells.size() == 12) {
-    result.is_matrix = true;
-    result.layout.columns = 12;
-    result.remark = "12 columns: read as in KITTI files, the matrix [R t] row by row";
-    return result;
-  }
-  const std::optional<table_layout> layout = usual_layout(cells, has_commas);
-  if (!layout) {
-    raise(
-        file_error(path, line,
-                   std::to_string(cells.size()) +
-                       " columns without a header before the first row (expected a header such as "
-                       "`u,x,y,z,qw,qx,qy,qz`; TUM files, timestamp tx ty tz qx qy qz qw separated "
-                       "by blanks, and KITTI files, 12 numbers, need none): " +
-                       known_columns));
-  }
-  result.layout = *layout;
-  const guessed_time_unit unit(cells[0]);
-  result.digits = unit.digits;
-  result.guessed_unit = unit.name;
-  if (!unit.name.empty()) {
-    result.remark = "timestamps in " + unit.name + ": read as " +
-                    (has_commas ? "in EuRoC files, timestamp, x, y, z, qw, qx, qy, qz"
-                                : "timestamp tx ty tz qx qy qz qw");
-  }
-  return result;
-}
-
 /// Number of digits of a unit of time in a header: 9 for ns, 0 for s.
 ///
 /// \throws file_error for an unknown unit
@@ -374,46 +324,6 @@ private:
                      "the unit of timestamps is '" + unit + "' (expected s, ms, us or ns)"));
   }
   return digits;
-}
-
-/// Detects the format from a header and the first row.
-///
-/// \param cells         cells of the first row
-/// \param has_position  true if positions are needed
-/// \throws file_error for unknown units
-[[nodiscard]] row_format format_of_header(const std::string& path, std::size_t line,
-                                          const table_layout& header,
-                                          const std::vector<std::string_view>& cells,
-                                          bool has_position) {
-  row_format result;
-  result.layout = header;
-  const std::string& unit = header.units[0];
-  if (header.has_time && unit.empty()) {
-    const std::string_view first = header.at[0] < cells.size() ? cells[header.at[0]] : "";
-    const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
-    const guessed_time_unit guess =
-        header.is_euroc || is_of_ros ? guessed_time_unit(9) : guessed_time_unit(first);
-    result.digits = guess.digits;
-    result.guessed_unit = guess.name;
-    if (!guess.name.empty()) {
-      result.remark = header.is_euroc ? "a EuRoC file: timestamps in nanoseconds"
-                      : is_of_ros     ? header.names[0] + " as rostopic writes it, in nanoseconds"
-                                      : "timestamps of this size are taken for " + guess.name;
-    }
-  } else if (header.has_time) {
-    result.digits = digits_of_time_unit(path, line, unit);
-    if (result.digits > 0) {
-      result.remark =
-          std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
-    }
-  }
-  for (std::size_t k = 1; has_position && k < 4; ++k) {
-    if (!header.units[k].empty() && header.units[k] != "m") {
-      raise(file_error(path, line,
-                       "the unit of positions is '" + header.units[k] + "' (expected m)"));
-    }
-  }
-  return result;
 }
 
 // Numbers of rows.
@@ -480,7 +390,7 @@ public:
       header_.emplace();
       if (const std::string problem = header_->read(cells_, has_position_, angles_);
           !problem.empty()) {
-        raise(file_error(path_, line, problem));
+        fail(line, problem);
       }
       return std::nullopt;
     }
@@ -488,9 +398,8 @@ public:
       choose_format(line, parts.text.find_first_of(",;") != parts.text.npos);
     }
     if (cells_.size() != format_->layout.columns) {
-      raise(file_error(path_, line,
-                       std::to_string(format_->layout.columns) + " columns expected, got " +
-                           std::to_string(cells_.size())));
+      fail(line, std::to_string(format_->layout.columns) + " columns expected, got " +
+                     std::to_string(cells_.size()));
     }
     table_row row;
     row.line = line;
@@ -519,6 +428,10 @@ public:
   }
 
 private:
+  [[noreturn]] void fail(std::size_t line, const std::string& what) const {
+    raise(file_error(path_, line, what));
+  }
+
   /// Time in the file of times.
   struct time_row {
     std::size_t line;
@@ -569,23 +482,92 @@ private:
     }
   }
 
+  /// Layout of a first row of numbers: TUM's or EuRoC's, empty for others.
+  [[nodiscard]] std::optional<table_layout> usual_layout(bool has_commas) const {
+    if (cells_.size() != 8 || (has_commas && guessed_time_unit(cells_[0]).digits != 9)) {
+      return std::nullopt;
+    }
+    table_layout result;
+    static_cast<void>(
+        has_commas
+            ? result.read({"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"}, true, nullptr)
+            : result.read({"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"}, true, nullptr));
+    return result;
+  }
+
+  /// Format of the first row, without a header.
+  [[nodiscard]] row_format format_of_row(std::size_t line, bool has_commas) const {
+    row_format result;
+    if (cells_.size() == 12) {
+      result.is_matrix = true;
+      result.layout.columns = 12;
+      result.remark = "12 columns: read as in KITTI files, the matrix [R t] row by row";
+      return result;
+    }
+    const std::optional<table_layout> layout = usual_layout(has_commas);
+    if (!layout) {
+      fail(line, std::to_string(cells_.size()) +
+                     " columns without a header before the first row (expected a header such as "
+                     "`u,x,y,z,qw,qx,qy,qz`; TUM files, timestamp tx ty tz qx qy qz qw separated "
+                     "by blanks, and KITTI files, 12 numbers, need none): " +
+                     known_columns);
+    }
+    result = format_of_header(line, *layout);
+    if (!result.remark.empty()) {
+      result.remark = "timestamps in " + result.guessed_unit + ": read as " +
+                      (has_commas ? "in EuRoC files, timestamp, x, y, z, qw, qx, qy, qz"
+                                  : "timestamp tx ty tz qx qy qz qw");
+    }
+    return result;
+  }
+
+  /// Format by a header and the first row.
+  [[nodiscard]] row_format format_of_header(std::size_t line, const table_layout& header) const {
+    row_format result;
+    result.layout = header;
+    const std::string& unit = header.units[0];
+    if (header.has_time && unit.empty()) {
+      const std::string_view first = header.at[0] < cells_.size() ? cells_[header.at[0]] : "";
+      const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
+      const guessed_time_unit guess =
+          header.is_euroc || is_of_ros ? guessed_time_unit(9) : guessed_time_unit(first);
+      result.digits = guess.digits;
+      result.guessed_unit = guess.name;
+      if (!guess.name.empty()) {
+        result.remark = header.is_euroc ? "a EuRoC file: timestamps in nanoseconds"
+                        : is_of_ros     ? header.names[0] + " as rostopic writes it, in nanoseconds"
+                                        : "timestamps of this size are taken for " + guess.name;
+      }
+    } else if (header.has_time) {
+      result.digits = digits_of_time_unit(path_, line, unit);
+      if (result.digits > 0) {
+        result.remark =
+            std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
+      }
+    }
+    for (std::size_t k = 1; has_position_ && k < 4; ++k) {
+      if (!header.units[k].empty() && header.units[k] != "m") {
+        fail(line, "the unit of positions is '" + header.units[k] + "' (expected m)");
+      }
+    }
+    return result;
+  }
+
   void choose_format(std::size_t line, bool has_commas) {
     if (!header_) {
-      header_ = comment_.layout(path_, cells_.size(), has_position_, angles_,
-                                usual_layout(cells_, has_commas));
+      header_ =
+          comment_.layout(path_, cells_.size(), has_position_, angles_, usual_layout(has_commas));
     }
     if (!header_ && angles_ != nullptr) {
-      raise(file_error(path_, line,
-                       "there is no header before the first row (expected names of the columns of "
-                       "angles)"));
+      fail(line, "there is no header before the first row (expected names of the columns of "
+                 "angles)");
     }
-    format_ = header_ ? format_of_header(path_, line, *header_, cells_, has_position_)
-                      : format_of_row(path_, line, cells_, has_commas);
+    format_ = header_ ? format_of_header(line, *header_) : format_of_row(line, has_commas);
     if (const std::string remark = comment_.remark(cells_.size()); !header_ && !remark.empty()) {
       format_->remark += (format_->remark.empty() ? "" : "; ") + remark;
     }
     if (!times_path_.empty() && !format_->is_matrix) {
-      raise(file_error(path_, line, "the rows have times, and so does " + times_path_));
+      fail(line, "the rows have times, and so does " + times_path_);
     }
   }
 
@@ -629,9 +611,8 @@ private:
     } else if (row_count_ < times_.size()) {
       row.time = times_[row_count_].time;
     } else {
-      raise(file_error(path_, row.line,
-                       "more rows than the " + std::to_string(times_.size()) + " times of " +
-                           times_path_));
+      fail(row.line,
+           "more rows than the " + std::to_string(times_.size()) + " times of " + times_path_);
     }
   }
 
