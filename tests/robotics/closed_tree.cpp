@@ -6,12 +6,12 @@
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
 
+#include "../../src/robotics/loops/loop_closure_solver.hpp"
 #include <duet/derivative/jacobian.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/loops/loop_closure_solver.hpp>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>

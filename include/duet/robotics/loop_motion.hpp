@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include <duet/core/config.hpp>
+
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/argument.hpp>
@@ -20,6 +21,7 @@
 /// Motion of closed-chain mechanisms as a function of their driven coordinates.
 
 namespace duet {
+DUET_ABI_BEGIN
 
 /// Options of the continuation of a `driven_motion`.
 struct driven_motion_options {
@@ -133,8 +135,5 @@ private:
   Eigen::MatrixXd solve_; ///< `solver` at the start
 };
 
+DUET_ABI_END
 } // namespace duet
-
-#ifndef DUET_COMPILED
-#include <duet/robotics/loops/motion_follower.hpp>
-#endif

@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include <duet/core/config.hpp>
+
 #include <duet/robotics/closed_tree.hpp>
 
 #include <Eigen/Core>
@@ -14,6 +15,7 @@
 /// Assembly configurations of a closed-chain mechanism.
 
 namespace duet {
+DUET_ABI_BEGIN
 
 /// One of the configurations in which the loops close (an assembly mode if the driven coordinates
 /// are fixed).
@@ -64,12 +66,10 @@ struct assembly_search_options {
 ///              configurations are isolated
 /// \param at    values of the fixed coordinates, in the order of `fixed`
 /// \throws invalid_input for coordinates that do not exist, and if `fixed` and `at` differ in size
-[[nodiscard]] DUET_COMPILED_FUNCTION assembly_search_result find_assembly_configurations(
-    const closed_chain_mechanism& mechanism, const std::vector<int>& fixed,
-    const Eigen::VectorXd& at, const assembly_search_options& options = {});
+[[nodiscard]] assembly_search_result
+find_assembly_configurations(const closed_chain_mechanism& mechanism, const std::vector<int>& fixed,
+                             const Eigen::VectorXd& at,
+                             const assembly_search_options& options = {});
 
+DUET_ABI_END
 } // namespace duet
-
-#ifndef DUET_COMPILED
-#include <duet/robotics/loops/assembly_search.hpp>
-#endif

@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include <duet/core/config.hpp>
+
 #include <duet/robotics/loop_motion.hpp>
 
 #include <Eigen/Core>
@@ -14,6 +15,7 @@
 /// The whole motion of a closed-chain mechanism, through its dead points.
 
 namespace duet {
+DUET_ABI_BEGIN
 
 /// A dead point: a configuration beyond which a coordinate does not go. As a drive it is
 /// singular there.
@@ -65,11 +67,8 @@ struct trace_options {
 ///
 /// \param drive  index of the driven coordinate among those of the motion, from 0
 /// \throws invalid_input for a driven coordinate that does not exist
-[[nodiscard]] DUET_COMPILED_FUNCTION motion_trace trace(const driven_motion& motion, int drive = 0,
-                                                        const trace_options& options = {});
+[[nodiscard]] motion_trace trace(const driven_motion& motion, int drive = 0,
+                                 const trace_options& options = {});
 
+DUET_ABI_END
 } // namespace duet
-
-#ifndef DUET_COMPILED
-#include <duet/robotics/loops/tracer.hpp>
-#endif

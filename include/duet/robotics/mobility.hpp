@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include <duet/core/config.hpp>
+
 #include <duet/robotics/closed_tree.hpp>
 
 #include <Eigen/Core>
@@ -12,6 +13,7 @@
 /// Mobility (degrees of freedom) of a closed-chain mechanism.
 
 namespace duet {
+DUET_ABI_BEGIN
 
 /// Evidence for a mobility.
 enum class mobility_evidence {
@@ -55,11 +57,8 @@ struct mobility_result {
 ///
 /// \param q  a configuration
 /// \throws invalid_input if the loops are not closed at q
-[[nodiscard]] DUET_COMPILED_FUNCTION mobility_result
-mobility(const closed_chain_mechanism& mechanism, const Eigen::VectorXd& q);
+[[nodiscard]] mobility_result mobility(const closed_chain_mechanism& mechanism,
+                                       const Eigen::VectorXd& q);
 
+DUET_ABI_END
 } // namespace duet
-
-#ifndef DUET_COMPILED
-#include <duet/robotics/loops/neighbourhood.hpp>
-#endif

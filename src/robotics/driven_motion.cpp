@@ -1,18 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/compiled.hpp>
+#include "loops/branch_finder.hpp"
+#include "loops/loop_closure_solver.hpp"
+#include "loops/rank_revealing_svd.hpp"
+#include "loops/second_derivatives.hpp"
+#include "loops/solution_curve.hpp"
+
 #include <duet/core/errors.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/kinematics/closed_loop.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
-#include <duet/robotics/loops/branch_finder.hpp>
-#include <duet/robotics/loops/loop_closure_solver.hpp>
-#include <duet/robotics/loops/rank_revealing_svd.hpp>
-#include <duet/robotics/loops/second_derivatives.hpp>
-#include <duet/robotics/loops/solution_curve.hpp>
 
 #include <Eigen/Core>
 
@@ -23,31 +22,9 @@
 #include <utility>
 #include <vector>
 
-/// \file
-/// Predictor–corrector continuation of a `driven_motion`. Compiled into duet::compiled. For those
-/// who extend duet.
-
 namespace duet {
+DUET_ABI_BEGIN
 
-namespace detail {
-
-/// Names of the coordinates that move most, among those whose rates are not zero.
-[[nodiscard]] inline std::string moving_coordinates(const closed_chain_mechanism& of,
-                                                    const Eigen::VectorXd& rates) {
-  const Eigen::VectorXd sizes = rates.cwiseQuotient(of.units()).cwiseAbs();
-  std::string result;
-  for (int i = 0; i < of.size(); ++i) {
-    if (sizes[i] > 1e-4 * sizes.maxCoeff()) {
-      result += (result.empty() ? "" : ", ") + of.tree().coordinate_names()[std::size_t(i)];
-    }
-  }
-  return printable(result);
-}
-
-} // namespace detail
-
-#ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION
 driven_motion::driven_motion(closed_chain_mechanism mechanism, const Eigen::VectorXd& q0,
                              std::vector<int> drives, const driven_motion_options& options)
     : mechanism_(std::move(mechanism)), drives_(std::move(drives)),
@@ -60,15 +37,14 @@ driven_motion::driven_motion(closed_chain_mechanism mechanism, const Eigen::Vect
   require_accelerations();
 }
 
-DUET_COMPILED_FUNCTION driven_motion
-driven_motion::warm_started_at(const Eigen::VectorXd& u) const {
+driven_motion driven_motion::warm_started_at(const Eigen::VectorXd& u) const {
   driven_motion result = *this;
   result.start_ = (*this)(u);
   result.solve_ = solver(result.start_);
   return result;
 }
 
-DUET_COMPILED_FUNCTION Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
+Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
   const Eigen::MatrixXd j = detail::columns(detail::unit_jacobian(mechanism_, q), dependent_);
   const detail::rank_revealing_svd svd(j);
   detail::require(svd.rank() == j.cols(), "duet: driven_motion: ", driven(),
@@ -81,7 +57,7 @@ DUET_COMPILED_FUNCTION Eigen::MatrixXd driven_motion::solver(const Eigen::Vector
   return result;
 }
 
-DUET_COMPILED_FUNCTION void driven_motion::require_accelerations() const {
+void driven_motion::require_accelerations() const {
   using T = detail::along_line;
   for (const int drive : drives_) {
     Eigen::Matrix<T, Eigen::Dynamic, 1> q = start_.cast<T>();
@@ -104,23 +80,22 @@ DUET_COMPILED_FUNCTION void driven_motion::require_accelerations() const {
   }
 }
 
-DUET_COMPILED_FUNCTION std::string driven_motion::driven() const {
+std::string driven_motion::driven() const {
   std::string result;
   for (const int i : drives_) {
     result += (result.empty() ? "" : ", ") + mechanism_.tree().coordinate_names()[std::size_t(i)];
   }
   return printable(result);
 }
-DUET_COMPILED_FUNCTION std::string driven_motion::text(const Eigen::VectorXd& q) const {
+std::string driven_motion::text(const Eigen::VectorXd& q) const {
   std::string result;
   for (const int i : drives_) {
     result += (result.empty() ? "" : ", ") + to_text(q[i]);
   }
   return drives_.size() == 1 ? result : "(" + result + ")";
 }
-[[noreturn]] DUET_COMPILED_FUNCTION void driven_motion::fail(const std::string& what,
-                                                             const Eigen::VectorXd& q,
-                                                             const Eigen::VectorXd& target) const {
+[[noreturn]] void driven_motion::fail(const std::string& what, const Eigen::VectorXd& q,
+                                      const Eigen::VectorXd& target) const {
   const Eigen::VectorXd u = detail::entries(q, drives_);
   Eigen::VectorXd to = q;
   detail::put(target, drives_, to);
@@ -130,8 +105,7 @@ DUET_COMPILED_FUNCTION std::string driven_motion::text(const Eigen::VectorXd& q)
                                      {u.begin(), u.end()}));
 }
 
-DUET_COMPILED_FUNCTION Eigen::VectorXd
-driven_motion::followed(const Eigen::VectorXd& target) const {
+Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
   detail::require(target.allFinite(), "duet: driven_motion: the driven coordinates are not finite");
   const Eigen::VectorXd units = mechanism_.units();
   const Eigen::VectorXd displacement =
@@ -153,7 +127,7 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
     const auto next = curve.advance(current, step);
     if (!next) {
       step /= 2;
-      if (const auto met = detail::branch_finder(curve).ahead(current, step)) {
+      if (const auto met = detail::branch_point_ahead(curve, current, step)) {
         const Eigen::VectorXd& along = met->tangents[0];
         const double s = met->x[met->x.size() - 1], rate = along[along.size() - 1];
         current = met->points[0];
@@ -203,6 +177,5 @@ driven_motion::followed(const Eigen::VectorXd& target) const {
     step = std::min(options_.largest_step, 2 * step);
   }
 }
-#endif
-
+DUET_ABI_END
 } // namespace duet

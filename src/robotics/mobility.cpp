@@ -1,13 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/compiled.hpp>
+#include "loops/loop_closure_solver.hpp"
+#include "loops/rank_revealing_svd.hpp"
+#include "loops/second_derivatives.hpp"
+
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
 #include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loops/loop_closure_solver.hpp>
-#include <duet/robotics/loops/rank_revealing_svd.hpp>
-#include <duet/robotics/loops/second_derivatives.hpp>
 #include <duet/robotics/mobility.hpp>
 
 #include <Eigen/Core>
@@ -16,13 +15,8 @@
 #include <optional>
 #include <vector>
 
-/// \file
-/// Configurations near a given one, for the mobility. Compiled into duet::compiled. For those who
-/// extend duet.
-
-namespace duet {
-
-namespace detail {
+namespace duet::detail {
+namespace {
 
 /// Search around a configuration. Lengths are relative to that of the mechanism.
 class neighbourhood {
@@ -84,11 +78,13 @@ private:
   random_source random_{1};
 };
 
-} // namespace detail
+} // namespace
+} // namespace duet::detail
 
-#ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& mechanism,
-                                                const Eigen::VectorXd& q) {
+namespace duet {
+DUET_ABI_BEGIN
+
+mobility_result mobility(const closed_chain_mechanism& mechanism, const Eigen::VectorXd& q) {
   const double residual = mechanism.residuals(q).norm();
   detail::require(residual <= 1e-9, "duet: mobility: the loops are not closed: residual ",
                   residual);
@@ -124,6 +120,5 @@ DUET_COMPILED_FUNCTION mobility_result mobility(const closed_chain_mechanism& me
   }
   return result;
 }
-#endif
-
+DUET_ABI_END
 } // namespace duet

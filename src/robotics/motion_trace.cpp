@@ -1,15 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/compiled.hpp>
+#include "loops/branch_finder.hpp"
+#include "loops/periodic_coordinates.hpp"
+#include "loops/solution_curve.hpp"
+
 #include <duet/core/errors.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
 #include <duet/robotics/loop_trace.hpp>
-#include <duet/robotics/loops/branch_finder.hpp>
-#include <duet/robotics/loops/motion_follower.hpp>
-#include <duet/robotics/loops/solution_curve.hpp>
-#include <duet/robotics/periodic_coordinates.hpp>
 
 #include <Eigen/Core>
 
@@ -20,13 +18,8 @@
 #include <optional>
 #include <vector>
 
-/// \file
-/// Trace of a motion through its dead points. Compiled into duet::compiled. For those
-/// who extend duet.
-
-namespace duet {
-
-namespace detail {
+namespace duet::detail {
+namespace {
 
 /// Start of a curve with its rates, to detect that the curve returns.
 class closure_test {
@@ -139,7 +132,7 @@ private:
 
   /// A point behind a branch point, if steps became so small that one may be near.
   [[nodiscard]] std::optional<curve_point> past_branch_point(const curve_point& from, double step) {
-    const auto crossing = branch_finder(curve_).ahead(from, step);
+    const auto crossing = branch_point_ahead(curve_, from, step);
     if (!crossing) {
       return std::nullopt;
     }
@@ -169,16 +162,17 @@ private:
   motion_trace result_;
 };
 
-} // namespace detail
+} // namespace
+} // namespace duet::detail
 
-#ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION motion_trace trace(const driven_motion& motion, int drive,
-                                          const trace_options& options) {
+namespace duet {
+DUET_ABI_BEGIN
+
+motion_trace trace(const driven_motion& motion, int drive, const trace_options& options) {
   const auto count = int(motion.drives().size());
   detail::require(0 <= drive && drive < count, "duet: trace: driven coordinate ", drive,
                   " does not exist, the motion has ", count);
   return detail::tracer(motion, drive, options).run();
 }
-#endif
-
+DUET_ABI_END
 } // namespace duet

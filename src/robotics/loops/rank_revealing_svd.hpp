@@ -4,32 +4,18 @@
 #include <duet/core/config.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/SVD>
 
 /// \file
 /// Rank-revealing singular value decomposition. For those who extend duet.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Singular value decomposition of a matrix with its numerical rank: the dependent
 /// rows and columns.
 class rank_revealing_svd {
 public:
-  explicit rank_revealing_svd(const Eigen::MatrixXd& a)
-      : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
-        v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
-    if (a.size() > 0) { // Eigen has no singular values of empty matrices
-      // Full pivoting takes compilers a third of the time.
-      const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
-          a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-      u_ = svd.matrixU();
-      v_ = svd.matrixV();
-      s_ = svd.singularValues();
-    }
-    while (rank_ < s_.size() && s_[rank_] > rank_tolerance * s_[0]) {
-      ++rank_;
-    }
-  }
+  explicit rank_revealing_svd(const Eigen::MatrixXd& a);
 
   /// Relative tolerance of the rank: singular values below this fraction of the largest one count
   /// as zero. Near a singular configuration they are as far from zero as q is from it, and q is
@@ -48,18 +34,9 @@ public:
   /// Orthonormal basis of the kernel (null space), as columns.
   [[nodiscard]] Eigen::MatrixXd kernel() const { return v_.rightCols(v_.cols() - rank_); }
   /// Minimum-norm least-squares solution of A x = b, where A is taken to have a given rank.
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const {
-    const Eigen::VectorXd y = u_.leftCols(rank).transpose() * b;
-    return v_.leftCols(rank) * y.cwiseQuotient(s_.head(rank));
-  }
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const;
   /// Damped least-squares solution V (σ / (σ² + λ)) Uᵀ b.
-  [[nodiscard]] Eigen::VectorXd damped_solve(const Eigen::VectorXd& b, double lambda) const {
-    const Eigen::VectorXd y = u_.leftCols(s_.size()).transpose() * b;
-    const auto damped = [&](double sigma, double x) {
-      return sigma * x / (sigma * sigma + lambda);
-    };
-    return v_.leftCols(s_.size()) * s_.binaryExpr(y, damped);
-  }
+  [[nodiscard]] Eigen::VectorXd damped_solve(const Eigen::VectorXd& b, double lambda) const;
 
 private:
   Eigen::MatrixXd u_, v_;
@@ -67,4 +44,5 @@ private:
   Eigen::Index rank_ = 0;
 };
 
+DUET_ABI_END
 } // namespace duet::detail

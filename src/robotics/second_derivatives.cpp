@@ -1,34 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/random_source.hpp>
-#include <duet/dual/taylor.hpp>
-#include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loops/rank_revealing_svd.hpp>
+#include "loops/second_derivatives.hpp"
 
-#include <Eigen/Core>
+#include "loops/rank_revealing_svd.hpp"
 
 #include <cstddef>
-#include <optional>
-#include <vector>
-
-/// \file
-/// Second derivatives of the equations of loops. For those who extend duet.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
-/// Scalar for second derivatives of the equations.
-using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
-
-/// The quadratic forms wᵀ ∂²F(K v, K v) in v, a symmetric matrix for each column w, from F along
-/// the lines of single columns of K and of sums of two: 2 b(u, v) = b(u + v, u + v) − b(u, u) −
-/// b(v, v).
-///
-/// \param columns  K, each row per unit of its coordinate
-[[nodiscard]] inline std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
-                                                                  const Eigen::VectorXd& q,
-                                                                  const Eigen::MatrixXd& w,
-                                                                  const Eigen::MatrixXd& columns) {
+std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
+                                             const Eigen::VectorXd& q, const Eigen::MatrixXd& w,
+                                             const Eigen::MatrixXd& columns) {
   const Eigen::Index n = columns.cols();
   std::vector<Eigen::MatrixXd> result(std::size_t(w.cols()), Eigen::MatrixXd(n, n));
   const auto second = [&](const Eigen::VectorXd& direction) {
@@ -64,8 +47,7 @@ using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
   return result;
 }
 
-/// A uniformly distributed unit vector.
-[[nodiscard]] inline Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
+Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
   Eigen::VectorXd result(n);
   do {
     for (double& x : result) {
@@ -75,9 +57,8 @@ using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
   return result.normalized();
 }
 
-/// Derivatives of all forms with respect to v, in rows.
-[[nodiscard]] inline Eigen::MatrixXd form_gradients(const std::vector<Eigen::MatrixXd>& forms,
-                                                    const Eigen::VectorXd& v) {
+Eigen::MatrixXd form_gradients(const std::vector<Eigen::MatrixXd>& forms,
+                               const Eigen::VectorXd& v) {
   Eigen::MatrixXd result(Eigen::Index(forms.size()), v.size());
   for (std::size_t k = 0; k < forms.size(); ++k) {
     result.row(Eigen::Index(k)) = 2 * (forms[k] * v).transpose();
@@ -85,10 +66,8 @@ using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
   return result;
 }
 
-/// A unit vector v for which all forms vanish, by Newton's method from an initial guess; empty if
-/// it does not converge.
-[[nodiscard]] inline std::optional<Eigen::VectorXd>
-common_zero(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd v, double rounding) {
+std::optional<Eigen::VectorXd> common_zero(const std::vector<Eigen::MatrixXd>& forms,
+                                           Eigen::VectorXd v, double rounding) {
   const auto count = Eigen::Index(forms.size());
   Eigen::VectorXd f(count + 1);
   Eigen::MatrixXd j(count + 1, v.size());
@@ -103,5 +82,5 @@ common_zero(const std::vector<Eigen::MatrixXd>& forms, Eigen::VectorXd v, double
   }
   return std::nullopt;
 }
-
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,7 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/compiled.hpp>
+#include "loops/loop_closure_solver.hpp"
+#include "loops/periodic_coordinates.hpp"
+
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
@@ -10,8 +11,6 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/loops/loop_closure_solver.hpp>
-#include <duet/robotics/periodic_coordinates.hpp>
 
 #include <Eigen/Core>
 
@@ -21,13 +20,8 @@
 #include <numbers>
 #include <vector>
 
-/// \file
-/// Search for assembly configurations from random initial guesses. Compiled into duet::compiled.
-/// For those who extend duet.
-
-namespace duet {
-
-namespace detail {
+namespace duet::detail {
+namespace {
 
 class assembly_search {
 public:
@@ -149,12 +143,16 @@ private:
   std::vector<std::vector<Eigen::Matrix<double, 7, 1>>> known_poses_;
 };
 
-} // namespace detail
+} // namespace
+} // namespace duet::detail
 
-#ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION assembly_search_result
-find_assembly_configurations(const closed_chain_mechanism& mechanism, const std::vector<int>& fixed,
-                             const Eigen::VectorXd& at, const assembly_search_options& options) {
+namespace duet {
+DUET_ABI_BEGIN
+
+assembly_search_result find_assembly_configurations(const closed_chain_mechanism& mechanism,
+                                                    const std::vector<int>& fixed,
+                                                    const Eigen::VectorXd& at,
+                                                    const assembly_search_options& options) {
   detail::require(Eigen::Index(fixed.size()) == at.size(),
                   "duet: find_assembly_configurations: ", at.size(), " values for ", fixed.size(),
                   " fixed coordinates");
@@ -167,6 +165,5 @@ find_assembly_configurations(const closed_chain_mechanism& mechanism, const std:
   }
   return detail::assembly_search(mechanism, q, fixed).run(options);
 }
-#endif
-
+DUET_ABI_END
 } // namespace duet

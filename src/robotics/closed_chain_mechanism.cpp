@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/compiled.hpp>
+#include "loops/loop_closure_solver.hpp"
+
 #include <duet/core/errors.hpp>
 #include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
@@ -12,7 +12,6 @@
 #include <duet/kinematics/tree_loop.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loops/loop_closure_solver.hpp>
 
 #include <Eigen/Core>
 
@@ -23,15 +22,10 @@
 #include <utility>
 #include <vector>
 
-/// \file
-/// Construction and loop closure of closed-chain mechanisms. Compiled into duet::compiled. For
-/// those who extend duet.
-
 namespace duet {
+DUET_ABI_BEGIN
 
-#ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION closed_chain_mechanism::closed_chain_mechanism(kinematic_tree tree,
-                                                                      loop_constraints constraints)
+closed_chain_mechanism::closed_chain_mechanism(kinematic_tree tree, loop_constraints constraints)
     : tree_(std::move(tree)), constraints_(std::move(constraints)) {
   measure();
   for (std::size_t i = 0; i < constraints_.loops.size(); ++i) {
@@ -49,18 +43,15 @@ DUET_COMPILED_FUNCTION closed_chain_mechanism::closed_chain_mechanism(kinematic_
   }
 }
 
-DUET_COMPILED_FUNCTION Eigen::VectorXd
-closed_chain_mechanism::residuals(const Eigen::VectorXd& q) const {
+Eigen::VectorXd closed_chain_mechanism::residuals(const Eigen::VectorXd& q) const {
   return residuals_at(q);
 }
-DUET_COMPILED_FUNCTION Eigen::MatrixXd
-closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
+Eigen::MatrixXd closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
   return jacobian_at(q);
 }
 
-DUET_COMPILED_FUNCTION Eigen::VectorXd
-closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
-                                 const std::vector<int>& fixed) const {
+Eigen::VectorXd closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
+                                                 const std::vector<int>& fixed) const {
   detail::require(guess.allFinite(),
                   "duet: closed_chain_mechanism: the initial guess is not finite");
   const detail::loop_closure_solver solver(*this, guess, detail::all_but(size(), fixed));
@@ -73,8 +64,7 @@ closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
   return solver.coordinates();
 }
 
-DUET_COMPILED_FUNCTION std::vector<int>
-closed_chain_mechanism::independent_coordinates(const Eigen::VectorXd& q) const {
+std::vector<int> closed_chain_mechanism::independent_coordinates(const Eigen::VectorXd& q) const {
   Eigen::MatrixXd rates = detail::linearised(*this, q).kernel();
   std::vector<int> result;
   while (Eigen::Index(result.size()) < rates.cols()) { // the pivots alone: less to compile
@@ -90,8 +80,8 @@ closed_chain_mechanism::independent_coordinates(const Eigen::VectorXd& q) const 
   return result;
 }
 
-DUET_COMPILED_FUNCTION attached_frame<double>
-closed_chain_mechanism::frame(std::size_t i, const constraint_frame& at) const {
+attached_frame<double> closed_chain_mechanism::frame(std::size_t i,
+                                                     const constraint_frame& at) const {
   const auto& links = tree_.table().link_numbers;
   const auto link = links.find(at.link);
   if (link == links.end()) {
@@ -109,7 +99,7 @@ closed_chain_mechanism::frame(std::size_t i, const constraint_frame& at) const {
   return {link->second, at.offset};
 }
 
-DUET_COMPILED_FUNCTION void closed_chain_mechanism::measure() {
+void closed_chain_mechanism::measure() {
   const auto include_length = [&](const placement<double>& at) {
     const auto& t = at.translation;
     length_ = std::max(length_, std::hypot(t[0], t[1], t[2]));
@@ -138,6 +128,5 @@ DUET_COMPILED_FUNCTION void closed_chain_mechanism::measure() {
     i += each.motion.coordinates();
   }
 }
-#endif
-
+DUET_ABI_END
 } // namespace duet
