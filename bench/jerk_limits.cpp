@@ -7,6 +7,7 @@
 /// the table of docs/time_parametrisation.md. Argument: number of seeds of each family (20);
 /// build/bench/bench/duet_jerk_limits_bench 10
 
+#include "../src/robotics/timing/timed_curve.hpp"
 #include "timing_families.hpp"
 
 #include <duet/robotics/time_parametrised.hpp>
@@ -26,7 +27,7 @@
 namespace {
 
 using namespace timing_bench;
-using curve = std::vector<duet::detail::joint_cubic<vector>>;
+using curve = std::vector<duet::detail::joint_cubic>;
 
 /// Minimum time from rest to rest on a straight line.
 double seven_phases(double distance, double v, double a, double j) {
@@ -216,9 +217,9 @@ void compare(unsigned seeds) {
                                         {.curve = duet::waypoint_interpolation::natural_cubic});
       longer.add(motion.duration() / without.duration(), seed);
       // The searches start from the arc lengths of both motions at equal times.
-      const auto problem =
-          duet::detail::validated_input(p.waypoints, p.velocity, p.acceleration,
-                                        duet::time_parametrisation_options{.jerk = limits});
+      const auto problem = duet::detail::validated_input(
+          duet::detail::waypoints_of(p.waypoints), p.velocity, p.acceleration,
+          duet::time_parametrisation_options{.jerk = limits});
       const curve path = duet::detail::hermite_curve(
           problem.polygon, duet::detail::natural_cubic_slopes(problem.polygon));
       const auto start = duet::detail::timed_by_accelerations(problem, path);

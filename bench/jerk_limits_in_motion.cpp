@@ -6,6 +6,7 @@
 /// these motions. Prints the table of docs/time_parametrisation.md. Argument: number of seeds of
 /// each family, with four segments each (50); build/bench/bench/duet_jerk_limits_in_motion_bench 50
 
+#include "../src/robotics/timing/timed_curve.hpp"
 #include "timing_families.hpp"
 
 #include <duet/core/errors.hpp>
@@ -21,8 +22,8 @@
 namespace {
 
 using namespace timing_bench;
-using timing = duet::detail::time_parametrisation_input<-16>;
-using motion = duet::detail::timed_path<vector>;
+using timing = duet::detail::time_parametrisation_input;
+using motion = duet::detail::timed_path;
 
 /// Arc length and path velocity of a motion at a time.
 std::array<double, 2> state_at(const motion& path, double t) {
@@ -36,7 +37,7 @@ std::array<double, 2> state_at(const motion& path, double t) {
 }
 
 /// Largest fraction of a limit that is used, at 1000 times.
-double max_fraction(const duet::joint_trajectory<-16>& q, const timing& limits) {
+double max_fraction(const duet::joint_trajectory& q, const timing& limits) {
   double result = 0;
   for (int i = 0; i <= 1000; ++i) {
     const double t = q.duration() * i / 1000;
@@ -85,9 +86,9 @@ void compare(unsigned seeds) {
       for (Eigen::Index i = 0; i < p.velocity.size(); ++i) {
         jerk.push_back(random.log_uniform(3, 300));
       }
-      const timing problem =
-          duet::detail::validated_input(p.waypoints, p.velocity, p.acceleration,
-                                        duet::time_parametrisation_options{.jerk = jerk});
+      const timing problem = duet::detail::validated_input(
+          duet::detail::waypoints_of(p.waypoints), p.velocity, p.acceleration,
+          duet::time_parametrisation_options{.jerk = jerk});
       const curve path = duet::detail::hermite_curve(
           problem.polygon, duet::detail::natural_cubic_slopes(problem.polygon));
       const motion complete = duet::detail::timed_within_jerks(problem, path);

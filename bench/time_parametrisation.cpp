@@ -6,6 +6,7 @@
 /// docs/time_parametrisation.md. Argument: number of seeds of each family (100);
 /// build/bench/bench/duet_time_parametrisation_bench 10
 
+#include "../src/robotics/timing/timed_curve.hpp"
 #include "timing_families.hpp"
 
 #include <duet/robotics/time_parametrised.hpp>
@@ -26,7 +27,7 @@ namespace {
 using namespace timing_bench;
 
 curve pchip_curve(const problem& p) {
-  const duet::detail::joint_polygon<vector> polygon(p.waypoints);
+  const duet::detail::joint_polygon polygon(duet::detail::waypoints_of(p.waypoints));
   return duet::detail::hermite_curve(polygon, duet::detail::pchip_slopes(polygon));
 }
 

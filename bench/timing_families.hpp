@@ -22,7 +22,7 @@
 namespace timing_bench {
 
 using vector = duet::detail::joint_vector<double, -16>;
-using curve = std::vector<duet::detail::joint_cubic<vector>>;
+using curve = std::vector<duet::detail::joint_cubic>;
 using duet::random_source;
 
 struct problem {

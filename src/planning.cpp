@@ -13,4 +13,3 @@
 #include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/robotics/start_search.hpp>
-#include <duet/robotics/timing/log_barrier_solver.hpp>

@@ -53,7 +53,7 @@ Eigen::VectorXd velocities(const problem& p) {
   return result;
 }
 
-std::vector<point> tip_path(const problem& p, const duet::joint_trajectory<-16>& trajectory) {
+std::vector<point> tip_path(const problem& p, const duet::joint_trajectory& trajectory) {
   std::vector<point> result;
   for (int i = 0; i <= 200; ++i) {
     result.emplace_back(

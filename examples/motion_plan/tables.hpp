@@ -50,7 +50,7 @@ inline worst_case deviations_csv(const problem& p, const plan_type& plan, std::s
 
 /// Largest velocity, acceleration and jerk relative to their limits, in per cent, at `rows` times.
 inline std::string shares_csv(const problem& p, const Eigen::VectorXd& velocities,
-                              const duet::joint_trajectory<-16>& trajectory, int rows) {
+                              const duet::joint_trajectory& trajectory, int rows) {
   std::string text = "t [s],rate [%],acceleration [%],jerk [%]\n";
   for (int k = 0; k < rows; ++k) {
     const double t = trajectory.duration() * k / (rows - 1);

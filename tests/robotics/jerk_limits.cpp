@@ -4,6 +4,8 @@
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 
+#include "../../src/robotics/timing/timed_curve.hpp"
+
 #include <duet/dual/taylor.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 
@@ -258,7 +260,7 @@ TEST_CASE(
     const vector v = limits(.3, 3), a = limits(.5, 20), j = limits(1, 500);
     const auto waypoints = random_waypoints(random, k % 4);
     const time_parametrisation_options options{.min_intervals = 120, .jerk = numbers(j)};
-    auto problem = detail::validated_input(waypoints, v, a, options);
+    auto problem = detail::validated_input(detail::waypoints_of(waypoints), v, a, options);
     auto& polygon = problem.polygon;
     const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
     const auto complete = detail::timed_within_jerks(problem, curve);
@@ -279,7 +281,7 @@ TEST_CASE(
     };
     const auto [first, first_speed] = at(from);
     const auto [last, last_speed] = at(to);
-    std::vector<detail::joint_cubic<vector>> middle;
+    std::vector<detail::joint_cubic> middle;
     std::vector<double> knots{0};
     for (std::size_t e = 0; e < curve.size(); ++e) {
       const double begin = std::max(polygon.s[e], first), end = std::min(polygon.s[e + 1], last);
@@ -452,7 +454,7 @@ TEST_CASE("path_velocity_constraints: bounds on a segment enclose velocities, ac
   duet_test::random_source random(6);
   double max_width = 0;
   for (int k = 0; k < 40; ++k) {
-    const detail::joint_polygon<vector> polygon(random_waypoints(random, k % 4));
+    const detail::joint_polygon polygon(detail::waypoints_of(random_waypoints(random, k % 4)));
     const auto curve = detail::hermite_curve(polygon, detail::natural_cubic_slopes(polygon));
     const std::size_t n = 30;
     std::vector<double> arc_lengths;
@@ -534,7 +536,8 @@ TEST_CASE("reference_parametrisation: a knot next to a node does not change the 
     const auto path = reference.pieces({0, knot, arc_lengths.back()});
     CHECK(path.size() <= 17);
     const auto straight = [](double from, double length) {
-      return detail::joint_cubic<one>{one(from), one(1.0), one(0.0), one(0.0), length};
+      const auto number = [](double x) { return Eigen::VectorXd::Constant(1, x); };
+      return detail::joint_cubic{number(from), number(1), number(0), number(0), length};
     };
     std::vector<double> squared_velocity;
     for (int i = 0; i < 18; ++i) {

@@ -3,6 +3,9 @@
 #include "support/message.hpp"
 #include "support/random.hpp"
 
+#include "../../src/robotics/timing/joint_paths.hpp"
+#include "../../src/robotics/timing/phase_plane_velocities.hpp"
+
 #include <duet/core/text/number_text.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 
@@ -89,7 +92,7 @@ double check_shares(const Trajectory& q, const vector& v, const vector& a) {
 
 /// Minimum time with the limits sampled at both ends of each of 200 segments of each edge, by
 /// bisection.
-double sampled_optimum(const std::vector<detail::joint_cubic<vector>>& curve, const vector& v,
+double sampled_optimum(const std::vector<detail::joint_cubic>& curve, const vector& v,
                        const vector& a) {
   struct part {
     double h, cap;
@@ -408,7 +411,7 @@ TEST_CASE(
       waypoints.push_back(waypoints.back() + (k % 3 == 2 ? random.log_uniform(1e-4, 1) : 1) * step);
     }
     for (const auto kind : {waypoint_interpolation::pchip, waypoint_interpolation::natural_cubic}) {
-      const detail::joint_polygon<vector> polygon(waypoints);
+      const detail::joint_polygon polygon(detail::waypoints_of(waypoints));
       const auto curve =
           detail::hermite_curve(polygon, kind == waypoint_interpolation::natural_cubic
                                              ? detail::natural_cubic_slopes(polygon)
@@ -428,7 +431,7 @@ TEST_CASE("natural_cubic_slopes: the second derivative is continuous and 0 at fr
     waypoints.emplace_back(random.normal(), random.normal(), random.normal());
   }
   for (const bool has_rates : {false, true}) {
-    detail::joint_polygon<vector> polygon(waypoints);
+    detail::joint_polygon polygon(detail::waypoints_of(waypoints));
     if (has_rates) {
       polygon.first_slope = vector(.6, 0, .8);
       polygon.last_slope = vector(0, -1, 0);
@@ -527,11 +530,11 @@ TEST_CASE("slopes_within_ranges: a natural cubic spline stays within the ranges 
       current = (current + random.log_uniform(.01, 2) * step).cwiseMin(1).cwiseMax(-1);
       waypoints.push_back(current);
     }
-    const detail::joint_polygon<vector> polygon(waypoints);
+    const detail::joint_polygon polygon(detail::waypoints_of(waypoints));
     const auto smooth = detail::natural_cubic_slopes(polygon);
-    const detail::time_parametrisation_input<3> problem{
+    const detail::time_parametrisation_input problem{
         polygon, waypoints.size(), none, one, none, 0, 0, 1, -one, one};
-    const auto largest = [&](const std::vector<vector>& slopes) {
+    const auto largest = [&](const std::vector<Eigen::VectorXd>& slopes) {
       double result = 0;
       for (const auto& q : detail::hermite_curve(polygon, slopes)) {
         for (int i = 0; i <= 20; ++i) {

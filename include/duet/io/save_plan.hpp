@@ -52,8 +52,7 @@ void save_plan(const std::string& path, const motion_plan<N>& plan) {
 /// end.
 ///
 /// \throws invalid_input for a step that is not positive, file_error
-template <int N>
-void save_trajectory(const std::string& path, const joint_trajectory<N>& trajectory, double step) {
+inline void save_trajectory(const std::string& path, const joint_trajectory& trajectory, double step) {
   const auto motion = [&](double t) -> std::array<Eigen::VectorXd, 3> {
     const auto state = trajectory(t);
     return {state.value, state.velocity, state.acceleration};

@@ -5,7 +5,8 @@
 #include <duet/core/rounding.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/zero_initialized.hpp>
-#include <duet/kinematics/serial_chain.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -36,17 +37,16 @@ struct joint_state {
 namespace detail {
 
 /// c0 + c1 s + c2 s² + c3 s³, 0 ≤ s ≤ length.
-template <class V>
 struct joint_cubic {
-  V c0, c1, c2, c3;
+  Eigen::VectorXd c0, c1, c2, c3;
   double length;
 
-  [[nodiscard]] V value(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
-  [[nodiscard]] V first(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
-  [[nodiscard]] V second(double s) const { return 2 * c2 + 6 * s * c3; }
+  [[nodiscard]] Eigen::VectorXd value(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
+  [[nodiscard]] Eigen::VectorXd first(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
+  [[nodiscard]] Eigen::VectorXd second(double s) const { return 2 * c2 + 6 * s * c3; }
   /// This cubic from s on, as a cubic with the parameter counted from there.
   [[nodiscard]] joint_cubic part(double s, double its_length) const {
-    return {value(s), first(s), V(second(s) / 2), c3, its_length};
+    return {value(s), first(s), Eigen::VectorXd(second(s) / 2), c3, its_length};
   }
 };
 
@@ -88,24 +88,18 @@ struct time_scaling {
 };
 
 /// Segment of a path with its time scaling.
-template <class V>
 struct timed_piece {
   time_scaling scaling;
-  joint_cubic<V> path;
+  joint_cubic path;
 };
 
 } // namespace detail
 
 /// Joint coordinates as a function of time, once continuously differentiable; twice with jerk
 /// limits.
-///
-/// \tparam N  as in `serial_chain`
-template <int N>
 class joint_trajectory {
 public:
-  using vector = detail::joint_vector<double, N>;
-
-  joint_trajectory(std::vector<detail::timed_piece<vector>> pieces, std::vector<double> times)
+  joint_trajectory(std::vector<detail::timed_piece> pieces, std::vector<double> times)
       : pieces_(std::move(pieces)), times_(std::move(times)) {}
 
   /// Duration, in seconds if limits are per second.
@@ -116,17 +110,17 @@ public:
   /// both values. A t up to 8 ulp of the duration beyond an end counts as that end.
   ///
   /// \throws invalid_input for t outside 0 … duration()
-  [[nodiscard]] joint_state<vector> operator()(double t) const {
+  [[nodiscard]] joint_state<Eigen::VectorXd> operator()(double t) const {
     const auto& [scaling, path] = piece_at(t);
     const auto [s, speed, acceleration, jerk] = scaling.at(t, path.length);
-    const vector slope = path.first(s);
-    return {path.value(s), vector(speed * slope),
-            vector(acceleration * slope + speed * speed * path.second(s))};
+    const Eigen::VectorXd slope = path.first(s);
+    return {path.value(s), Eigen::VectorXd(speed * slope),
+            Eigen::VectorXd(acceleration * slope + speed * speed * path.second(s))};
   }
   /// Jerk at time t, the derivative of the acceleration; at a jump, one of both values.
   ///
   /// \throws invalid_input as `operator()`
-  [[nodiscard]] vector jerk(double t) const {
+  [[nodiscard]] Eigen::VectorXd jerk(double t) const {
     const auto& [scaling, path] = piece_at(t);
     const auto [s, speed, acceleration, jerk] = scaling.at(t, path.length);
     return jerk * path.first(s) + 3 * speed * acceleration * path.second(s) +
@@ -135,7 +129,7 @@ public:
 
 private:
   /// Segment that contains t, which is moved to an end if it is beyond that by round-off.
-  [[nodiscard]] const detail::timed_piece<vector>& piece_at(double& t) const {
+  [[nodiscard]] const detail::timed_piece& piece_at(double& t) const {
     if (!(t >= 0 && t <= duration())) {
       t = detail::clamp_rounding(t, 0.0, duration());
       if (!(t >= 0 && t <= duration())) {
@@ -150,7 +144,7 @@ private:
     return *(next - 1);
   }
 
-  std::vector<detail::timed_piece<vector>> pieces_;
+  std::vector<detail::timed_piece> pieces_;
   std::vector<double> times_; ///< times of the waypoints
 };
 

@@ -1,49 +1,24 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/errors.hpp>
+#include <duet/core/config.hpp>
+
 #include <duet/derivative/argument.hpp>
+#include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/joint_trajectory.hpp>
 #include <duet/kinematics/motion_plan.hpp>
-#include <duet/kinematics/serial_chain.hpp>
-#include <duet/robotics/timing/joint_paths.hpp>
-#include <duet/robotics/timing/time_parametrisation_input.hpp>
-#include <duet/robotics/timing/timed_curve.hpp>
 
 #include <Eigen/Core>
 
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 /// \file
 /// Time-optimal parametrisation of joint paths under limits of velocity, acceleration and jerk.
 
 namespace duet {
-namespace detail {
-
-template <int N>
-[[nodiscard]] const auto& waypoints_of(const motion_plan<N>& plan) {
-  return plan.joints;
-}
-template <class V>
-[[nodiscard]] const auto& waypoints_of(const std::vector<V>& waypoints) {
-  return waypoints;
-}
-
-template <int N>
-[[nodiscard]] joint_trajectory<N> timed_along(const time_parametrisation_input<N>& input,
-                                              bool is_natural_cubic) {
-  const auto& polygon = input.polygon;
-  if (polygon.edges() == 0) {
-    const auto zero = joint_vector<double, N>::Zero(input.velocity.size());
-    return joint_trajectory<N>({{{0, 0, 0}, {polygon.points[0], zero, zero, zero, 0}}},
-                               std::vector<double>(input.waypoints, 0.0));
-  }
-  const auto slopes = is_natural_cubic ? natural_cubic_slopes(polygon) : pchip_slopes(polygon);
-  return timed(input, hermite_curve(polygon, slopes_within_ranges(input, slopes)));
-}
-
-} // namespace detail
+DUET_ABI_BEGIN
 
 /// Interpolating curve of the joints through waypoints.
 enum class waypoint_interpolation {
@@ -76,6 +51,59 @@ struct time_parametrisation_options {
   std::vector<double> jerk = {};
 };
 
+DUET_ABI_END
+} // namespace duet
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Vectors of joint coordinates, and plans, which contain them.
+template <class Path>
+concept JointPath = requires(const Path& path) {
+  path.joints.begin();
+}
+|| requires(const Path& path) {
+  requires VectorLike<std::remove_cvref_t<decltype(*path.begin())>>;
+};
+
+template <VectorLike X>
+[[nodiscard]] Eigen::VectorXd to_dynamic_vector(const X& x) {
+  using argument = vector_argument<X>;
+  Eigen::VectorXd result(argument::size(x));
+  for (Eigen::Index i = 0; i < result.size(); ++i) {
+    result[i] = double(argument::get(x, i));
+  }
+  return result;
+}
+
+template <class Path>
+[[nodiscard]] std::vector<Eigen::VectorXd> waypoints_of(const Path& path) {
+  if constexpr (requires { path.joints.begin(); }) {
+    return waypoints_of(path.joints);
+  } else {
+    std::vector<Eigen::VectorXd> result;
+    for (const auto& each : path) {
+      result.push_back(to_dynamic_vector(each));
+    }
+    return result;
+  }
+}
+
+[[nodiscard]] joint_trajectory timed_along_waypoints(const std::vector<Eigen::VectorXd>& waypoints,
+                                                     const Eigen::VectorXd& velocity,
+                                                     const Eigen::VectorXd& acceleration,
+                                                     const time_parametrisation_options& options);
+[[nodiscard]] joint_trajectory timed_within_limits(const chain_view& chain,
+                                                   const std::vector<Eigen::VectorXd>& waypoints,
+                                                   const Eigen::VectorXd& acceleration,
+                                                   const time_parametrisation_options& options);
+
+DUET_ABI_END
+} // namespace duet::detail
+
+namespace duet {
+DUET_ABI_BEGIN
+
 /// Time-optimal motion of joints along a curve through waypoints, with |q̇| and |q̈| of each joint
 /// within limits, from rest to rest or between given velocities.
 ///
@@ -87,35 +115,23 @@ struct time_parametrisation_options {
 /// With jerk limits the motion is locally optimal (docs/time_parametrisation.md), and accelerations
 /// are continuous: zero at ends at rest, free at ends in motion.
 ///
-/// \param waypoints  joint coordinates, equal neighbours allowed
+/// \param path  joint path: a `motion_plan` or a vector of joint coordinates, equal neighbours
+/// allowed
 /// \param velocity  limit of each joint, in coordinates per second, positive or infinite
 /// \param acceleration  limit of each joint, per second², positive and finite
-/// \return `joint_trajectory<N>`
 /// \throws invalid_input for no waypoints, coordinates that are not finite, limits that are not
 /// positive or of another number than the joints, and velocities at ends that are
 /// infeasible under the limits: the message states which fraction of them is feasible, with jerk
 /// limits also the joint that is nearest to its limits; with jerk limits for a curve whose second
 /// derivative jumps
-template <class V, VectorLike Velocity, VectorLike Acceleration>
-[[nodiscard]] auto time_optimal_trajectory(const std::vector<V>& waypoints,
-                                           const Velocity& velocity,
-                                           const Acceleration& acceleration,
-                                           const time_parametrisation_options& options = {}) {
-  const auto input = detail::validated_input(waypoints, velocity, acceleration, options);
-  const auto usual =
-      options.jerk.empty() ? waypoint_interpolation::pchip : waypoint_interpolation::natural_cubic;
-  return detail::timed_along(input, options.curve.value_or(usual) ==
-                                        waypoint_interpolation::natural_cubic);
-}
-
-/// Time-optimal motion along the configurations of a plan within velocity and acceleration limits.
-///
-/// \return `joint_trajectory<N>`
-template <int N, VectorLike Velocity, VectorLike Acceleration>
-[[nodiscard]] auto time_optimal_trajectory(const motion_plan<N>& plan, const Velocity& velocity,
-                                           const Acceleration& acceleration,
-                                           const time_parametrisation_options& options = {}) {
-  return time_optimal_trajectory(plan.joints, velocity, acceleration, options);
+template <detail::JointPath Path, VectorLike Velocity, VectorLike Acceleration>
+[[nodiscard]] joint_trajectory
+time_optimal_trajectory(const Path& path, const Velocity& velocity,
+                        const Acceleration& acceleration,
+                        const time_parametrisation_options& options = {}) {
+  return detail::timed_along_waypoints(detail::waypoints_of(path),
+                                       detail::to_dynamic_vector(velocity),
+                                       detail::to_dynamic_vector(acceleration), options);
 }
 
 /// Time-optimal motion of a chain within its velocity and position limits and the given
@@ -124,25 +140,15 @@ template <int N, VectorLike Velocity, VectorLike Acceleration>
 ///
 /// \param path  joint path: a `motion_plan` or a vector of joint coordinates
 /// \param acceleration  limit of each joint, per second², positive and finite
-/// \return `joint_trajectory<N>`
 /// \throws invalid_input as with velocities; for another number of coordinates than joints; and if
 /// a velocity at an end takes a joint beyond its position limits
-template <SerialChain C, class Path, VectorLike Acceleration>
-[[nodiscard]] auto time_optimal_trajectory(const C& chain, const Path& path,
-                                           const Acceleration& acceleration,
-                                           const time_parametrisation_options& options = {}) {
-  const auto& waypoints = detail::waypoints_of(path);
-  Eigen::VectorXd velocity(chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
-    velocity[i] = chain.limits(i).velocity;
-  }
-  auto input = detail::validated_input(waypoints, velocity, acceleration, options);
-  for (int i = 0; i < chain.size(); ++i) {
-    input.lower[i] = chain.limits(i).lower;
-    input.upper[i] = chain.limits(i).upper;
-  }
-  return detail::timed_along(input, options.curve.value_or(waypoint_interpolation::natural_cubic) ==
-                                        waypoint_interpolation::natural_cubic);
+template <detail::JointPath Path, VectorLike Acceleration>
+[[nodiscard]] joint_trajectory
+time_optimal_trajectory(const chain_view& chain, const Path& path, const Acceleration& acceleration,
+                        const time_parametrisation_options& options = {}) {
+  return detail::timed_within_limits(chain, detail::waypoints_of(path),
+                                     detail::to_dynamic_vector(acceleration), options);
 }
 
+DUET_ABI_END
 } // namespace duet
