@@ -7,6 +7,10 @@
 /// solutions, and the processor time per goal. Arguments: number of goals of each kind (1000), seed
 /// (1).
 
+#include "../src/robotics/branches/branch_search.hpp"
+#include "../src/robotics/branches/chain_loop.hpp"
+#include "../src/robotics/branches/singular_value.hpp"
+
 #include <duet/core/random_source.hpp>
 #include <duet/kinematics/denavit_hartenberg.hpp>
 #include <duet/kinematics/robots.hpp>
@@ -78,7 +82,7 @@ struct task {
   serial_chain<6> arm;
   Eigen::Matrix<double, 6, 1> theta;
   dual_quaternion<double> goal;
-  all_inverse_kinematics_result<6> all{};
+  all_inverse_kinematics_result all{};
 };
 
 task random_task(const serial_chain<6>& arm, random_source& random) {
@@ -185,8 +189,8 @@ int lost_near_goal(const task& t, random_source& random) {
       pose(exp(vector3<double>(size * rotation[0], size * rotation[1], size * rotation[2])),
            Eigen::Vector3d(size * direction[0], size * direction[1], size * direction[2]));
   int lost = 0;
-  const detail::branches_of_chain<serial_chain<6>> branches(t.arm, t.goal);
-  const detail::branches_of_chain<serial_chain<6>> nearby(t.arm, moved * t.goal);
+  const detail::branches_of_chain branches(t.arm, t.goal);
+  const detail::branches_of_chain nearby(t.arm, moved * t.goal);
   for (auto x : detail::branch_search(nearby.loop()).answer().solutions) {
     if (detail::close_loop(branches.loop(), x.theta)) {
       const auto solution = branches(x);

@@ -34,7 +34,7 @@ using namespace duet;
 using std::numbers::pi;
 using arm_chain = serial_chain<7>;
 using joints = Eigen::Matrix<double, 7, 1>;
-using component = self_motion_curve<7>;
+using component = self_motion_curve;
 
 struct robot {
   const char* name;

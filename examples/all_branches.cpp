@@ -26,7 +26,7 @@ namespace {
 
 using namespace duet;
 using arm_chain = serial_chain<6>;
-using branches = all_inverse_kinematics_result<6>;
+using branches = all_inverse_kinematics_result;
 
 /// R. Manseur and K. L. Doty, A robot manipulator with 16 real inverse kinematic solution sets,
 /// 1989.

@@ -2,6 +2,10 @@
 
 #include "support/random.hpp"
 
+#include "../../src/robotics/branches/chain_loop.hpp"
+#include "../../src/robotics/branches/general_loop.hpp"
+#include "../../src/robotics/branches/loop_equation.hpp"
+
 #include <duet/kinematics/denavit_hartenberg.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/quaternion/rotation.hpp>
@@ -29,7 +33,7 @@ using std::numbers::pi;
 /// Chain with its number of joints at run time, so that templates are compiled once.
 using chain = bounded_chain<16>;
 using vector = detail::joint_vector<double, -16>;
-using result = all_inverse_kinematics_result<-16>;
+using result = all_inverse_kinematics_result;
 
 struct arm_kind {
   const char* name;
@@ -501,7 +505,7 @@ TEST_CASE("all_inverse_kinematics: closed forms and elimination agree") {
     const vector theta = configuration(arm, random);
     const auto goal = arm.pose(theta);
     const result found = all_inverse_kinematics(arm, goal);
-    const detail::branches_of_chain<chain> branches(arm, goal);
+    const detail::branches_of_chain branches(arm, goal);
     for (const auto& x : detail::eliminated(branches.loop()).solutions) {
       CHECK(contains(arm, found, branches(x).joints));
       ++both;

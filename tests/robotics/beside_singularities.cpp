@@ -3,13 +3,15 @@
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 
+#include "../../src/robotics/branches/chain_loop.hpp"
+#include "../../src/robotics/branches/folded_elbow.hpp"
+#include "../../src/robotics/branches/singular_value.hpp"
+
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/denavit_hartenberg.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/branches/chain_loop.hpp>
-#include <duet/robotics/branches/folded_elbow.hpp>
 
 #include <doctest/doctest.h>
 
@@ -32,7 +34,7 @@ using std::numbers::pi;
 using chain = serial_chain<6>;
 using joints = Eigen::Matrix<double, 6, 1>;
 using wide_joints = Eigen::Matrix<real_50, 6, 1>;
-using result = all_inverse_kinematics_result<6>;
+using result = all_inverse_kinematics_result;
 
 constexpr std::array distances{1e-3,  3e-4,  1e-4,  1e-5,  1e-6,  3e-7,  1e-7,  1e-8, 1e-9,
                                1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16, 0.};

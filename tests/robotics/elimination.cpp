@@ -2,8 +2,8 @@
 
 #include "support/random.hpp"
 
-#include <duet/robotics/branches/elimination.hpp>
-#include <duet/robotics/branches/loop_equation.hpp>
+#include "../../src/robotics/branches/elimination.hpp"
+#include "../../src/robotics/branches/loop_equation.hpp"
 
 #include <doctest/doctest.h>
 

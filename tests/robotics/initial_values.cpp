@@ -194,8 +194,8 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(urdf_summary);
   DUET_CHECK(link_pair);
   DUET_CHECK(urdf_link);
-  DUET_CHECK(inverse_kinematics_solution<6>);
-  DUET_CHECK(all_inverse_kinematics_result<6>);
+  DUET_CHECK(inverse_kinematics_solution);
+  DUET_CHECK(all_inverse_kinematics_result);
   DUET_CHECK(bounding_capsules_result);
   DUET_CHECK(collision_pair);
   DUET_CHECK(scene);
@@ -212,7 +212,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(task_space_region);
   DUET_CHECK(printed_plan_options);
   DUET_CHECK(self_motion_options);
-  DUET_CHECK(self_motion_curve<7>);
+  DUET_CHECK(self_motion_curve);
   DUET_CHECK(sphere<double>);
   DUET_CHECK(box<double>);
   DUET_CHECK(half_space<double>);

@@ -2,7 +2,7 @@
 
 #include "support/random.hpp"
 
-#include <duet/robotics/branches/orthonormalise.hpp>
+#include "../../src/robotics/branches/orthonormalise.hpp"
 
 #include <doctest/doctest.h>
 

@@ -29,7 +29,7 @@ using namespace duet;
 using std::numbers::pi;
 using chain = duet_test::any_chain;
 using vector = duet_test::any_joints;
-using result = all_inverse_kinematics_result<-16>;
+using result = all_inverse_kinematics_result;
 
 /// Indices of the two prismatic joints, parallel or (`is_opposite`) antiparallel; all joints
 /// between them rotate about their direction.

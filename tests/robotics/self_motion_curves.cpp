@@ -2,6 +2,7 @@
 
 #include "support/random.hpp"
 
+#include <duet/kinematics/motion_plan.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/self_motion_curves.hpp>
 
@@ -37,7 +38,7 @@ vector configuration(duet_test::random_source& random) {
 }
 
 /// Distance of a configuration from the nearest point of a curve.
-double distance(const self_motion_curve<7>& curve, const vector& theta) {
+double distance(const self_motion_curve& curve, const vector& theta) {
   double min_distance = std::numeric_limits<double>::infinity();
   for (const auto& x : curve.joints) {
     min_distance = std::min(min_distance, difference(x, theta).norm());
@@ -48,7 +49,7 @@ double distance(const self_motion_curve<7>& curve, const vector& theta) {
 /// Checks that every curve is closed and consists of solutions, and that exactly one contains the
 /// configuration of the goal.
 void check_curves(const chain& arm, const vector& theta,
-                  const std::vector<self_motion_curve<7>>& curves, double resolution) {
+                  const std::vector<self_motion_curve>& curves, double resolution) {
   const auto goal = arm.pose(theta);
   int containing = 0;
   for (const auto& curve : curves) {
@@ -97,7 +98,7 @@ TEST_CASE(
 
 /// Checks a component: a closed curve without jumps, or a sample of the stated dimension; the tip
 /// is at the goal.
-void check_component(const chain& arm, const self_motion_curve<7>& part,
+void check_component(const chain& arm, const self_motion_curve& part,
                      const dual_quaternion<double>& goal, double resolution) {
   for (const auto& x : part.joints) {
     const pose_error error = pose_error_between(arm.pose(x), goal);

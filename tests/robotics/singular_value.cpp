@@ -3,8 +3,9 @@
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 
+#include "../../src/robotics/branches/singular_value.hpp"
+
 #include <duet/core/batch/math.hpp>
-#include <duet/robotics/branches/singular_value.hpp>
 
 #include <doctest/doctest.h>
 

@@ -9,6 +9,7 @@
 /// Orthonormal columns by the Gram–Schmidt method, and minimum-norm solutions with them.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Orthonormalises columns one after the other by the modified Gram–Schmidt method, and applies the
 /// same column operations to `others`. Columns of which little remains are orthogonalised again,
@@ -43,4 +44,5 @@ least_solution(const Eigen::Matrix<double, 6, Joints>& jacobian,
   return rows * parts.transpose();
 }
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,21 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/compiled.hpp>
-#include <duet/robotics/branches/loop_equation.hpp>
-#include <duet/robotics/branches/orthonormalise.hpp>
+#include "branches/loop_equation.hpp"
+#include "branches/orthonormalise.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-/// \file
-/// Newton's method for loops of six joints. Compiled into duet::compiled.
-
 namespace duet::detail {
+DUET_ABI_BEGIN
 
-#ifdef DUET_DEFINES_COMPILED
-DUET_COMPILED_FUNCTION bool close_loop(const loop_equation& loop, six_coordinates& theta,
-                                       double size_of_angles) {
+bool close_loop(const loop_equation& loop, six_coordinates& theta, double size_of_angles) {
   constexpr double rounding = 2e-15, good = 1e-13, hopeful = 1e-6, singular = 1e-7;
   double before = HUGE_VAL;
   six_coordinates last = six_coordinates::Zero(), measured = theta;
@@ -60,6 +54,6 @@ DUET_COMPILED_FUNCTION bool close_loop(const loop_equation& loop, six_coordinate
   theta = measured;
   return before <= 5 * good; // round-off limits the accuracy where many solutions coincide
 }
-#endif
 
+DUET_ABI_END
 } // namespace duet::detail

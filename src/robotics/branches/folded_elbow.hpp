@@ -1,10 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "subproblems.hpp"
+
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/branches/connecting_rotation.hpp>
-#include <duet/robotics/branches/loop_equation.hpp>
-#include <duet/robotics/branches/subproblems.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -19,6 +18,7 @@
 /// subproblem 2). (Page: all_inverse_kinematics.)
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Angle that satisfies an equation, with its multiplicity.
 struct angle_solution {
@@ -116,4 +116,5 @@ private:
   }
 };
 
+DUET_ABI_END
 } // namespace duet::detail

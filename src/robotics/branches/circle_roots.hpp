@@ -16,6 +16,7 @@
 /// Zeros of real trigonometric polynomials, including complex ones.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Zeros z = e^{iθ} of f(θ) = Σ d_k e^{ikθ}, k = −n … n, d_−k = d̄_k.
 ///
@@ -137,4 +138,5 @@ private:
   lanes x_, y_, sensitivity_;
 };
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,14 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
-
 #include <duet/core/batch/vector_sine_cosine.hpp>
-#include <duet/core/compiled.hpp>
+#include <duet/core/config.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/planning_model.hpp>
+#include <duet/robotics/tip_pose.hpp>
 
 #include <Eigen/Core>
 
@@ -16,12 +14,16 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 /// \file
 /// Loop equation of six joints whose successive displacements equal a given one. All solutions of
 /// inverse kinematics are found from it; chain and goal enter through it only.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Joint in the zero configuration: revolute about the line through `point` along `axis`, or
 /// prismatic along `axis`. All in one frame.
@@ -138,11 +140,42 @@ struct closure_error {
 /// \param size_of_angles  divisor of angular errors, as `closure_error::size` is of lengths, and at
 /// most that size: the default, which saves a step if many initial guesses are tried; or 1
 /// \return true if it converges
-[[nodiscard]] DUET_COMPILED_FUNCTION bool
-close_loop(const loop_equation& loop, six_coordinates& theta, double size_of_angles = HUGE_VAL);
+[[nodiscard]] bool close_loop(const loop_equation& loop, six_coordinates& theta,
+                              double size_of_angles = HUGE_VAL);
 
+/// Solution of a loop with its multiplicity.
+struct loop_solution {
+  six_coordinates theta;
+  int multiplicity = 1;
+  double sigma = 1; ///< smallest singular value of the loop's Jacobian; 1 if not computed
+};
+
+/// Two prismatic joints that are parallel in every configuration: displacements by x of the first
+/// and by `second_factor` x of the second leave the loop closed.
+struct coupled_prismatic_pair {
+  int first = 0, second = 0;
+  double second_factor = -1;
+};
+
+/// Solutions of a loop, and whether they are complete.
+struct loop_solution_set {
+  std::vector<loop_solution> solutions;
+  int complex_solutions = 0;
+  bool is_complete = false;
+  std::optional<coupled_prismatic_pair> coupled_pair =
+      {}; ///< if set, a solution represents all that it makes
+};
+
+/// Angle wrapped to (−π, π].
+[[nodiscard]] inline double wrap_angle(double x) {
+  constexpr double pi = std::numbers::pi, full_turn = 2 * pi;
+  const double size = std::abs(x);
+  // `std::remainder` alone gives the same, but takes twenty times as long.
+  const double r = size <= pi       ? x
+                   : size <= 3 * pi ? x - std::copysign(full_turn, x)
+                                    : std::remainder(x, full_turn);
+  return r <= -pi ? pi : r;
+}
+
+DUET_ABI_END
 } // namespace duet::detail
-
-#ifndef DUET_COMPILED
-#include <duet/robotics/branches/close_loop.hpp>
-#endif

@@ -1,31 +1,31 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/robotics/branches/angle_pairs.hpp>
-#include <duet/robotics/branches/connecting_rotation.hpp>
-#include <duet/robotics/branches/folded_elbow.hpp>
-#include <duet/robotics/branches/loop_equation.hpp>
-#include <duet/robotics/branches/subproblems.hpp>
-#include <duet/robotics/planning_model.hpp>
+#include "branches/branch_search.hpp"
+#include "branches/folded_elbow.hpp"
+#include "branches/general_loop.hpp"
+#include "branches/orthonormalise.hpp"
+#include "branches/subproblems.hpp"
+
+#include <duet/core/config.hpp>
+#include <duet/quaternion/three_vector.hpp>
+#include <duet/robotics/tip_pose.hpp>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
-
-/// \file
-/// Closed-form solutions of loops in which three consecutive joints have axes that meet in a point
-/// (spherical wrist) or are parallel, or in which three joints are prismatic.
-///
-/// Rotations about axes that meet leave their common point invariant, rotations about parallel axes
-/// a plane. The other three joints have to move that point or plane to its goal. This gives two
-/// equations in the first and third of them, because rotations about the second axis leave two
-/// numbers invariant. (Page: all_inverse_kinematics.)
+#include <cstdint>
+#include <optional>
 
 namespace duet::detail {
+DUET_ABI_BEGIN
+
+namespace {
 
 /// Closed-form solutions of a loop whose joints 4 to 6 have axes that meet.
 class spherical_loop {
@@ -263,4 +263,204 @@ private:
   const loop_equation& loop_;
 };
 
+/// Loop that begins with one of two such prismatic joints.
+struct parallel_prismatic {
+  loop_equation loop;
+  std::size_t first;  ///< index of that joint in the given loop
+  std::size_t second; ///< index of the other one in this loop
+};
+
+/// Pair of such prismatic joints, if only rotations about their common direction are between them,
+/// in one direction of the loop or the other.
+[[nodiscard]] std::optional<parallel_prismatic> parallel_prismatic_of(const loop_equation& loop) {
+  loop_equation from = loop;
+  for (std::size_t first = 0; first < 6; ++first) {
+    const loop_joint& prismatic = from.joints[0];
+    std::size_t k = 1;
+    while (k < 6 && from.joints[k].is_revolute && is_on(prismatic.axis, from.joints[k].axis)) {
+      ++k;
+    }
+    if (!prismatic.is_revolute && k < 6 && !from.joints[k].is_revolute &&
+        is_on(prismatic.axis, from.joints[k].axis)) {
+      return parallel_prismatic{from, first, k};
+    }
+    from = from.shifted();
+  }
+  return {};
+}
+
+/// Gauss–Newton method for all coordinates except one, which is fixed.
+///
+/// \return true if it closes the loop
+[[nodiscard]] bool close_with_fixed(const loop_equation& loop, Eigen::Index fixed,
+                                    six_coordinates& theta) {
+  constexpr double rounding = 1e-12;
+  for (int k = 0; k < 6; ++k) {
+    const closure_error closure(loop, theta);
+    Eigen::Matrix<double, 6, 5> moving;
+    moving << closure.jacobian.leftCols(fixed), closure.jacobian.rightCols(5 - fixed);
+    Eigen::Matrix<double, 5, 5> inverse = Eigen::Matrix<double, 5, 5>::Identity(); // R⁻¹ of Q R
+    orthonormalise(moving, inverse);
+    const Eigen::Matrix<double, 5, 1> step = inverse * (moving.transpose() * closure.twist);
+    theta.head(fixed) += step.head(fixed);
+    theta.tail(5 - fixed) += step.tail(5 - fixed);
+  }
+  const closure_error closure(loop, theta);
+  return closure.twist.norm() <= rounding * closure.size;
+}
+
+/// Solutions in which the second of the prismatic joints is at 0.
+[[nodiscard]] loop_solution_set solve_parallel_prismatic(const parallel_prismatic& pair) {
+  const auto fixed = Eigen::Index(pair.second);
+  const Eigen::Vector3d n = pair.loop.joints[pair.second].axis, u = n.unitOrthogonal();
+  loop_equation across = pair.loop; // no known arm has an axis in that direction
+  across.joints[pair.second].axis =
+      components(Eigen::Vector3d(std::cos(.7) * u + std::sin(.7) * n.cross(u)));
+  const loop_solution_set all = solve_two_prismatic(across);
+  loop_solution_set result;
+  for (loop_solution each : all.solutions) {
+    constexpr double close_to_zero = 1e-5; // double solutions are less accurate
+    const bool is_unused = std::abs(each.theta[fixed]) < close_to_zero;
+    each.theta[fixed] = 0;
+    if (is_unused && close_with_fixed(pair.loop, fixed, each.theta)) {
+      six_coordinates theta;
+      for (Eigen::Index k = 0; k < 6; ++k) {
+        theta[(k + Eigen::Index(pair.first)) % 6] = each.theta[k];
+      }
+      result.solutions.push_back({theta, each.multiplicity});
+    }
+  }
+  result.is_complete = all.is_complete && result.solutions.empty();
+  const double second_factor =
+      dot(pair.loop.joints[0].axis, pair.loop.joints[pair.second].axis) > 0 ? -1 : 1;
+  result.coupled_pair = {int(pair.first), int((pair.first + pair.second) % 6), second_factor};
+  return result;
+}
+
+/// Common point of the axes of three joints, if there is one.
+[[nodiscard]] std::optional<vector3d> common_point(const loop_joint& a, const loop_joint& b,
+                                                   const loop_joint& c) {
+  constexpr double rounding = 1e-9, across = 1e-6;
+  if (!a.is_revolute || !b.is_revolute || !c.is_revolute ||
+      length_of(cross(a.axis, b.axis)) < across || length_of(cross(b.axis, c.axis)) < across) {
+    return {};
+  }
+  const vector3d point = nearest_point(a, b);
+  const auto is_on_axis = [&](const loop_joint& j) {
+    return length_of(cross(j.axis, point - j.point)) < rounding;
+  };
+  return is_on_axis(b) && is_on_axis(c) ? std::optional(point) : std::nullopt;
+}
+
+[[nodiscard]] bool are_parallel(const loop_joint& a, const loop_joint& b) {
+  return a.is_revolute && b.is_revolute && is_on(a.axis, b.axis);
+}
+
+} // namespace
+
+template <class Form, class... Rest>
+bool branch_search::solve(solution_method method, int first, const loop_equation& loop,
+                          const Rest&... rest) {
+  constexpr int max_solutions = std::same_as<Form, three_prismatic_loop> ? 2 : 8;
+  constexpr double rounding = 1e-13, nearby = .01;
+  const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
+    const closure_error closure(loop, theta);
+    if (closure.twist.norm() > rounding * closure.size) { // near a singularity
+      six_coordinates refined = theta;
+      if (close_loop(loop, refined) && (refined - theta).norm() < nearby * closure.size) {
+        theta = refined;
+      } else if (multiplicity > 1) {
+        return; // a complex pair that is nearly real
+      }
+    }
+    loop_solution solution{theta, multiplicity};
+    for (int k = 0; k < 6; ++k) {
+      const auto i = std::size_t((k + first) % 6);
+      solution.theta[Eigen::Index(i)] =
+          loop.joints[std::size_t(k)].is_revolute ? wrap_angle(theta[k]) : theta[k];
+    }
+    answer_.solutions.push_back(solution);
+    answer_.complex_solutions -= multiplicity;
+  });
+  if (!is_determined && answer_.solutions.empty()) {
+    answer_.complex_solutions = 0;
+    return false;
+  }
+  method_ = method;
+  answer_.complex_solutions = std::max(0, answer_.complex_solutions + max_solutions);
+  answer_.is_complete = is_determined;
+  return true;
+}
+
+branch_search::branch_search(const loop_equation& loop) {
+  search(loop);
+  const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop),
+             is_general = method_ == solution_method::elimination || // search near the goal, too
+                          method_ == solution_method::two_prismatic;
+  if (answer_.solutions.empty() && !is_certain && !is_general) {
+    search_near_goal(loop);
+  }
+  // `two_prismatic` detects permanent self-motion itself.
+  if (method_ != solution_method::two_prismatic) {
+    answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
+  }
+}
+
+/// Searches for solutions with slightly displaced goals: round-off may have made a double solution
+/// complex, and with a nearby goal it is complex or two real ones.
+void branch_search::search_near_goal(const loop_equation& loop) {
+  constexpr int attempts = 6;
+  constexpr double displacement = 1e-7;
+  for (int k = 0; k < attempts && answer_.solutions.empty(); ++k) {
+    branch_search nearby;
+    nearby.search(with_disturbed_goal(loop, displacement, std::uint64_t(k) + 1));
+    for (loop_solution x : nearby.answer_.solutions) {
+      answer_.is_complete = false;
+      if (answer_.solutions.empty() && close_loop(loop, x.theta)) {
+        answer_.solutions.push_back(x);
+        answer_.complex_solutions = std::max(0, answer_.complex_solutions - x.multiplicity);
+      }
+    }
+  }
+}
+
+void branch_search::search(const loop_equation& loop) {
+  const auto& joints = loop.joints;
+  const auto prismatic_count = std::count_if(joints.begin(), joints.end(),
+                                             [](const loop_joint& j) { return !j.is_revolute; });
+  if (prismatic_count == 3) {
+    solve<three_prismatic_loop>(solution_method::three_prismatic, 0, loop);
+    return;
+  }
+  if (prismatic_count == 2) {
+    const auto pair = parallel_prismatic_of(loop);
+    answer_ = pair ? solve_parallel_prismatic(*pair) : solve_two_prismatic(loop);
+    method_ = solution_method::two_prismatic;
+    return;
+  }
+  const auto from = [&](int first) {
+    loop_equation result = loop;
+    for (int k = 0; k < first; ++k) {
+      result = result.shifted();
+    }
+    return result;
+  };
+  for (std::size_t i = 0; i < 4 && prismatic_count == 0; ++i) {
+    const loop_joint &a = joints[i], &b = joints[i + 1], &c = joints[i + 2];
+    const int first = int(i), after = (first + 3) % 6;
+    if (const auto centre = common_point(a, b, c)) {
+      const vector3d in_loop = after == 0 ? *centre : inverse_pose(loop.closing).point(*centre);
+      if (solve<spherical_loop>(solution_method::spherical_wrist, after, from(after), in_loop)) {
+        return;
+      }
+    } else if (are_parallel(a, b) && are_parallel(b, c)) {
+      if (solve<planar_loop>(solution_method::parallel_axes, first, from(first))) {
+        return;
+      }
+    }
+  }
+  answer_ = eliminated(loop);
+}
+
+DUET_ABI_END
 } // namespace duet::detail

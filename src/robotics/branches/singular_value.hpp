@@ -14,6 +14,7 @@
 /// Smallest singular value of a Jacobian of six joints.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 template <class S>
 using six_numbers = std::array<S, 6>;
@@ -146,4 +147,5 @@ template <class Jacobian>
       [] { return S(0); });
 }
 
+DUET_ABI_END
 } // namespace duet::detail

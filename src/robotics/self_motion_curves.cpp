@@ -1,0 +1,493 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "branches/branch_search.hpp"
+#include "branches/chain_loop.hpp"
+#include "branches/self_motion_set.hpp"
+
+#include <duet/core/errors.hpp>
+#include <duet/kinematics/motion_plan.hpp>
+#include <duet/quaternion/norm.hpp>
+#include <duet/robotics/planning_model.hpp>
+#include <duet/robotics/self_motion_curves.hpp>
+#include <duet/robotics/splitmix64.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace duet::detail {
+namespace {
+
+/// Predictor–corrector continuation of the self-motion curves of one arm and goal: steps along the
+/// Jacobian's null space, or along the projection of the previous step onto it where it has more
+/// dimensions, and projections back onto the set.
+class curve_tracer {
+public:
+  /// Continuation on a self-motion set.
+  ///
+  /// \param step  maximum distance between consecutive points
+  curve_tracer(const self_motion_set& set, double step) : set_(set), step_(step) {}
+
+  /// Curve through one of its points: closed, or followed to both ends.
+  ///
+  /// \param leaving  direction of the curve at that point
+  /// \param kernel   dimension of the Jacobian's null space on the curve
+  [[nodiscard]] traced_curve trace(const seven_coordinates& start, const seven_coordinates& leaving,
+                                   int kernel) const {
+    traced_curve result{{start}, false, 1, kernel};
+    const auto first = direction(set_.kernel(start), leaving);
+    if (!first || follow(result, *first)) {
+      return result;
+    }
+    std::reverse(result.points.begin(), result.points.end());
+    follow(result, -*first);
+    return result;
+  }
+
+  /// True if a point of the set is on a curve.
+  ///
+  /// \param kernel  dimension of the Jacobian's null space at x
+  [[nodiscard]] bool is_on(const traced_curve& curve, const seven_coordinates& x,
+                           int kernel) const {
+    const double same = curve.kernel == 1 && kernel == 1 ? self_motion_tolerance::same
+                                                         : self_motion_tolerance::same_rough;
+    const std::size_t n = curve.points.size(), segments = curve.is_closed ? n : n - 1;
+    for (std::size_t k = 0; k < segments; ++k) {
+      const seven_coordinates& a = curve.points[k];
+      const seven_coordinates to_x = set_.difference(x, a),
+                              chord = set_.difference(curve.points[(k + 1) % n], a);
+      if (to_x.squaredNorm() > 4 * chord.squaredNorm()) {
+        continue;
+      }
+      // If x is on the curve, it is the point of the curve that is nearest to x,
+      // found along the chord.
+      double fraction = std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.);
+      for (int round = 0; round < 8 && fraction > -.5 && fraction < 1.5; ++round) {
+        const auto between = set_.projected(set_.moved(a, fraction * chord), step_);
+        if (!between) {
+          break;
+        }
+        const seven_coordinates residual = set_.difference(x, *between);
+        if (residual.norm() < same) {
+          return true;
+        }
+        fraction += residual.dot(chord) / chord.squaredNorm();
+      }
+    }
+    return set_.difference(x, curve.points.front()).norm() < same;
+  }
+
+private:
+  struct continuation_step {
+    seven_coordinates x, ahead; ///< new point, direction of the curve there
+    double bend, length;        ///< deflection and length of the step
+    bool is_crossing;           ///< true if the null space has more dimensions than on the curve
+  };
+
+  /// Unit vector of a null space that is nearest to the direction of the previous step; empty if
+  /// that is nearly orthogonal to it.
+  [[nodiscard]] static std::optional<seven_coordinates>
+  direction(const self_motion_set::null_space& basis, const seven_coordinates& before) {
+    const seven_coordinates along = basis * (basis.transpose() * before);
+    const double size = along.norm();
+    return size > .1 ? std::optional<seven_coordinates>(along / size) : std::nullopt;
+  }
+
+  /// Step along the curve; empty if the curve does not continue in about the same direction.
+  [[nodiscard]] std::optional<continuation_step> take_step(const seven_coordinates& x,
+                                                           const seven_coordinates& along,
+                                                           double step, int kernel) const {
+    const auto next = set_.projected(set_.moved(x, step * along), step_);
+    if (!next) {
+      return {};
+    }
+    const seven_coordinates displacement = set_.difference(*next, x);
+    const auto basis = set_.kernel(*next);
+    const auto ahead = direction(basis, basis.cols() == 1 ? along : displacement.normalized());
+    if (basis.cols() < kernel || !ahead || displacement.norm() > step_) {
+      return {};
+    }
+    const double bend = (*ahead - along).norm();
+    return bend < .3 ? std::optional<continuation_step>(
+                           {*next, *ahead, bend, displacement.norm(), basis.cols() > kernel})
+                     : std::nullopt;
+  }
+
+  /// Step past points where curves cross, if they are not too close to each other.
+  [[nodiscard]] std::optional<continuation_step> step_past_crossing(const seven_coordinates& x,
+                                                                    const seven_coordinates& along,
+                                                                    double step, int kernel) const {
+    auto result = take_step(x, along, step, kernel);
+    for (const double fraction : {.62, .81, .38}) {
+      if (!result || !result->is_crossing) {
+        break;
+      }
+      const auto other = take_step(x, along, fraction * step, kernel);
+      result = other && !other->is_crossing ? other : result;
+    }
+    return result;
+  }
+
+  /// Adds points until the curve returns to its first one.
+  ///
+  /// \return true if it does
+  bool follow(traced_curve& curve, seven_coordinates along) const {
+    constexpr double min_step = 1e-5, max_crossing = .6;
+    const int max_points = int(400 / step_);
+    const seven_coordinates start = curve.points.front(), leaving = along;
+    double step = step_ / 2, crossing = 0;
+    for (int k = 0; k < max_points && step > min_step; ++k) {
+      const seven_coordinates last = curve.points.back();
+      const auto next = step_past_crossing(last, along, step, curve.kernel);
+      if (!next) {
+        step *= .6; // not a half: structured curves cross at such fractions
+        continue;
+      }
+      crossing = next->is_crossing ? crossing + next->length : 0;
+      if (crossing > max_crossing) {
+        return false; // it has reached a component of more dimensions
+      }
+      const seven_coordinates back = set_.difference(start, last);
+      const double remaining = back.dot(along);
+      const bool is_back = curve.points.size() > 3 && remaining > 0 && remaining <= 1.5 * step &&
+                           back.norm() < std::min(2 * remaining, step_) && along.dot(leaving) > .5;
+      if (is_back) {
+        curve.is_closed = true;
+        return true;
+      }
+      curve.points.push_back(next->x);
+      along = next->ahead;
+      step = std::min(step_ / 2, next->bend < .1 ? 2 * step : step);
+    }
+    return false;
+  }
+
+  const self_motion_set& set_;
+  double step_;
+};
+
+/// Walks on components of two and more dimensions of the self-motion set of one arm and goal.
+class surface_sampler {
+public:
+  explicit surface_sampler(const self_motion_set& set) : set_(set) {}
+
+  /// Up to 64 points of the component that contains x, as far from each other as they can be found.
+  [[nodiscard]] traced_curve sample(const seven_coordinates& x, int dimension, int kernel,
+                                    splitmix64& random) const {
+    constexpr std::size_t count = 64;
+    constexpr int tries = 32;
+    traced_curve result{{x}, false, dimension, kernel};
+    auto& points = result.points;
+    for (double separation = 2; separation > .05 && points.size() < count; separation *= .7) {
+      for (int failed = 0; failed < tries && points.size() < count; ++failed) {
+        const auto& from = points[std::size_t(random() * double(points.size()))];
+        const auto end = wander(from, std::numbers::pi * random(), random);
+        const auto is_near = [&](const auto& p) {
+          return set_.difference(end, p).norm() < separation;
+        };
+        if (std::none_of(points.begin(), points.end(), is_near)) {
+          points.push_back(end);
+          failed = 0;
+        }
+      }
+    }
+    return result;
+  }
+
+  /// True if a walk on the component leads from x to one of the sample's points.
+  [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x,
+                           splitmix64& random) const {
+    constexpr int detours = 4;
+    bool result = leads_to_sample(component, x);
+    for (int k = 0; k < detours && !result; ++k) {
+      result = leads_to_sample(component, wander(x, std::numbers::pi * random(), random));
+    }
+    return result;
+  }
+
+private:
+  static constexpr double stride = .2;
+
+  /// True if a walk leads to one of the nearest points of a sample.
+  [[nodiscard]] bool leads_to_sample(const traced_curve& component,
+                                     const seven_coordinates& x) const {
+    constexpr std::size_t max_count = 8;
+    std::vector<seven_coordinates> nearest = component.points;
+    std::sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) {
+      return set_.difference(a, x).norm() < set_.difference(b, x).norm();
+    });
+    nearest.resize(std::min(max_count, nearest.size()));
+    return std::any_of(nearest.begin(), nearest.end(),
+                       [&](const auto& s) { return is_straight(x, s); }) ||
+           std::any_of(nearest.begin(), nearest.end(), [&](const auto& s) { return leads(x, s); });
+  }
+
+  /// True if the straight line between two points is on the set.
+  [[nodiscard]] bool is_straight(const seven_coordinates& x, const seven_coordinates& end) const {
+    constexpr std::array parts{.07, .19, .31, .5, .62, .74, .83, .93};
+    constexpr double close = 1e-7;
+    const seven_coordinates direction = set_.difference(end, x);
+    return std::all_of(parts.begin(), parts.end(), [&](double part) {
+      return set_.error(set_.moved(x, part * direction)) < close;
+    });
+  }
+
+  /// Step on the component in a direction; empty if no step stays on it.
+  [[nodiscard]] std::optional<seven_coordinates>
+  step(const seven_coordinates& x, const seven_coordinates& direction, double max_length) const {
+    const auto basis = set_.kernel(x);
+    const seven_coordinates along = basis * (basis.transpose() * direction);
+    const double size = along.norm();
+    if (!(size > .1 * direction.norm())) {
+      return {};
+    }
+    return set_.projected(set_.moved(x, std::min(1., max_length / size) * along), 2 * stride);
+  }
+
+  /// True if a walk towards `end` reaches it.
+  [[nodiscard]] bool leads(seven_coordinates x, const seven_coordinates& end) const {
+    constexpr int steps = 100;
+    for (int k = 0; k < steps; ++k) {
+      const seven_coordinates direction = set_.difference(end, x);
+      const double remaining = direction.norm();
+      if (remaining < self_motion_tolerance::same_rough) {
+        return true;
+      }
+      const auto next = step(x, direction, stride);
+      if (!next || !(set_.difference(end, *next).norm() < .95 * remaining)) {
+        return false;
+      }
+      x = *next;
+    }
+    return false;
+  }
+
+  /// End of a walk of a given length in a random direction.
+  [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length,
+                                         splitmix64& random) const {
+    seven_coordinates direction = self_motion_set::any_direction(set_.kernel(x), random);
+    for (; length > 0; length -= stride) {
+      const auto next = step(x, direction, std::min(length, stride));
+      const seven_coordinates moved = next ? set_.difference(*next, x) : seven_coordinates::Zero();
+      if (!(moved.norm() > 0)) {
+        break;
+      }
+      x = *next;
+      direction = moved.normalized();
+    }
+    return x;
+  }
+
+  const self_motion_set& set_;
+};
+
+/// Collects the components of the self-motion set of one redundant arm at one goal.
+class component_search {
+public:
+  component_search(const redundant_arm& arm, double resolution)
+      : arm_(arm), set_(arm), tracer_(set_, resolution), sampler_(set_), resolution_(resolution) {}
+
+  [[nodiscard]] std::vector<traced_curve> operator()() {
+    add_slices();
+    if (is_degenerate_ || seeds_[1].empty()) {
+      add_random_points();
+    }
+    // Seeds with the smallest null spaces first: almost all points of a component have a null space
+    // of the same dimension, some have larger ones.
+    for (std::size_t kernel = 1; kernel < seeds_.size(); ++kernel) {
+      for (const seven_coordinates& x : seeds_[kernel]) {
+        add(x, int(kernel));
+      }
+    }
+    return std::move(components_);
+  }
+
+private:
+  /// Adds all solutions of the other six joints with one joint fixed, for each joint at values one
+  /// resolution apart.
+  void add_slices() {
+    const int count = int(std::ceil(2 * std::numbers::pi / resolution_));
+    for (int fixed = 0; fixed < 7; ++fixed) {
+      for (int k = 0; k < count && arm_.is_revolute[std::size_t(fixed)]; ++k) {
+        // not at round numbers from tables, where arms are singular
+        add_slice(fixed, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
+      }
+    }
+  }
+  void add_slice(int fixed, double value) {
+    const chain_screws axes = arm_.axes_without(fixed, value);
+    const branch_search search(axes.loop_to(arm_.goal));
+    for (const loop_solution& x : search.answer().solutions) {
+      seven_coordinates theta;
+      for (int i = 0, k = 0; i < 7; ++i) {
+        theta[i] =
+            i == fixed ? value : x.theta[k] * (arm_.is_revolute[std::size_t(i)] ? 1 : axes.size);
+        k += i != fixed;
+      }
+      // If other joints can move while this one is fixed, its value is singular, or the set has
+      // more dimensions.
+      is_degenerate_ = is_degenerate_ || !search.answer().is_complete;
+      if (const auto on_set = set_.projected(theta, .1)) {
+        add_seed(*on_set);
+      }
+    }
+  }
+
+  /// Adds points of components on which no joint can be fixed alone, by searches from random
+  /// configurations.
+  void add_random_points() {
+    constexpr int count = 256;
+    for (int k = 0; k < count; ++k) {
+      if (const auto x = set_.any_point(random_)) {
+        add_seed(*x);
+      }
+    }
+  }
+
+  void add_seed(const seven_coordinates& x) {
+    const auto kernel = std::size_t(set_.kernel(x).cols());
+    is_degenerate_ = is_degenerate_ || kernel > 1;
+    seeds_[kernel].push_back(x);
+  }
+
+  [[nodiscard]] bool is_known(const seven_coordinates& x, int kernel) {
+    return std::any_of(components_.begin(), components_.end(), [&](const traced_curve& component) {
+      return component.dimension > 1 ? kernel > 1 && sampler_.is_on(component, x, random_)
+                                     : tracer_.is_on(component, x, kernel);
+    });
+  }
+
+  void add(const seven_coordinates& x, int kernel) {
+    if (is_known(x, kernel)) {
+      return;
+    }
+    if (kernel == 1) {
+      components_.push_back(tracer_.trace(x, set_.kernel(x).col(0), 1));
+    } else if (set_.dimension(x, step, random_) == 0) {
+      components_.push_back({{x}, false, 0, kernel});
+    } else {
+      add_near(x);
+    }
+  }
+
+  /// Adds components near a singular point, at which several of them may cross.
+  void add_near(const seven_coordinates& singular) {
+    struct neighbour {
+      seven_coordinates x;
+      int kernel;
+    };
+    const auto basis = set_.kernel(singular);
+    std::vector<neighbour> neighbours;
+    for (int k = 0; k < 4 * basis.cols(); ++k) {
+      const auto x = set_.neighbour(singular, step, basis, random_);
+      if (x && set_.difference(*x, singular).norm() > small_step) {
+        neighbours.push_back({*x, int(set_.kernel(*x).cols())});
+      }
+    }
+    std::sort(neighbours.begin(), neighbours.end(),
+              [](const neighbour& a, const neighbour& b) { return a.kernel < b.kernel; });
+    for (const auto& [x, kernel] : neighbours) {
+      if (is_known(x, kernel)) {
+        continue;
+      }
+      const int dimension = std::min(set_.dimension(x, small_step, random_),
+                                     set_.dimension(x, small_step / 8, random_));
+      if (dimension > 1) {
+        components_.push_back(sampler_.sample(x, dimension, kernel, random_));
+      } else if (dimension == 1) {
+        const seven_coordinates along = set_.difference(x, singular).normalized();
+        components_.push_back(tracer_.trace(x, along, kernel));
+      }
+    }
+  }
+
+  static constexpr double step = .05, small_step = .005; ///< steps from a singular point to others
+
+  const redundant_arm& arm_;
+  self_motion_set set_;
+  curve_tracer tracer_;
+  surface_sampler sampler_;
+  double resolution_;
+  splitmix64 random_{1};
+  bool is_degenerate_ = false; ///< true if the tip pose is known to be singular
+  std::array<std::vector<seven_coordinates>, 8> seeds_; ///< seeds by null-space dimension
+  std::vector<traced_curve> components_;
+};
+
+/// \throws invalid_input for a chain that does not have seven joints, all revolute or one prismatic
+void require_seven_joints(const chain_view& chain) {
+  require(chain.size() == 7, "duet: self_motion_curves: the chain has ", chain.size(),
+          " moving joints (expected 7)");
+  int prismatic_count = 0;
+  for (int i = 0; i < chain.size(); ++i) {
+    require(chain.kind(i) != joint_kind::helical, "duet: self_motion_curves: joint ", i,
+            " is helical (expected revolute or prismatic)");
+    prismatic_count += chain.kind(i) == joint_kind::prismatic;
+  }
+  require(prismatic_count <= 1, "duet: self_motion_curves: the chain has ", prismatic_count,
+          " prismatic joints (expected at most 1)");
+}
+
+/// Chain and goal as the search uses them; refers to the chain.
+[[nodiscard]] redundant_arm seven_joints_of(const known_size_view<7>& chain, const tip_pose& goal) {
+  const chain_model<known_size_view<7>> model(chain);
+  redundant_arm result;
+  result.size = model.length;
+  result.goal = goal;
+  for (std::size_t i = 0; i < 7; ++i) {
+    result.is_revolute[i] = model.is_rotational[i];
+  }
+  result.tip_error = [model,
+                      scaled_goal = tip_pose{goal.rotation, 1 / model.length * goal.translation}](
+                         const seven_coordinates& x, seven_columns& jacobian) {
+    const auto state = model.at(model.joints(x));
+    const small_twist e = error_twist(state.tip, scaled_goal);
+    six_coordinates error;
+    for (int k = 0; k < 6; ++k) {
+      error[k] = e[k];
+      for (int i = 0; i < 7; ++i) {
+        jacobian(k, i) = state.jacobian(k, i);
+      }
+    }
+    return error;
+  };
+  result.axes_without = [&chain](int fixed, double value) {
+    seven_coordinates theta = seven_coordinates::Zero();
+    theta[fixed] = value;
+    return chain_screws(chain, theta, fixed);
+  };
+  return result;
+}
+
+} // namespace
+} // namespace duet::detail
+
+namespace duet {
+DUET_ABI_BEGIN
+
+std::vector<self_motion_curve> self_motion_curves(const chain_view& chain,
+                                                  const dual_quaternion<double>& goal,
+                                                  const self_motion_options& options) {
+  detail::require_seven_joints(chain);
+  detail::require_pose(goal, "self_motion_curves", "the goal");
+  detail::require_option("self_motion_curves", "resolution", options.resolution,
+                         options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
+  const detail::known_size_view<7> seven(chain);
+  const auto arm = detail::seven_joints_of(seven, detail::to_tip_pose(normalized(goal)));
+  std::vector<self_motion_curve> result;
+  for (const detail::traced_curve& curve : detail::component_search(arm, options.resolution)()) {
+    result.push_back(
+        {{curve.points.begin(), curve.points.end()}, curve.is_closed, curve.dimension});
+  }
+  return result;
+}
+
+DUET_ABI_END
+} // namespace duet
