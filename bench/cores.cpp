@@ -125,7 +125,7 @@ void inverse_kinematics(benchmark::State& state) {
   duet::random_source random(1);
   std::vector<duet::dual_quaternion<double>> goals(2000);
   std::generate(goals.begin(), goals.end(), [&] { return arm.pose(random_joints(random)); });
-  std::vector<duet::inverse_kinematics_result<7>> out(goals.size());
+  std::vector<duet::inverse_kinematics_result> out(goals.size());
   const vector start{0, -.5, 0, -2, 0, 1.5, .8};
   compare(state, [&](duet::execution execution) {
     duet::inverse_kinematics(arm, std::span<const duet::dual_quaternion<double>>(goals), start,

@@ -10,6 +10,7 @@
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <algorithm>
 #include <array>
@@ -29,7 +30,7 @@ using namespace duet;
 /// Chains of any number of joints, so that all is compiled once.
 using arm_chain = bounded_chain<16>;
 using joints = detail::joint_vector<double, -16>;
-using result = inverse_kinematics_result<-16>;
+using result = inverse_kinematics_result;
 
 struct robot {
   const char* name;

@@ -68,7 +68,7 @@ std::vector<problem> problems(family kind, unsigned seed) {
 
 /// How far the straight joint paths between waypoints are from the screw, in metres or radians;
 /// infinite outside the limits.
-double largest_deviation(const duet::motion_plan<7>& plan, const dual_quaternion& goal) {
+double largest_deviation(const duet::motion_plan& plan, const dual_quaternion& goal) {
   double result = 0;
   for (std::size_t k = 1; k < plan.joints.size(); ++k) {
     for (int part = 1; part <= 10; ++part) {

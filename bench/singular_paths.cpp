@@ -119,7 +119,7 @@ bool are_connected(const serial_chain<N>& chain, joints_of<N> from, const joints
 }
 
 template <int N>
-bool is_good(const serial_chain<N>& chain, const problem<N>& p, const motion_plan<N>& plan,
+bool is_good(const serial_chain<N>& chain, const problem<N>& p, const motion_plan& plan,
              const screw& path) {
   if (plan.joints.front() != p.start || plan.tau.back() != 1) {
     return false;

@@ -14,6 +14,7 @@
 #include <duet/core/text/file.hpp>
 #include <duet/duet.hpp>
 #include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <algorithm>
 #include <array>
@@ -27,7 +28,7 @@ namespace {
 
 using namespace duet;
 using joints = Eigen::Matrix<double, 7, 1>;
-using solution = inverse_kinematics_result<7>;
+using solution = inverse_kinematics_result;
 
 struct candidate {
   std::string name, colour;

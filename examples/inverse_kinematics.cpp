@@ -25,7 +25,7 @@
 namespace {
 
 using namespace duet;
-using solution = inverse_kinematics_result<example::arm_chain::joints>;
+using solution = inverse_kinematics_result;
 
 struct goal {
   std::string name; ///< option, or file and line

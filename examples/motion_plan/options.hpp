@@ -9,7 +9,7 @@
 #include <duet/duet.hpp>
 #include <duet/io/srdf.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/robotics/capsules_of.hpp>
+#include <duet/robotics/bounding_capsules.hpp>
 #include <duet/robotics/pairs_apart.hpp>
 
 #include <algorithm>

@@ -19,7 +19,7 @@
 
 namespace motion_plan_example {
 
-using plan_type = duet::motion_plan<-16>;
+using plan_type = duet::motion_plan;
 
 struct worst_case {
   duet::pose_error deviation;

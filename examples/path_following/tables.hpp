@@ -21,8 +21,7 @@
 
 namespace path_following {
 
-template <int N>
-std::string path_csv(const duet::motion_plan<N>& plan) {
+inline std::string path_csv(const duet::motion_plan& plan) {
   std::string text = "turns,x,y,z,qw,qx,qy,qz,deviation_m,deviation_rad";
   for (Eigen::Index i = 0; i < plan.joints.front().size(); ++i) {
     text += ",joint_" + std::to_string(i);
@@ -42,7 +41,7 @@ std::string path_csv(const duet::motion_plan<N>& plan) {
 /// The arm at the start, pale, and at the end, as thick lines from joint to joint, with the
 /// required path and that of the tip.
 template <class Arm, int N, class Path>
-example::drawing drawing_of(const Arm& arm, const duet::motion_plan<N>& plan, const Path& path,
+example::drawing drawing_of(const Arm& arm, const duet::motion_plan& plan, const Path& path,
                             double turns) {
   example::drawing d(example::point(.7, -1, .5));
   const auto add_arm = [&](const auto& theta, const std::string& colour, double shift) {
@@ -76,8 +75,7 @@ example::drawing drawing_of(const Arm& arm, const duet::motion_plan<N>& plan, co
 }
 
 /// Left the drawing, right the joints, and how far waypoints are from the path.
-template <int N>
-std::string picture_script(const example::drawing& d, const duet::motion_plan<N>& plan) {
+inline std::string picture_script(const example::drawing& d, const duet::motion_plan& plan) {
   const example::joint_curves curves(plan.joints);
   const std::size_t last = plan.joints.size() - 1;
   duet::pose_error off;

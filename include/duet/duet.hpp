@@ -10,12 +10,12 @@
 /// configurations (kinematics/sweep.hpp), fits (spline/fit.hpp), all solutions of inverse
 /// kinematics (robotics/all_inverse_kinematics.hpp, robotics/differentiable_branch.hpp,
 /// robotics/self_motion_curves.hpp), partial goals, objectives and start configurations
-/// (robotics/goals.hpp, robotics/equation_goal.hpp, robotics/choose_start.hpp), self-collision
-/// pairs and bounding capsules (robotics/pairs_apart.hpp, robotics/capsules_of.hpp,
-/// robotics/enclosing_capsule.hpp), time parametrisation (robotics/time_parametrised.hpp), tables,
-/// recordings and plans as files (io/table_file.hpp, io/recording.hpp, io/save_plan.hpp,
-/// core/text/csv.hpp), the planner of the lecture notes (motion/printed_plan.hpp), the nearest pose
-/// on a screw motion (dual_quaternion/nearest.hpp), and `interop/`.
+/// (robotics/goals.hpp, robotics/choose_start.hpp), self-collision
+/// pairs and bounding capsules (robotics/pairs_apart.hpp, robotics/bounding_capsules.hpp), time
+/// parametrisation (robotics/time_parametrised.hpp), tables, recordings and plans as files
+/// (io/table_file.hpp, io/recording.hpp, io/save_plan.hpp, core/text/csv.hpp), the planner of the
+/// lecture notes (motion/printed_plan.hpp), the nearest pose on a screw motion
+/// (dual_quaternion/nearest.hpp), and `interop/`.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>

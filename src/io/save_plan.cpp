@@ -7,15 +7,14 @@
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/io/save_plan.hpp>
 
-#include <array>
 #include <cstddef>
-#include <functional>
 #include <string>
 #include <vector>
 
-namespace duet::detail {
-
+namespace duet {
 namespace {
+
+using detail::require;
 
 /// `,name0 [unit],name1 [unit] …`
 [[nodiscard]] std::string numbered_columns(const std::string& name, const std::string& unit,
@@ -35,40 +34,37 @@ void append_components(std::vector<double>& row, const auto& values) {
 
 DUET_ABI_BEGIN
 
-void save_waypoints(const std::string& path, const std::vector<double>& tau,
-                    const std::vector<Eigen::VectorXd>& joints,
-                    const std::vector<dual_quaternion<double>>& poses,
-                    const std::vector<pose_error>& deviations) {
-  require(!joints.empty(), "duet: save_plan: the plan has no waypoints");
-  std::string text = "tau" + numbered_columns("theta", "rad or m", joints.front().size()) +
+void save_plan(const std::string& path, const motion_plan& plan) {
+  require(!plan.joints.empty(), "duet: save_plan: the plan has no waypoints");
+  std::string text = "tau" + numbered_columns("theta", "rad or m", plan.joints.front().size()) +
                      ",x [m],y [m],z [m],qw,qx,qy,qz,deviation [m],deviation [rad]\n";
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    std::vector<double> row{tau[k]};
-    append_components(row, joints[k]);
-    append_components(row, pose_coordinates(poses[k]));
-    row.push_back(deviations[k].translation);
-    row.push_back(deviations[k].rotation);
+  for (std::size_t k = 0; k < plan.joints.size(); ++k) {
+    std::vector<double> row{plan.tau[k]};
+    append_components(row, plan.joints[k]);
+    append_components(row, pose_coordinates(plan.poses[k]));
+    row.push_back(plan.deviations[k].translation);
+    row.push_back(plan.deviations[k].rotation);
     text += csv_line(row);
   }
   write_file(path, text);
 }
 
-void save_samples(const std::string& path,
-                  const std::function<std::array<Eigen::VectorXd, 3>(double)>& motion,
-                  double duration, double step) {
+void save_trajectory(const std::string& path, const joint_trajectory& trajectory, double step) {
   require(step > 0, "duet: save_trajectory: the step is ", to_text(step),
           " (expected a positive number)");
-  const Eigen::Index n = motion(0)[0].size();
+  const Eigen::Index n = trajectory(0).value.size();
   std::string text = "t [s]" + numbered_columns("theta", "rad or m", n) +
                      numbered_columns("rate", "rad/s or m/s", n) +
                      numbered_columns("acceleration", "rad/s^2 or m/s^2", n) + "\n";
+  const double duration = trajectory.duration();
   for (std::size_t k = 0;; ++k) {
     const double t = double(k) * step;
     const bool is_last = t >= duration;
     std::vector<double> row{is_last ? duration : t};
-    for (const Eigen::VectorXd& values : motion(row[0])) {
-      append_components(row, values);
-    }
+    const auto motion = trajectory(row[0]);
+    append_components(row, motion.value);
+    append_components(row, motion.velocity);
+    append_components(row, motion.acceleration);
     text += csv_line(row);
     if (is_last) {
       break;
@@ -78,4 +74,4 @@ void save_samples(const std::string& path,
 }
 
 DUET_ABI_END
-} // namespace duet::detail
+} // namespace duet

@@ -6,9 +6,9 @@
 #include "branches/orthonormalise.hpp"
 #include "branches/subproblems.hpp"
 
+#include "tip_pose.hpp"
 #include <duet/core/config.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/tip_pose.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

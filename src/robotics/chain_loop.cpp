@@ -2,8 +2,8 @@
 
 #include "branches/chain_loop.hpp"
 
+#include "solutions_within_limits.hpp"
 #include <duet/quaternion/norm.hpp>
-#include <duet/robotics/solutions_within_limits.hpp>
 
 #include <Eigen/LU>
 

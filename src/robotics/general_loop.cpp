@@ -7,12 +7,12 @@
 #include "branches/singular_value.hpp"
 #include "branches/subproblems.hpp"
 
+#include "splitmix64.hpp"
+#include "tip_pose.hpp"
 #include <duet/core/config.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/splitmix64.hpp>
-#include <duet/robotics/tip_pose.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

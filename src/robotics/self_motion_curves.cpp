@@ -4,12 +4,12 @@
 #include "branches/chain_loop.hpp"
 #include "branches/self_motion_set.hpp"
 
+#include "planning_model.hpp"
+#include "splitmix64.hpp"
 #include <duet/core/errors.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/quaternion/norm.hpp>
-#include <duet/robotics/planning_model.hpp>
 #include <duet/robotics/self_motion_curves.hpp>
-#include <duet/robotics/splitmix64.hpp>
 
 #include <Eigen/Core>
 
@@ -436,8 +436,8 @@ void require_seven_joints(const chain_view& chain) {
 }
 
 /// Chain and goal as the search uses them; refers to the chain.
-[[nodiscard]] redundant_arm seven_joints_of(const known_size_view<7>& chain, const tip_pose& goal) {
-  const chain_model<known_size_view<7>> model(chain);
+[[nodiscard]] redundant_arm seven_joints_of(const chain_view& chain, const tip_pose& goal) {
+  const planning_model<8> model(chain);
   redundant_arm result;
   result.size = model.length;
   result.goal = goal;
@@ -458,10 +458,10 @@ void require_seven_joints(const chain_view& chain) {
     }
     return error;
   };
-  result.axes_without = [&chain](int fixed, double value) {
+  result.axes_without = [seven = known_size_view<7>(chain)](int fixed, double value) {
     seven_coordinates theta = seven_coordinates::Zero();
     theta[fixed] = value;
-    return chain_screws(chain, theta, fixed);
+    return chain_screws(seven, theta, fixed);
   };
   return result;
 }
@@ -479,8 +479,7 @@ std::vector<self_motion_curve> self_motion_curves(const chain_view& chain,
   detail::require_pose(goal, "self_motion_curves", "the goal");
   detail::require_option("self_motion_curves", "resolution", options.resolution,
                          options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
-  const detail::known_size_view<7> seven(chain);
-  const auto arm = detail::seven_joints_of(seven, detail::to_tip_pose(normalized(goal)));
+  const auto arm = detail::seven_joints_of(chain, detail::to_tip_pose(normalized(goal)));
   std::vector<self_motion_curve> result;
   for (const detail::traced_curve& curve : detail::component_search(arm, options.resolution)()) {
     result.push_back(

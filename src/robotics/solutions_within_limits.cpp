@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "solutions_within_limits.hpp"
 #include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/solutions_within_limits.hpp>
 
 #include <algorithm>
 #include <cmath>

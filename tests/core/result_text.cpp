@@ -96,7 +96,7 @@ TEST_CASE("to_text of a result: enumerations, lists of results and nested result
                                            duet::vector3<double>::Zero(), 0.5, 2,
                                            duet::screw_kind::screw}) ==
         "axis: (0, 0, 1)\nmoment: (0, 0, 0)\nangle: 0.5\ntranslation: 2\nkind: screw\n");
-  duet::motion_plan<2> plan;
+  duet::motion_plan plan;
   plan.joints = {Eigen::Vector2d(1, 2), Eigen::Vector2d(3, 4), Eigen::Vector2d(5, 6)};
   plan.tau = {0, 1, 2};
   plan.deviations = {{1, 2}, {3, 4}};
@@ -110,7 +110,7 @@ TEST_CASE("to_text of a result: enumerations, lists of results and nested result
                          "smallest_clearance: inf\n"
                          "iterations: 0\n"
                          "reason: singular\n");
-  const auto result = duet::inverse_kinematics_result<2>{
+  const auto result = duet::inverse_kinematics_result{
       Eigen::Vector2d(1, 2), {0.25, 0.5}, 3, 1, duet::stop_reason::reached};
   CHECK(to_text(result) == "joints: (1, 2)\ndeviation.translation: 0.25\ndeviation.rotation: 0.5\n"
                            "iterations: 3\nrestarts: 1\nreason: reached\n");

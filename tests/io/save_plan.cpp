@@ -27,7 +27,7 @@ const std::string path = "test_io_save_plan.csv";
 } // namespace
 
 TEST_CASE("save_plan, save_trajectory: files contain all digits") {
-  motion_plan<2> plan;
+  motion_plan plan;
   CHECK_THROWS_AS(save_plan(path, plan), invalid_input);
   for (int k = 0; k < 3; ++k) {
     plan.joints.emplace_back(k / 3.0, -std::sqrt(k + 2.0));

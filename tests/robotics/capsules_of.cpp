@@ -4,7 +4,7 @@
 #include "support/message.hpp"
 #include "support/random.hpp"
 
-#include <duet/robotics/capsules_of.hpp>
+#include <duet/robotics/bounding_capsules.hpp>
 #include <duet/robotics/pairs_apart.hpp>
 
 #include <doctest/doctest.h>

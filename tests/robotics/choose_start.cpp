@@ -3,7 +3,10 @@
 #include "robotics/chains.hpp"
 #include "support/message.hpp"
 
+#include <duet/kinematics/limits.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
 #include <duet/robotics/choose_start.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/robotics/pairs_apart.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
@@ -28,7 +31,7 @@ using std::numbers::pi;
 
 /// True if it is a plan along the complete path, from a start within limits.
 template <class Path>
-bool is_complete_plan(const chain& arm, const start_search_result<-16>& found, const Path& path,
+bool is_complete_plan(const chain& arm, const start_search_result& found, const Path& path,
                       double first, double last) {
   const auto& plan = found.plan;
   if (found.reason != stop_reason::reached || found.unsolved || plan.tau.front() != first ||

@@ -1,10 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../src/robotics/constrained_step.hpp"
+#include "../../src/robotics/small_vector.hpp"
+
 #include "support/random.hpp"
 
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/robotics/constrained_step.hpp>
-#include <duet/robotics/small_vector.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,8 +3,8 @@
 #include "robotics/chains.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/robotics/equation_goal.hpp>
 #include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <doctest/doctest.h>
 

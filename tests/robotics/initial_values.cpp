@@ -13,7 +13,7 @@
 #include <duet/kinematics/tree_loop.hpp>
 #include <duet/motion/printed_plan.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/capsules_of.hpp>
+#include <duet/robotics/bounding_capsules.hpp>
 #include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/loop_motion.hpp>
 #include <duet/robotics/loop_positions.hpp>
@@ -202,11 +202,11 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(chain_clearance<double>);
   DUET_CHECK(proximity<double>);
   DUET_CHECK(inverse_kinematics_options);
-  DUET_CHECK(inverse_kinematics_result<6>);
+  DUET_CHECK(inverse_kinematics_result);
   DUET_CHECK(joint_state<Vector3d>);
   DUET_CHECK(pose_error);
   DUET_CHECK(plan_options);
-  DUET_CHECK(motion_plan<6>);
+  DUET_CHECK(motion_plan);
   DUET_CHECK(preferred_posture<Vector3d>);
   DUET_CHECK(twist_constraint);
   DUET_CHECK(task_space_region);
@@ -217,7 +217,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(box<double>);
   DUET_CHECK(half_space<double>);
   DUET_CHECK(start_options);
-  DUET_CHECK(start_search_result<6>);
+  DUET_CHECK(start_search_result);
   DUET_CHECK(time_parametrisation_options);
   DUET_CHECK(adaptive_table_options);
   DUET_CHECK(clamped<>);

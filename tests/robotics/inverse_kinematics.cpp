@@ -1,5 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../src/robotics/nearest_pose.hpp"
+#include "../../src/robotics/planning_model.hpp"
+#include "../../src/robotics/tip_pose.hpp"
+
 #include "robotics/chains.hpp"
 #include "support/allocations.hpp"
 
@@ -23,7 +27,7 @@ using duet_test::configuration;
 using duet_test::is_within_limits;
 /// Chain of any number of joints, so that the search is compiled once.
 using chain = bounded_chain<16>;
-using result = inverse_kinematics_result<-16>;
+using result = inverse_kinematics_result;
 using vector = detail::joint_vector<double, -16>;
 using std::numbers::pi;
 
@@ -359,7 +363,7 @@ TEST_CASE("inverse_kinematics: out of reach, the result is the nearest pose") {
 TEST_CASE("squared_error_of: gradient and Hessian agree with dual numbers") {
   duet_test::random_source random(43);
   const auto check = [&](const chain& arm, double angle) {
-    const detail::chain_model<chain> model(arm);
+    const detail::planning_model<8> model(arm);
     for (int k = 0; k < 5; ++k) {
       const vector theta = configuration(arm, random);
       const auto t = random.direction<3>();

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "../../src/robotics/tip_pose.hpp"
+
 #include "robotics/complete_search.hpp"
 
 #include <duet/dual_quaternion/dual_quaternion.hpp>

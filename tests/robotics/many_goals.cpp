@@ -3,8 +3,8 @@
 #include "robotics/chains.hpp"
 #include "support/message.hpp"
 
-#include <duet/robotics/equation_goal.hpp>
 #include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <doctest/doctest.h>
 
@@ -25,7 +25,7 @@ using namespace duet;
 using chain = duet_test::any_chain;
 using vector = duet_test::any_joints;
 using duet_test::configuration;
-using result = inverse_kinematics_result<chain::joints>;
+using result = inverse_kinematics_result;
 
 bool are_identical(const result& a, const result& b) {
   return a.joints == b.joints && a.deviation.translation == b.deviation.translation &&
@@ -117,7 +117,7 @@ TEST_CASE("many goals: user-defined goals in an array; optional arguments") {
     }};
   };
   const std::array goals{at_distance(.5), at_distance(.6), at_distance(9)};
-  std::array<inverse_kinematics_result<6>, 3> out;
+  std::array<inverse_kinematics_result, 3> out;
   inverse_kinematics(arm, goals, start, out);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto alone = inverse_kinematics(arm, goals[i], start);

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../src/robotics/path_step.hpp"
+
 #include "robotics/paths.hpp"
 
 #include <duet/motion/printed_plan.hpp>

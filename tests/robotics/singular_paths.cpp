@@ -1,5 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../src/robotics/planning_model.hpp"
+#include "../../src/robotics/singularity.hpp"
+
 #include "robotics/chains.hpp"
 #include "robotics/complete_search.hpp"
 #include "robotics/paths.hpp"
@@ -7,7 +10,6 @@
 #include <duet/kinematics/denavit_hartenberg.hpp>
 #include <duet/kinematics/limits.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
-#include <duet/robotics/singularity.hpp>
 
 #include <algorithm>
 #include <array>
@@ -21,7 +23,7 @@ namespace {
 using namespace duet;
 using chain = serial_chain<6>;
 using vector = duet_test::coordinates<6>;
-using plan_of_six = motion_plan<6>;
+using plan_of_six = motion_plan;
 
 constexpr double pi = 3.14159265358979324;
 const chain ur5e = robots::ur5e().table();
@@ -70,7 +72,7 @@ struct screw_path {
 };
 
 double smallest_singular_value(const chain& arm, const vector& theta) {
-  const detail::chain_model<chain> model(arm);
+  const detail::planning_model<8> model(arm);
   return detail::smallest_singular_value_of(model.at(model.joints(theta)).jacobian);
 }
 
@@ -157,7 +159,7 @@ TEST_CASE("plans leave the wrist singularity whenever a path back to it exists")
 
 TEST_CASE("escape_direction: increases the smallest singular value fastest") {
   duet_test::random_source random(5);
-  const detail::chain_model<chain> model(puma);
+  const detail::planning_model<8> model(puma);
   for (int k = 0; k < 5; ++k) {
     vector theta = configuration(random, 1);
     theta[2] += 1.5;
@@ -191,7 +193,7 @@ TEST_CASE("escape_direction: is the gradient of the determinant by dual numbers"
                jacobian(general, theta, frame::hybrid))
         .determinant();
   };
-  const detail::chain_model<chain> model(general);
+  const detail::planning_model<8> model(general);
   duet_test::random_source random(7);
   int count = 0;
   for (int k = 0; k < 20; ++k) {
@@ -301,7 +303,7 @@ TEST_CASE("plans stop only where all solutions end, with the same reason") {
 /// A stretched elbow bends by ±s n, and that moves the tip inwards by s². Beside that it bends to
 /// the one side as it is asked to, and to the other by as much more as it is bent.
 TEST_CASE("singular_point: steps_for bends a stretched elbow by the right angle") {
-  const detail::chain_model<chain> model(ur5e);
+  const detail::planning_model<8> model(ur5e);
   duet_test::random_source random(10);
   for (int k = 0; k < 5; ++k) {
     vector theta = configuration(random, 1);
@@ -331,7 +333,7 @@ using seven = duet_test::coordinates<7>;
 
 TEST_CASE("orientation: is constant along a self-motion curve") {
   const auto arm = robots::panda().table();
-  const detail::chain_model<serial_chain<7>> model(arm);
+  const detail::planning_model<8> model(arm);
   duet_test::random_source random(11);
   for (int k = 0; k < 5; ++k) {
     seven start;

@@ -37,7 +37,7 @@ constexpr std::size_t ur5e = 0, puma = 1, irb = 2, kr = 3, mate = 4;
 
 template <int N>
 struct planned {
-  motion_plan<N> plan;
+  motion_plan plan;
   duet_test::path_verdict verdict;
 };
 

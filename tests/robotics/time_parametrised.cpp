@@ -349,7 +349,7 @@ TEST_CASE(
 
 TEST_CASE("time_optimal_trajectory: plans and plans of zero length are accepted, invalid input is "
           "rejected") {
-  motion_plan<3> plan;
+  motion_plan plan;
   plan.joints = {vector(0, 1, 2), vector(1, 1, 3)};
   const vector v(1, 1, 1), a(1, 1, 1);
   const auto q = time_optimal_trajectory(plan, v, a);
@@ -556,7 +556,7 @@ TEST_CASE("time_optimal_trajectory: the velocity and position limits of a chain 
   }
   const serial_chain<3> chain(joints);
   const vector a(9, 9, 9);
-  motion_plan<3> plan;
+  motion_plan plan;
   plan.joints = {vector(0, 0, 0), vector(.9, .2, .1), vector(.5, .4, .2), vector(.2, .8, .7)};
   const auto q = time_optimal_trajectory(chain, plan, a);
   const vector v(1, 2, 3);

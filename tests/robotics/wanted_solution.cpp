@@ -9,8 +9,8 @@
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/limits.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/equation_goal.hpp>
 #include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <doctest/doctest.h>
 
@@ -49,7 +49,7 @@ vector nearby(const chain& arm, vector theta, double max_change, duet_test::rand
 }
 
 /// Distance of the tip from a position, in 50 digits.
-double distance(const chain& arm, const vector& theta, const vector3<double>& p) {
+double distance(const chain& arm, const Eigen::VectorXd& theta, const vector3<double>& p) {
   using duet_test::real_50;
   const Eigen::Matrix<real_50, Eigen::Dynamic, 1> exact = theta.cast<real_50>();
   return double((translation(arm.pose(exact)) - p.cast<real_50>()).norm());
@@ -507,7 +507,7 @@ TEST_CASE("nan objectives and goals: an error if nan everywhere, otherwise not a
       " is nan at every configuration evaluated, for example at the" + at_start;
   CHECK(message(nowhere, no_objective{}) == "duet: inverse_kinematics: the goal" + goal);
   CHECK(message(nowhere, preferred_posture{start}) == "duet: inverse_kinematics: the goal" + goal);
-  std::vector<inverse_kinematics_result<chain::joints>> out(2);
+  std::vector<inverse_kinematics_result> out(2);
   CHECK(duet_test::message_of<invalid_input>([&] {
           inverse_kinematics(arm, std::vector{nowhere, nowhere}, start, out);
         }) == "duet: inverse_kinematics: goal 0" + goal);

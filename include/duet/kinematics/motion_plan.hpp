@@ -105,12 +105,9 @@ template <std::floating_point T>
 
 /// Path in configuration space from the start on: waypoints, with straight lines in between. If the
 /// goal is not reached, the path ends as far as the planner came.
-///
-/// \tparam N  as in `serial_chain`
-template <int N>
 struct motion_plan {
   /// Configuration at each waypoint: radians, or units of length for prismatic joints.
-  std::vector<detail::joint_vector<double, N>> joints;
+  std::vector<Eigen::VectorXd> joints;
   std::vector<dual_quaternion<double>> poses; ///< pose of the tip at each waypoint
   /// Fraction of the screw motion, or parameter of the path, at each waypoint; equal at successive
   /// waypoints of a self-motion.
@@ -144,8 +141,8 @@ struct motion_plan {
 
 namespace detail {
 
-template <int N, class C, class V>
-void add_waypoint(motion_plan<N>& plan, const C& chain, const V& theta,
+template <class C, class V>
+void add_waypoint(motion_plan& plan, const C& chain, const V& theta,
                   const dual_quaternion<double>& pose, double tau, const pose_error& deviation) {
   plan.joints.push_back(theta);
   plan.poses.push_back(pose);
@@ -166,6 +163,19 @@ template <class C, class X>
     theta[i] = x[i];
   }
   return theta;
+}
+
+/// Start of a search in a vector of the chain's type.
+///
+/// \throws invalid_input for another number of coordinates than joints
+template <class C, class Start>
+[[nodiscard]] joint_vector<double, C::joints> start_of(const C& chain, const Start& start) {
+  require_size(chain, start);
+  joint_vector<double, C::joints> result(chain.size());
+  for (int i = 0; i < chain.size(); ++i) {
+    result[i] = vector_argument<Start>::get(start, i);
+  }
+  return result;
 }
 
 /// \throws invalid_input for a start of another size, not finite or outside the limits

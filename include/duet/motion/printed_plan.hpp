@@ -75,15 +75,15 @@ template <class C, class Next, class Record>
 /// of the remaining motion the approach to the goal slows down: each step leaves about 1 − βτ of
 /// the motion, so β and τ have the same effect.
 ///
-/// \return `motion_plan<N>`
+/// \return `motion_plan`
 /// \throws invalid_input for a start outside the limits and for a goal that is not a pose
 template <SerialChain C, VectorLike Start>
-[[nodiscard]] auto printed_screw_plan(const C& chain, const Start& start,
-                                      const dual_quaternion<double>& goal,
-                                      const printed_plan_options& options = {}) {
+[[nodiscard]] motion_plan printed_screw_plan(const C& chain, const Start& start,
+                                             const dual_quaternion<double>& goal,
+                                             const printed_plan_options& options = {}) {
   detail::require_start(chain, start, "printed_screw_plan");
   detail::require_pose(goal, "printed_screw_plan", "the goal");
-  motion_plan<C::joints> plan;
+  motion_plan plan;
   const auto theta = detail::to_chain_joints(chain, start);
   const dual_quaternion<double> first = chain.pose(theta);
   const auto motion = screw_parameters(conj(first) * goal);
@@ -110,20 +110,20 @@ template <SerialChain C, VectorLike Start>
 /// steps of the length h the tip lags (1 − β)/β h behind; it follows for 0 < β < 2, with β = 1 to
 /// second order in h.
 ///
-/// \return `motion_plan<N>`
+/// \return `motion_plan`
 /// \throws invalid_input for a start outside the limits, for no poses, and for one that is not a
 /// pose
 template <SerialChain C, VectorLike Start>
-[[nodiscard]] auto printed_path_plan(const C& chain, const Start& start,
-                                     std::span<const dual_quaternion<double>> path,
-                                     const printed_plan_options& options = {}) {
+[[nodiscard]] motion_plan printed_path_plan(const C& chain, const Start& start,
+                                            std::span<const dual_quaternion<double>> path,
+                                            const printed_plan_options& options = {}) {
   detail::require_start(chain, start, "printed_path_plan");
   detail::require(!path.empty(), "duet: printed_path_plan: the path has no poses");
   for (std::size_t i = 0; i < path.size(); ++i) {
     detail::require_pose(path[i], "printed_path_plan",
                          "pose " + std::to_string(i) + " of the path");
   }
-  motion_plan<C::joints> plan;
+  motion_plan plan;
   const auto target = [&](int k) { return std::min(std::size_t(std::max(k, 1)), path.size()) - 1; };
   plan.reason = detail::printed_steps(
       chain, detail::to_chain_joints(chain, start), path.back(), int(path.size()), options,

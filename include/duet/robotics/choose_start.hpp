@@ -4,87 +4,74 @@
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 #include <duet/robotics/clearance.hpp>
 #include <duet/robotics/follow_path.hpp>
 #include <duet/robotics/objective.hpp>
-#include <duet/robotics/path_step.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/start_problem.hpp>
-#include <duet/robotics/start_search.hpp>
 
-#include <algorithm>
-#include <concepts>
 #include <limits>
-#include <utility>
+#include <optional>
+#include <vector>
 
 /// \file
 /// Start configurations from which a chain can follow a whole path, or the pose of the path that
 /// has no solution.
 
 namespace duet {
+DUET_ABI_BEGIN
 
+/// Options of `find_start_configuration`.
+struct start_options {
+  /// Options of the planner that follows paths.
+  plan_options plan = {};
+  /// Maximum number of starts that are tried.
+  int max_starts = 64;
+  /// Maximum distance from one configuration to the next on self-motion curves of seven joints, as
+  /// `self_motion_options::resolution`.
+  double resolution = .3;
+  /// Distance between the poses that are checked for a solution, a fraction of the path.
+  double sampling = .01;
+};
+
+/// Result of `find_start_configuration`.
+struct start_search_result {
+  /// Plan from the start configuration that was found, `plan.joints.front()`; if none leads to the
+  /// end of the path, the one that comes farthest. Empty if no start has a solution.
+  motion_plan plan;
+  int starts = 0; ///< number of starts tried
+  /// First parameter, to 1e-6 of the path, at which no joint coordinates were found, if no start
+  /// leads to the end; nothing if all poses that were checked have some.
+  std::optional<double> unsolved;
+  /// Termination reason: `reached`; else what blocks the path at `unsolved`, or else that of
+  /// `plan`.
+  stop_reason reason = stop_reason::no_solution;
+  /// True if certainly there is no solution at `unsolved`. Of six joints all are known.
+  bool is_certain = false;
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("plan", plan);
+    f("starts", starts);
+    f("unsolved", unsolved.value_or(std::numeric_limits<double>::quiet_NaN()));
+    f("reason", reason);
+    f("is_certain", is_certain);
+  }
+};
+
+DUET_ABI_END
 namespace detail {
+DUET_ABI_BEGIN
 
-/// \throws invalid_input
-inline void require_options(const start_options& o) {
-  require_positive("find_start_configuration", "max_starts", o.max_starts);
-  const auto require_part = [](const char* name, double value) {
-    require_option("find_start_configuration", name, value, value > 0 && value <= 1,
-                   "within (0, 1]");
-  };
-  require_part("resolution", o.resolution);
-  require_part("sampling", o.sampling);
-}
+/// `find_start_configuration` for a chain of any type.
+///
+/// \param stops  parameters that become waypoints, increasing; the first and the last are the ends
+start_search_result find_start(const chain_view& chain, const path_function& path,
+                               const std::vector<double>& stops, const start_options& options,
+                               const objective_view& objective, const scene* around);
 
-/// Plan with its joint coordinates in vectors of another type.
-template <int N, int M>
-[[nodiscard]] motion_plan<N> with_vectors_of(motion_plan<M> plan) {
-  if constexpr (N == M) {
-    return plan;
-  } else {
-    return {{plan.joints.begin(), plan.joints.end()},
-            std::move(plan.poses),
-            std::move(plan.tau),
-            std::move(plan.deviations),
-            plan.smallest_singular_value,
-            plan.smallest_limit_margin,
-            plan.smallest_clearance,
-            plan.iterations,
-            plan.reason};
-  }
-}
-
-template <class C, class Objective, class Scene, class Follow>
-[[nodiscard]] start_search_result<C::joints>
-find_start(const C& chain, const path_function& path, double first, double last,
-           const start_options& options, const Objective& objective, const Scene& around,
-           const Follow& follow) {
-  static_assert(planning_types<Objective, Scene>::are_good);
-  require_options(options);
-  require_objective(objective, chain.size());
-  constexpr int capacity = std::max(16, joint_capacity(C::joints)); // 16 is compiled once
-  using joints = typename start_problem<capacity>::joints;
-  start_problem<capacity> problem{chain, nullptr, path, first, last, options, {}, {}};
-  if constexpr (std::same_as<Scene, scene>) {
-    require_scene(chain, around);
-    problem.around = &around;
-  }
-  problem.follow = [&](const joints& start, const plan_options& how) {
-    return with_vectors_of<-capacity>(follow(to_chain_joints(chain, start), how));
-  };
-  if constexpr (!std::same_as<Objective, no_objective>) {
-    problem.objective = [&](const joints& x) {
-      return double(objective(to_chain_joints(chain, x)));
-    };
-  }
-  auto result = find_start(problem);
-  return {with_vectors_of<C::joints>(std::move(result.plan)), result.starts, result.unsolved,
-          result.reason, result.is_certain};
-}
-
+DUET_ABI_END
 } // namespace detail
 
 /// Start configuration from which the tip of a chain follows a whole path, and the plan from there;
@@ -107,38 +94,39 @@ find_start(const C& chain, const path_function& path, double first, double last,
 /// \throws invalid_input as `follow_path`, and for an objective that is nan at all starts; starts
 /// at which it is nan are left out
 template <SerialChain C, PosePath Path, class Objective = no_objective, class Scene = no_scene>
-[[nodiscard]] start_search_result<C::joints>
+[[nodiscard]] start_search_result
 find_start_configuration(const C& chain, const Path& path, double first, double last,
                          const start_options& options = {}, const Objective& objective = {},
                          const Scene& around = {}) {
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: find_start_configuration: the parameter of the path goes from ", first,
                   " to ", last, " (expected an increasing, finite interval)");
-  return detail::find_start(chain, detail::checked(path), first, last, options, objective, around,
-                            [&](const auto& start, const plan_options& how) {
-                              return follow_path(chain, start, path, first, last, how, objective,
-                                                 around);
-                            });
+  static_assert(detail::planning_types<Objective, Scene>::are_good);
+  detail::require_objective(objective, chain.size());
+  return detail::find_start(chain, detail::checked(path), {first, last}, options,
+                            detail::objective_view::of<C::joints>(objective),
+                            detail::scene_of(around));
 }
 
 /// Start configuration from which the tip of a chain follows a spline of poses over its whole
 /// domain.
 template <SerialChain C, PosePath Spline, class Objective = no_objective, class Scene = no_scene>
   requires requires(const Spline& s) { s.breaks().front(); }
-[[nodiscard]] start_search_result<C::joints>
-find_start_configuration(const C& chain, const Spline& spline, const start_options& options = {},
-                         const Objective& objective = {}, const Scene& around = {}) {
-  return detail::find_start(chain, detail::checked(spline), spline.breaks().front(),
-                            spline.breaks().back(), options, objective, around,
-                            [&](const auto& start, const plan_options& how) {
-                              return follow_path(chain, start, spline, how, objective, around);
-                            });
+[[nodiscard]] start_search_result find_start_configuration(const C& chain, const Spline& spline,
+                                                           const start_options& options = {},
+                                                           const Objective& objective = {},
+                                                           const Scene& around = {}) {
+  static_assert(detail::planning_types<Objective, Scene>::are_good);
+  detail::require_objective(objective, chain.size());
+  const auto& breaks = spline.breaks();
+  return detail::find_start(
+      chain, detail::checked(spline), std::vector<double>(breaks.begin(), breaks.end()), options,
+      detail::objective_view::of<C::joints>(objective), detail::scene_of(around));
 }
 
 template <SerialChain C, VectorLike Start, PosePath Path, class... More>
 DUET_REFUSED(
     "find_start_configuration takes no start: find_start_configuration(chain, path, first, last)")
-start_search_result<C::joints> find_start_configuration(const C&, const Start&, const Path&,
-                                                        const More&...);
+start_search_result find_start_configuration(const C&, const Start&, const Path&, const More&...);
 
 } // namespace duet

@@ -2,52 +2,103 @@
 #pragma once
 
 #include <duet/core/compiler/refused.hpp>
-#include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/kinematics/serial_chain.hpp>
-#include <duet/quaternion/norm.hpp>
-#include <duet/robotics/inverse_kinematics_search.hpp>
-#include <duet/robotics/planning_model.hpp>
+#include <duet/robotics/clearance.hpp>
+#include <duet/robotics/goals.hpp>
+#include <duet/robotics/objective.hpp>
+
+#include <Eigen/Core>
 
 #include <cstddef>
+#include <cstdint>
+#include <ranges>
 #include <span>
-#include <string>
+#include <vector>
 
 /// \file
 /// Inverse kinematics by damped least squares (Levenberg–Marquardt): joint coordinates for poses of
-/// the tip frame (end-effector frame).
+/// the tip frame (end-effector frame) and for partial goals, with preferred postures, null-space
+/// (secondary) objectives and obstacles.
 
 namespace duet {
+DUET_ABI_BEGIN
 
-namespace detail {
-
-/// Inverse kinematics search on a chain; results have the vector type of the chain.
-template <class C>
-class search_on_chain {
-public:
-  /// \throws invalid_input for a start whose size is not the number of joints
-  template <class Start>
-  search_on_chain(const C& chain, const Start& start, const inverse_kinematics_options& options)
-      : model_((require_size(chain, start), chain)),
-        search_(model_, model_.joints(start), options) {}
-  search_on_chain(const search_on_chain&) = delete;
-
-  /// \param goal  a pose
-  [[nodiscard]] inverse_kinematics_result<C::joints>
-  operator()(const dual_quaternion<double>& goal) const {
-    const auto x = search_(model_.scaled_pose(normalized(goal)));
-    return {to_chain_joints(model_.chain(), model_.unscaled_joints_within_limits(x.joints)),
-            model_.unscaled_error(x.residual), x.iterations, x.restarts, x.reason};
-  }
-
-private:
-  chain_model<C> model_;
-  inverse_kinematics_search<joint_capacity(C::joints)> search_;
+/// Options of `inverse_kinematics`.
+struct inverse_kinematics_options {
+  /// Maximum error of the tip pose relative to the goal: units of length, and radians.
+  pose_tolerance tolerance = 1e-6;
+  /// Maximum number of random restarts if the search does not converge from the given start.
+  int max_restarts = 100;
+  /// Maximum number of iterations per attempt.
+  int max_iterations = 50;
+  /// Seed of the random configurations.
+  std::uint64_t seed = 1;
+  /// Number of solutions from which an objective is minimised; the best result is returned.
+  int candidates = 10;
 };
 
+/// Result of `inverse_kinematics`; unless `reason` is `reached`, the configuration nearest to the
+/// goal that was found.
+struct inverse_kinematics_result {
+  /// Joint coordinates within the limits: radians, or units of length for prismatic joints.
+  Eigen::VectorXd joints = {};
+  pose_error deviation; ///< error of the tip pose relative to the goal
+  int iterations = 0;   ///< number of iterations of all attempts together
+  int restarts = 0;     ///< number of random restarts
+  /// Termination reason: `reached` if the tip is at the goal, otherwise what blocks the search.
+  stop_reason reason = stop_reason::no_progress;
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("joints", joints);
+    f("deviation", deviation);
+    f("iterations", iterations);
+    f("restarts", restarts);
+    f("reason", reason);
+  }
+};
+
+DUET_ABI_END
+namespace detail {
+DUET_ABI_BEGIN
+
+/// What is preferred among the solutions of a goal.
+struct solution_preferences {
+  objective_view objective;
+  const scene* around = nullptr; ///< null without obstacles
+
+  [[nodiscard]] bool is_empty() const { return !objective && around == nullptr; }
+};
+
+/// Solutions of poses, out[i] for goals[i]; messages name the goals by number, if `is_one` the
+/// goal.
+void solve_poses(const chain_view& chain, std::span<const dual_quaternion<double>> goals,
+                 const Eigen::Ref<const Eigen::VectorXd>& start,
+                 std::span<inverse_kinematics_result> out,
+                 const inverse_kinematics_options& options, const execution& how,
+                 const solution_preferences& preferences, bool is_one);
+/// Solutions of partial goals.
+void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
+                 const Eigen::Ref<const Eigen::VectorXd>& start,
+                 std::span<inverse_kinematics_result> out,
+                 const inverse_kinematics_options& options, const execution& how,
+                 const solution_preferences& preferences, bool is_one);
+
+/// \throws invalid_input for a preferred posture of another size
+template <class C, class Objective, class Scene>
+[[nodiscard]] solution_preferences preferences_of(const C& chain, const Objective& objective,
+                                                  const Scene& around) {
+  static_assert(planning_types<Objective, Scene>::are_good);
+  require_objective(objective, chain.size());
+  return {objective_view::of<C::joints>(objective), scene_of(around)};
+}
+
+DUET_ABI_END
 } // namespace detail
 
 /// Inverse kinematics: joint coordinates θ within the limits of a chain at which its tip frame
@@ -68,14 +119,15 @@ private:
 /// not prove that there is no solution: `joint_limit`, `singular` and `no_progress` state what
 /// blocks the search there, `iteration_limit` that nothing does
 /// \throws invalid_input for a start that is not finite or of another size, for a goal that is not
-/// a pose, and for invalid options
+/// a pose, for invalid options, and for more than 100 joints
 template <SerialChain C, VectorLike Start>
-[[nodiscard]] inverse_kinematics_result<C::joints>
+[[nodiscard]] inverse_kinematics_result
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options = {}) {
-  const detail::search_on_chain<C> search(chain, start, options);
-  detail::require_pose(goal, "inverse_kinematics", "the goal");
-  return search(goal);
+  inverse_kinematics_result result;
+  detail::solve_poses(chain, {&goal, 1}, detail::start_of(chain, start), {&result, 1}, options,
+                      one_core, {}, true);
+  return result;
 }
 
 /// Inverse kinematics of many goals: out[i] = inverse_kinematics(chain, goals[i], start, options),
@@ -85,35 +137,118 @@ inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const St
 /// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
 template <SerialChain C, VectorLike Start>
 void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
-                        const Start& start, std::span<inverse_kinematics_result<C::joints>> out,
+                        const Start& start, std::span<inverse_kinematics_result> out,
                         const inverse_kinematics_options& options = {}, execution how = one_core) {
-  detail::require(goals.size() == out.size(), "duet: inverse_kinematics: ", goals.size(),
-                  " goals, but room for ", out.size(), " results");
-  const detail::search_on_chain<C> search(chain, start, options);
-  for (std::size_t i = 0; i < goals.size(); ++i) {
-    detail::require_pose(goals[i], "inverse_kinematics", "goal " + std::to_string(i));
-  }
-  parallel_for(
-      goals.size(), [&](std::size_t i) { out[i] = search(goals[i]); }, how);
+  detail::solve_poses(chain, goals, detail::start_of(chain, start), out, options, how, {}, false);
 }
 
-DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result<C::joints>)
+/// Inverse kinematics for partial goals: joint coordinates within the limits of a chain at which
+/// its tip frame satisfies a `task_space_region`, as returned by `position_goal`, `pointing_goal`
+/// and others, or any `TipGoal`.
+///
+/// Damped least squares (Levenberg–Marquardt) as for poses, with the rows M of the constraint:
+/// M J Δ = e. An objective (null-space or secondary objective) is minimised within all solutions
+/// near each of the first `options.candidates` solutions found, and the joints with the smallest
+/// value are returned: it acts on the freedom of a redundant arm or a partial goal. With a `scene`,
+/// solutions nearby are sought that keep its margin, to `options.tolerance.translation`.
+///
+/// \param objective  function of θ, generic over scalars, or an object with a member
+/// `gradient(theta)` too, such as `preferred_posture`; nan counts as larger than any number
+/// \param around     `scene` of bodies and obstacles
+/// \return the joints, as for poses; `deviation` is the error of the rows of lengths and of angles.
+/// `obstacle`: the goal was reached, but only too close to obstacles; the joints are such a
+/// configuration
+/// \throws invalid_input as for poses, for a region that contains no pose, a preferred posture of
+/// another size or not finite, an invalid `scene`, and, with the joints in the message, for a goal
+/// that is nan at every configuration evaluated and an objective that is nan at all solutions found
+template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objective,
+          class Scene = no_scene>
+[[nodiscard]] inverse_kinematics_result
+inverse_kinematics(const C& chain, const G& goal, const Start& start,
+                   const inverse_kinematics_options& options = {}, const Objective& objective = {},
+                   const Scene& around = {}) {
+  inverse_kinematics_result result;
+  const detail::goal_view view(goal);
+  const auto preferences = detail::preferences_of(chain, objective, around);
+  detail::solve_goals(chain, {&view, 1}, detail::start_of(chain, start), {&result, 1}, options,
+                      one_core, preferences, true);
+  return result;
+}
+
+/// Inverse kinematics for a pose with an objective or among obstacles, as for partial goals: joint
+/// coordinates within the limits at which the tip of a chain has the pose `goal`.
+///
+/// For six joints, revolute or up to three of them prismatic, an objective is minimised from all
+/// solutions of `all_inverse_kinematics` within the limits, with any full turns that limits allow:
+/// a `preferred_posture` gives the nearest solution of all if these are complete. At singular poses
+/// with a self-motion, the search from random configurations is added.
+template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
+[[nodiscard]] inverse_kinematics_result
+inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
+                   const inverse_kinematics_options& options, const Objective& objective,
+                   const Scene& around = {}) {
+  inverse_kinematics_result result;
+  const auto preferences = detail::preferences_of(chain, objective, around);
+  detail::solve_poses(chain, {&goal, 1}, detail::start_of(chain, start), {&result, 1}, options,
+                      one_core, preferences, true);
+  return result;
+}
+
+/// Inverse kinematics of many partial goals: out[i] = inverse_kinematics(chain, goals[i], start,
+/// options, objective, around), with identical results for any number of threads.
+///
+/// \param goals      all of one type, in a vector, an array or a span
+/// \param objective  as for one goal; with several threads it, and `constraint` of a user-defined
+/// goal, is called concurrently
+/// \throws invalid_input if the sizes differ, for the first goal that contains no pose, and as
+/// above
+/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
+template <SerialChain C, std::ranges::contiguous_range Goals, VectorLike Start,
+          class Objective = no_objective, class Scene = no_scene>
+  requires TipGoal<std::ranges::range_value_t<Goals>>
+void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
+                        std::span<inverse_kinematics_result> out,
+                        const inverse_kinematics_options& options = {}, execution how = one_core,
+                        const Objective& objective = {}, const Scene& around = {}) {
+  const std::vector<detail::goal_view> views(std::ranges::begin(goals), std::ranges::end(goals));
+  const auto preferences = detail::preferences_of(chain, objective, around);
+  detail::solve_goals(chain, views, detail::start_of(chain, start), out, options, how, preferences,
+                      false);
+}
+
+/// Inverse kinematics of many poses: out[i] = inverse_kinematics(chain, goals[i], start, options,
+/// objective, around), with identical results for any number of threads.
+///
+/// \throws invalid_input, cancelled: as for partial goals
+template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
+void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
+                        const Start& start, std::span<inverse_kinematics_result> out,
+                        const inverse_kinematics_options& options, execution how,
+                        const Objective& objective, const Scene& around = {}) {
+  const auto preferences = detail::preferences_of(chain, objective, around);
+  detail::solve_poses(chain, goals, detail::start_of(chain, start), out, options, how, preferences,
+                      false);
+}
+
+DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result)
 
 template <SerialChain C>
 DUET_REFUSED("the start is missing: inverse_kinematics(chain, goal, start)")
-inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const dual_quaternion<double>&);
+inverse_kinematics_result inverse_kinematics(const C&, const dual_quaternion<double>&);
+template <SerialChain C, TipGoal G>
+DUET_REFUSED("the start is missing: inverse_kinematics(chain, goal, start)")
+inverse_kinematics_result inverse_kinematics(const C&, const G&);
 template <SerialChain C, VectorLike Start, class... More>
 DUET_REFUSED("the goal precedes the start: inverse_kinematics(chain, goal, start)")
-inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const Start&,
-                                                        const dual_quaternion<double>&,
-                                                        const More&...);
+inverse_kinematics_result
+    inverse_kinematics(const C&, const Start&, const dual_quaternion<double>&, const More&...);
 template <SerialChain C, VectorLike Position, VectorLike Start, class... More>
 DUET_REFUSED("for a position as the goal, pass position_goal(p) of duet/robotics/goals.hpp")
-inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const Position&, const Start&,
-                                                        const More&...);
+inverse_kinematics_result
+    inverse_kinematics(const C&, const Position&, const Start&, const More&...);
 template <SerialChain C, Real T, VectorLike Start, class... More>
 DUET_REFUSED("the goal is a rotation without a position: pass pose(q, t)")
-inverse_kinematics_result<C::joints> inverse_kinematics(const C&, const quaternion<T>&,
-                                                        const Start&, const More&...);
+inverse_kinematics_result
+    inverse_kinematics(const C&, const quaternion<T>&, const Start&, const More&...);
 
 } // namespace duet

@@ -6,6 +6,7 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
+#include <duet/kinematics/serial_chain.hpp>
 
 #include <Eigen/Core>
 
@@ -20,7 +21,8 @@
 namespace duet {
 
 struct scene;
-struct no_scene;
+/// Scene without obstacles.
+struct no_scene {};
 
 /// No objective.
 struct no_objective {};
@@ -50,6 +52,7 @@ template <class V, class... W>
 preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 
 namespace detail {
+DUET_ABI_BEGIN
 
 /// Checks argument types before they are used, so that these messages precede other compiler
 /// errors.
@@ -91,25 +94,59 @@ template <class X>
   raise(invalid_input(what + " joints (" + text + ")"));
 }
 
-/// True if an objective is nan at joint coordinates.
-template <class Objective, class X>
-[[nodiscard]] bool is_nan_at(const Objective& objective, const X& joints) {
-  if constexpr (requires { double(objective(joints)); }) {
-    return std::isnan(double(objective(joints)));
-  } else { // an objective that only has a gradient is enough for `follow_path`
-    return false;
+/// View of an objective of any type, which it calls with vectors of the type that the chain has;
+/// or no objective.
+class objective_view {
+public:
+  objective_view() = default;
+  /// \tparam N  number of joints, as in `serial_chain`
+  template <int N, class F>
+  [[nodiscard]] static objective_view of(const F& f) {
+    objective_view result;
+    if constexpr (!std::same_as<F, no_objective>) {
+      using vector = joint_vector<double, N>;
+      result.f_ = &f;
+      if constexpr (requires(const vector& x) { double(f(x)); }) {
+        result.value_ = [](const void* g, const Eigen::VectorXd& x) {
+          return double((*static_cast<const F*>(g))(vector(x)));
+        };
+      } // an objective that only has a gradient is enough for `follow_path`
+      result.gradient_ = [](const void* g, const Eigen::VectorXd& x) {
+        return Eigen::VectorXd(gradient_of(*static_cast<const F*>(g), vector(x)));
+      };
+    }
+    return result;
   }
-}
 
-/// Gradient of an objective: its own member, or automatic differentiation by dual numbers.
-template <class Objective, class X>
-[[nodiscard]] auto gradient_of(const Objective& objective, const X& joints) {
-  if constexpr (requires { objective.gradient(joints); }) {
-    return result_of_call(objective.gradient(joints));
-  } else {
-    return duet::gradient(objective, joints).gradient;
+  [[nodiscard]] explicit operator bool() const { return f_ != nullptr; }
+  /// Value at joint coordinates; 0 if the objective has none.
+  [[nodiscard]] double operator()(const Eigen::VectorXd& joints) const {
+    return value_ == nullptr ? 0 : value_(f_, joints);
   }
-}
+  [[nodiscard]] Eigen::VectorXd gradient(const Eigen::VectorXd& joints) const {
+    return gradient_(f_, joints);
+  }
 
+private:
+  /// Gradient of an objective: its own member, or automatic differentiation by dual numbers.
+  template <class Objective, class X>
+  [[nodiscard]] static auto gradient_of(const Objective& objective, const X& joints) {
+    if constexpr (requires { objective.gradient(joints); }) {
+      return result_of_call(objective.gradient(joints));
+    } else {
+      return duet::gradient(objective, joints).gradient;
+    }
+  }
+
+  const void* f_ = nullptr;
+  double (*value_)(const void*, const Eigen::VectorXd&) = nullptr;
+  Eigen::VectorXd (*gradient_)(const void*, const Eigen::VectorXd&) = nullptr;
+};
+
+/// The scene that is passed, or null.
+[[nodiscard]] inline const scene* scene_of(const scene& around) { return &around; }
+[[nodiscard]] inline const scene* scene_of(const no_scene&) { return nullptr; }
+
+DUET_ABI_END
 } // namespace detail
 } // namespace duet

@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
-#include <duet/dual_quaternion/screw.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/kinematics/chain_view.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 #include <duet/robotics/follow_path.hpp>
 
 /// \file
@@ -11,25 +12,15 @@
 namespace duet {
 
 namespace detail {
+DUET_ABI_BEGIN
 
-/// Shorter screw motion between two poses (N19), as a function of τ.
-template <class T>
-[[nodiscard]] path_function screw_path(const dual_quaternion<T>& first,
-                                       const dual_quaternion<T>& last) {
-  dual_quaternion<T> between = conj(first) * normalized(last);
-  if (innermost(between.w()) < 0) {
-    between = -between;
-  }
-  return [first, half = log_vector(between, "plan_screw_motion")](T tau) {
-    return dual_quaternion<T>(first * exp(dual_vector<T>(half * screw_dual<T>(tau))));
-  };
-}
+/// `duet::plan_screw_motion` of a chain of any type.
+motion_plan plan_screw_motion(const chain_view& chain,
+                              const Eigen::Ref<const Eigen::VectorXd>& start,
+                              const dual_quaternion<double>& goal, const plan_options& options,
+                              const objective_view& objective, const scene* around);
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE path_function screw_path(const dual_quaternion<double>&,
-                                                const dual_quaternion<double>&);
-#endif
-
+DUET_ABI_END
 } // namespace detail
 
 /// Joint path that moves the tip of a chain from its pose at `start` to the pose `goal` along the
@@ -46,18 +37,19 @@ DUET_COMPILED_TEMPLATE path_function screw_path(const dual_quaternion<double>&,
 /// \throws invalid_input for a start outside the limits and for a goal that is not a pose, and as
 /// `follow_path`
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
-[[nodiscard]] motion_plan<C::joints>
+[[nodiscard]] motion_plan
 plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<double>& goal,
                   const plan_options& options = {}, const Objective& objective = {},
                   const Scene& around = {}) {
+  static_assert(detail::planning_types<Objective, Scene>::are_good);
   detail::require_start(chain, start, "plan_screw_motion");
   detail::require_pose(goal, "plan_screw_motion", "the goal");
-  const detail::chain_model<C> model(chain);
-  const auto first = model.unscaled_pose(model.at(model.joints(start)).tip);
-  const auto target = detail::screw_path(first, goal);
-  return detail::follow(chain, start, target, {0, 1}, options, objective, around, true);
+  detail::require_objective(objective, chain.size());
+  return detail::plan_screw_motion(chain, detail::start_of(chain, start), goal, options,
+                                   detail::objective_view::of<C::joints>(objective),
+                                   detail::scene_of(around));
 }
 
-DUET_ASKS_FOR_ONE_CONFIGURATION(plan_screw_motion, motion_plan<C::joints>)
+DUET_ASKS_FOR_ONE_CONFIGURATION(plan_screw_motion, motion_plan)
 
 } // namespace duet

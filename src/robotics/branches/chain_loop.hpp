@@ -3,13 +3,13 @@
 
 #include "loop_equation.hpp"
 
+#include "../tip_pose.hpp"
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/joint_step.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/tip_pose.hpp>
 
 #include <Eigen/Core>
 

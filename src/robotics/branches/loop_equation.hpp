@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "../tip_pose.hpp"
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/tip_pose.hpp>
 
 #include <Eigen/Core>
 

@@ -4,9 +4,9 @@
 #include "chain_loop.hpp"
 #include "loop_equation.hpp"
 
+#include "../splitmix64.hpp"
+#include "../tip_pose.hpp"
 #include <duet/core/config.hpp>
-#include <duet/robotics/splitmix64.hpp>
-#include <duet/robotics/tip_pose.hpp>
 
 #include <Eigen/Core>
 

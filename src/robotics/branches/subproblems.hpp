@@ -4,11 +4,11 @@
 #include "circle_roots.hpp"
 #include "loop_equation.hpp"
 
+#include "../tip_pose.hpp"
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/tip_pose.hpp>
 
 #include <algorithm>
 #include <array>

@@ -5,6 +5,7 @@
 
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <iostream>
 

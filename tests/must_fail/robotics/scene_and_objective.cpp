@@ -6,6 +6,7 @@
 #include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/follow_path.hpp>
 #include <duet/robotics/goals.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <vector>
 

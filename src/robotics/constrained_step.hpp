@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/small_vector.hpp>
+#include "bounded_step.hpp"
+#include "small_vector.hpp"
 
 #include <Eigen/Core>
 
@@ -18,6 +18,7 @@
 /// origin that satisfies them.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Linear inequality normal·x ≥ bound.
 template <class V>
@@ -204,4 +205,5 @@ constrained_step(const J& jacobian, const E& e, const V& preferred, const V& low
           gram.smallest()};
 }
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "constrained_step.hpp"
+#include "small_vector.hpp"
 #include <duet/core/config.hpp>
-#include <duet/robotics/constrained_step.hpp>
-#include <duet/robotics/small_vector.hpp>
 
 #include <Eigen/Core>
 
@@ -14,6 +14,7 @@
 /// Quadratic programming: the step that minimises a quadratic function under linear constraints.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Equality and inequality constraints of a step.
 template <class V>
@@ -81,4 +82,5 @@ template <class V, class M>
   return correction ? std::optional<V>(factors.backward(V(aim + *correction))) : std::nullopt;
 }
 
+DUET_ABI_END
 } // namespace duet::detail

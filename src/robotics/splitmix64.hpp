@@ -9,6 +9,7 @@
 /// Random number generator of searches.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Uniform random numbers from 0 to 1, identical on every machine: SplitMix64 (Steele, Lea, Flood,
 /// Fast splittable pseudorandom number generators, 2014). `<random>` would cost the compiler more
@@ -28,4 +29,5 @@ private:
   std::uint64_t state_;
 };
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,11 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/path_step.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/singularity.hpp>
-#include <duet/robotics/small_vector.hpp>
+#include "bounded_step.hpp"
+#include "path_step.hpp"
+#include "planning_model.hpp"
+#include "singularity.hpp"
+#include "small_vector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +16,7 @@
 /// Self-motion components: configurations that a chain can move among with its tip fixed.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Configuration that can be reached, and its predecessor: one at the same parameter, by a
 /// self-motion, or one before.
@@ -146,4 +147,5 @@ private:
   bool is_endless_ = false; ///< true if any joint has no limits
 };
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,17 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include "bounded_step.hpp"
+#include "goal_equations.hpp"
+#include "nearest_pose.hpp"
+#include "planning_model.hpp"
+#include "small_vector.hpp"
+#include "splitmix64.hpp"
 #include <duet/core/errors.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/kinematics/serial_chain.hpp>
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/goal_equations.hpp>
-#include <duet/robotics/inverse_kinematics_result.hpp>
-#include <duet/robotics/nearest_pose.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/small_vector.hpp>
-#include <duet/robotics/splitmix64.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <algorithm>
 #include <array>
@@ -25,9 +24,18 @@
 /// Search for joint coordinates that take the tip of a chain to a goal: damped least squares
 /// (Levenberg–Marquardt) with random restarts.
 
-namespace duet {
+namespace duet::detail {
+DUET_ABI_BEGIN
 
-namespace detail {
+/// \throws invalid_input
+inline void require_options(const inverse_kinematics_options& options) {
+  constexpr const char* caller = "inverse_kinematics";
+  require_positive(caller, "tolerance", options.tolerance);
+  require_positive(caller, "max_iterations", options.max_iterations);
+  require_option(caller, "max_restarts", options.max_restarts, options.max_restarts >= 0,
+                 "a non-negative number");
+  require_positive(caller, "candidates", options.candidates);
+}
 
 /// Comparison a < b with nan greater than any number.
 [[nodiscard]] inline bool is_less(double a, double b) {
@@ -272,10 +280,5 @@ inverse_kinematics_search<Capacity, Goal>::operator()(const Goal& goal) const {
   return best;
 }
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class inverse_kinematics_search<8>;
-DUET_COMPILED_TEMPLATE class inverse_kinematics_search<16>;
-#endif
-
-} // namespace detail
-} // namespace duet
+DUET_ABI_END
+} // namespace duet::detail

@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/path_step.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/self_motion_components.hpp>
-#include <duet/robotics/singularity.hpp>
-#include <duet/robotics/small_vector.hpp>
+#include "bounded_step.hpp"
+#include "path_step.hpp"
+#include "planning_model.hpp"
+#include "self_motion_components.hpp"
+#include "singularity.hpp"
+#include "small_vector.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,7 @@
 /// Search for the configurations that a chain can reach along a path of its tip with self-motions.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Collects reachable configurations, parameter by parameter.
 ///
@@ -232,4 +233,5 @@ private:
   } furthest_; ///< furthest parameter reached, and the configurations from which
 };
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,12 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include "path_step.hpp"
+#include "path_tracker.hpp"
+#include "planning_model.hpp"
+#include "self_motion_search.hpp"
 #include <duet/kinematics/motion_plan.hpp>
-#include <duet/robotics/path_step.hpp>
-#include <duet/robotics/path_tracker.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/self_motion_search.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@
 /// Planner behind `follow_path` and `plan_screw_motion`.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Planner along a path, first without stopping; if that ends early, with self-motions.
 template <int Capacity>
@@ -224,9 +224,5 @@ typename path_planner<Capacity>::partial_plan path_planner<Capacity>::plan(const
   return best;
 }
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class path_planner<8>;
-DUET_COMPILED_TEMPLATE class path_planner<16>;
-#endif
-
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/robotics/small_vector.hpp>
+#include "small_vector.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +12,7 @@
 /// Least-norm joint step for a small twist of the tip within joint limits (damped least squares).
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Singular value below which steps are damped.
 inline constexpr double damping_threshold = 1e-3;
@@ -168,4 +169,5 @@ bounded_step(const small_matrix<6, N>& jacobian, const small_twist& e, const sma
   return result;
 }
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,12 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include "goal_equations.hpp"
+#include "planning_model.hpp"
+#include "quadratic_step.hpp"
+#include "small_vector.hpp"
 #include <duet/kinematics/motion_plan.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/quadratic_step.hpp>
-#include <duet/robotics/small_vector.hpp>
-#include <duet/robotics/tip_goal.hpp>
 
 #include <Eigen/Core>
 
@@ -23,24 +22,7 @@
 /// objective.
 
 namespace duet::detail {
-
-/// Vector of up to `Capacity` coordinates.
-template <int Capacity>
-using bounded_vector = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, Capacity, 1>;
-
-/// Preferences among the solutions of a goal: objective and obstacles.
-template <int Capacity>
-class solution_preferences {
-public:
-  using vector = bounded_vector<Capacity>;
-  virtual ~solution_preferences() = default;
-  [[nodiscard]] virtual bool has_objective() const = 0;
-  [[nodiscard]] virtual double objective(const small_vector<Capacity>& theta) const = 0;
-  [[nodiscard]] virtual vector gradient(const small_vector<Capacity>& theta) const = 0;
-  /// Inequalities that keep a step at the margin to obstacles.
-  [[nodiscard]] virtual std::vector<inequality<vector>>
-  clear_of_obstacles(const small_vector<Capacity>& theta) const = 0;
-};
+DUET_ABI_BEGIN
 
 /// Sequential quadratic programming within the solutions of a goal: each step keeps goal, limits
 /// and margins to first order, and Newton's method leads back to them. The curvature is that of the
@@ -63,10 +45,9 @@ public:
     vector gradient;
   };
 
-  solution_refinement(const planning_model<Capacity>& model, const tip_goal& goal,
-                      const solution_preferences<Capacity>& preferences,
-                      const pose_tolerance& tolerance)
-      : model_(model), goal_(goal), preferences_(preferences), tolerance_(tolerance) {}
+  solution_refinement(const planning_model<Capacity>& model, const scaled_goal& goal,
+                      const objective_view& objective, const pose_tolerance& tolerance)
+      : model_(model), goal_(goal), objective_(objective), tolerance_(tolerance) {}
 
   /// Solution near a given configuration that keeps the margins too and, if there is an objective,
   /// minimises it locally. Nothing if that fails.
@@ -105,7 +86,7 @@ private:
       add(more, normal, std::max(model_.lower[i] - theta[i], -trusted));
       add(more, -normal, std::max(theta[i] - model_.upper[i], -trusted));
     }
-    for (const auto& each : preferences_.clear_of_obstacles(theta)) {
+    for (const auto& each : model_.margin_inequalities(theta)) {
       add(more, each.normal, std::min(each.bound, .1));
     }
     return x;
@@ -142,9 +123,13 @@ private:
   }
   [[nodiscard]] std::optional<point> solution(const joints& theta) const {
     auto x = restored(theta);
-    if (x && preferences_.has_objective()) {
-      x->value = preferences_.objective(x->theta);
-      x->gradient = preferences_.gradient(x->theta);
+    if (x && objective_) {
+      const Eigen::VectorXd chain_joints = model_.chain_joints(x->theta);
+      x->value = objective_(chain_joints);
+      x->gradient = objective_.gradient(chain_joints);
+      for (int i = 0; i < model_.size; ++i) { // with respect to the planner's coordinates
+        x->gradient[i] *= model_.unit[i];
+      }
     }
     return x;
   }
@@ -197,8 +182,8 @@ private:
   }
 
   const planning_model<Capacity>& model_;
-  const tip_goal& goal_;
-  const solution_preferences<Capacity>& preferences_;
+  const scaled_goal& goal_;
+  const objective_view& objective_;
   pose_tolerance tolerance_;
 };
 
@@ -206,7 +191,7 @@ template <int Capacity>
 std::optional<typename solution_refinement<Capacity>::point>
 solution_refinement<Capacity>::operator()(const joints& theta, int iterations) const {
   auto best = solution(theta);
-  if (!best || !preferences_.has_objective()) {
+  if (!best || !objective_) {
     return best;
   }
   matrix curvature;
@@ -244,9 +229,5 @@ solution_refinement<Capacity>::operator()(const joints& theta, int iterations) c
   return best;
 }
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class solution_refinement<8>;
-DUET_COMPILED_TEMPLATE class solution_refinement<16>;
-#endif
-
+DUET_ABI_END
 } // namespace duet::detail

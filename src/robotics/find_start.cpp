@@ -1,17 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
 
-#include <duet/core/compiled.hpp>
-#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include "planning_model.hpp"
+#include "solutions_within_limits.hpp"
+#include "splitmix64.hpp"
+
+#include <duet/core/errors.hpp>
 #include <duet/kinematics/limits.hpp>
-#include <duet/kinematics/motion_plan.hpp>
-#include <duet/kinematics/serial_chain.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
+#include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
-#include <duet/robotics/objective.hpp>
-#include <duet/robotics/path_step.hpp>
-#include <duet/robotics/start_candidates.hpp>
-#include <duet/robotics/start_problem.hpp>
+#include <duet/robotics/self_motion_curves.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <cmath>
@@ -21,18 +21,130 @@
 #include <utility>
 #include <vector>
 
-/// \file
-/// Search for a start configuration from which a chain can follow a path.
-
 namespace duet::detail {
+namespace {
+
+/// \throws invalid_input
+void require_options(const start_options& o) {
+  require_positive("find_start_configuration", "max_starts", o.max_starts);
+  const auto require_part = [](const char* name, double value) {
+    require_option("find_start_configuration", name, value, value > 0 && value <= 1,
+                   "within (0, 1]");
+  };
+  require_part("resolution", o.resolution);
+  require_part("sampling", o.sampling);
+}
+
+/// Solutions for poses of the tip of a chain, among obstacles if there are any.
+class pose_solutions {
+public:
+  using joints = Eigen::VectorXd;
+  /// Solutions that are connected by self-motions.
+  using family = std::vector<joints>;
+
+  pose_solutions(const chain_view& arm, const scene* around, const pose_tolerance& tolerance)
+      : chain_(arm), around_(around), tolerance_(tolerance) {}
+
+  /// All solutions of six joints; of seven joints points of their self-motion curves, `resolution`
+  /// apart; of others, and where these find none or not all, those that random starts find.
+  [[nodiscard]] std::vector<family> at(const dual_quaternion<double>& goal,
+                                       double resolution) const {
+    std::vector<family> result;
+    bool is_complete = false;
+    if (is_algebraic(chain_, 6)) {
+      const auto all = all_inverse_kinematics(chain_, goal);
+      is_complete = all.is_complete;
+      for (const auto& branch : all.solutions) {
+        add(result, {branch.joints});
+      }
+    } else if (is_algebraic(chain_, 7)) {
+      for (auto& curve : self_motion_curves(chain_, goal, {.resolution = resolution})) {
+        add(result, std::move(curve.joints));
+      }
+      is_complete = !result.empty();
+    }
+    splitmix64 random(1);
+    for (int i = 0; i < 100 && !is_complete; ++i) {
+      const auto solution = from(configuration(random), goal, 0, 1e-3);
+      if (solution.reason == stop_reason::reached && is_new(solution.joints, result)) {
+        add(result, {solution.joints});
+      }
+    }
+    return result;
+  }
+
+  /// One solution, or the reason for its absence.
+  ///
+  /// \param part  fraction of the tolerance
+  [[nodiscard]] inverse_kinematics_result from(const joints& start,
+                                               const dual_quaternion<double>& goal, int restarts,
+                                               double part = 1) const {
+    const inverse_kinematics_options options{
+        .tolerance = {part * tolerance_.translation, part * tolerance_.rotation},
+        .max_restarts = restarts};
+    return around_ == nullptr
+               ? inverse_kinematics(chain_, goal, start, options)
+               : inverse_kinematics(chain_, goal, start, options, no_objective{}, *around_);
+  }
+
+  /// Joints moved by full turns into their limits, as far as that is possible.
+  [[nodiscard]] joints wrapped_into_limits(joints theta) const {
+    for (int i = 0; i < chain_.size(); ++i) {
+      if (chain_.steps()[std::size_t(i)].is_rotational &&
+          !chain_.steps()[std::size_t(i)].is_translational) {
+        theta[i] = wrap_into_limits(theta[i], chain_.limits(i));
+      }
+    }
+    return theta;
+  }
+  [[nodiscard]] bool is_within_limits(const joints& theta) const {
+    for (int i = 0; i < chain_.size(); ++i) {
+      if (!(chain_.limits(i).lower <= theta[i] && theta[i] <= chain_.limits(i).upper)) {
+        return false;
+      }
+    }
+    return true;
+  }
+  [[nodiscard]] bool is_clear(const joints& theta) const {
+    return around_ == nullptr ||
+           clearance(chain_, theta, *around_).distance >= around_->margin - tolerance_.translation;
+  }
+
+private:
+  void add(std::vector<family>& to, family all) const {
+    for (joints& theta : all) {
+      theta = wrapped_into_limits(theta);
+    }
+    std::erase_if(all, [&](const joints& x) { return !is_within_limits(x) || !is_clear(x); });
+    if (!all.empty()) {
+      to.push_back(std::move(all));
+    }
+  }
+  [[nodiscard]] static bool is_new(const joints& theta, const std::vector<family>& others) {
+    return std::none_of(others.begin(), others.end(), [&](const family& other) {
+      return (other.front() - theta).cwiseAbs().maxCoeff() < 1e-3;
+    });
+  }
+  [[nodiscard]] joints configuration(splitmix64& random) const {
+    joints theta(chain_.size());
+    for (int i = 0; i < chain_.size(); ++i) {
+      const auto& limits = chain_.limits(i);
+      const double lower = std::max(limits.lower, std::min(-std::numbers::pi, limits.upper));
+      const double upper = std::min(limits.upper, std::max(std::numbers::pi, limits.lower));
+      theta[i] = lower + (upper - lower) * random();
+    }
+    return theta;
+  }
+
+  const chain_view& chain_;
+  const scene* around_;
+  pose_tolerance tolerance_;
+};
 
 /// Search for a start configuration.
-///
-/// \tparam Capacity  capacity for joints
-template <int Capacity>
 class start_search {
-  using joints = joint_vector<double, -Capacity>;
-  using choice = start_search_result<-Capacity>;
+  using joints = Eigen::VectorXd;
+  using choice = start_search_result;
   struct candidate {
     joints start;
     std::size_t rank; ///< rank in its family
@@ -40,18 +152,19 @@ class start_search {
   };
 
 public:
-  explicit start_search(const start_problem<Capacity>& problem)
-      : problem_(problem), chain_(problem.chain), options_(problem.options),
-        solutions_(chain_, problem.around, options_.plan.tolerance) {}
+  start_search(const chain_view& chain, const path_function& path, const std::vector<double>& stops,
+               const start_options& options, const objective_view& objective, const scene* around)
+      : chain_(chain), path_(path), stops_(stops), options_(options), objective_(objective),
+        around_(around), solutions_(chain, around, options.plan.tolerance) {}
 
   [[nodiscard]] choice choose() const {
     choice result;
-    std::vector<candidate> candidates = candidates_at(problem_.path(problem_.first));
+    std::vector<candidate> candidates = candidates_at(path_(stops_.front()));
     plan_options quick = options_.plan;
     quick.search_step = 0;
     for (std::size_t k = 0; k < candidates.size() && result.starts < options_.max_starts; ++k) {
       const joints start = candidates[k].start;
-      auto plan = problem_.follow(start, quick);
+      auto plan = follow_from(start, quick);
       // If a joint stops at a limit, also try the start with this joint a full turn earlier.
       const joints other = moved_by_full_turns(start, plan);
       const bool is_known = std::any_of(candidates.begin(), candidates.end(),
@@ -66,7 +179,7 @@ public:
     // Then try plans with self-motions, from one start of each family.
     for (const candidate& each : candidates) {
       const bool is_tried = options_.plan.search_step > 0 && chain_.size() > 6 && each.rank == 0;
-      if (is_tried && keep(result, problem_.follow(each.start, options_.plan))) {
+      if (is_tried && keep(result, follow_from(each.start, options_.plan))) {
         return result;
       }
     }
@@ -75,8 +188,13 @@ public:
   }
 
 private:
+  [[nodiscard]] motion_plan follow_from(const joints& start, const plan_options& how) const {
+    require_start(chain_, start, "follow_path");
+    return follow(chain_, start, path_, stops_, how, objective_, around_);
+  }
+
   /// Keeps the better plan; true if it is the last one needed.
-  static bool keep(choice& of, motion_plan<-Capacity> plan) {
+  static bool keep(choice& of, motion_plan plan) {
     ++of.starts;
     if (of.plan.tau.empty() || plan.tau.back() > of.plan.tau.back() ||
         plan.reason == stop_reason::reached) {
@@ -129,7 +247,7 @@ private:
   }
 
   [[nodiscard]] double cost(const joints& theta) const {
-    return problem_.objective ? problem_.objective(theta) : distance_from_centre(theta);
+    return objective_ ? objective_(theta) : distance_from_centre(theta);
   }
 
   /// Sum of squared distances of joints from the centre of their limits, relative to the range; of
@@ -147,7 +265,7 @@ private:
   }
 
   /// Start in which the joints that end at a limit in `plan` are moved a full turn away from it.
-  [[nodiscard]] joints moved_by_full_turns(joints start, const motion_plan<-Capacity>& plan) const {
+  [[nodiscard]] joints moved_by_full_turns(joints start, const motion_plan& plan) const {
     constexpr double full_turn = 2 * std::numbers::pi, close = 1e-2;
     const joints& end = plan.joints.back();
     for (int i = 0; i < chain_.size() && plan.reason == stop_reason::joint_limit; ++i) {
@@ -166,16 +284,15 @@ private:
   }
 
   void find_unsolved(choice& result) const {
-    const double first = problem_.first, last = problem_.last;
-    const path_function& path = problem_.path;
+    const double first = stops_.front(), last = stops_.back();
     joints nearby = result.plan.joints.empty() ? centre() : result.plan.joints.front();
     const auto is_solved = [&](double u) {
-      const auto solution = solutions_.from(nearby, path(u), 100);
+      const auto solution = solutions_.from(nearby, path_(u), 100);
       if (solution.reason == stop_reason::reached) {
         nearby = solution.joints;
         return true;
       }
-      return is_solved_otherwise(path(u));
+      return is_solved_otherwise(path_(u));
     };
     const int count = int(std::ceil(1 / options_.sampling));
     const auto at = [&](int i) { return i == count ? last : first + (last - first) * i / count; };
@@ -189,7 +306,7 @@ private:
         (is_solved(u) ? solved : unsolved) = u;
       }
       result.unsolved = unsolved;
-      explain(result, path(unsolved));
+      explain(result, path_(unsolved));
       return;
     }
   }
@@ -213,8 +330,11 @@ private:
       result.reason = all.solutions.empty() ? stop_reason::no_solution : stop_reason::joint_limit;
       return;
     }
-    const auto infinity = joints::Constant(chain_.size(), std::numeric_limits<double>::infinity());
-    const auto without_limits = with_limits(chain_, joints(-infinity), joints(infinity));
+    bounded_chain<max_capacity> without_limits(chain_);
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < chain_.size(); ++i) {
+      without_limits.set_limits(i, {-infinity, infinity, infinity});
+    }
     const auto beyond =
         inverse_kinematics(without_limits, pose, centre(), {.tolerance = options_.plan.tolerance});
     result.reason =
@@ -230,19 +350,28 @@ private:
     return result;
   }
 
-  const start_problem<Capacity>& problem_;
-  const serial_chain<-Capacity>& chain_;
+  const chain_view& chain_;
+  const path_function& path_;
+  const std::vector<double>& stops_;
   const start_options& options_;
-  pose_solutions<Capacity> solutions_;
+  const objective_view& objective_;
+  const scene* around_;
+  pose_solutions solutions_;
 };
 
-template <int Capacity>
-[[nodiscard]] start_search_result<-Capacity> find_start(const start_problem<Capacity>& problem) {
-  return start_search<Capacity>(problem).choose();
+} // namespace
+
+DUET_ABI_BEGIN
+
+start_search_result find_start(const chain_view& chain, const path_function& path,
+                               const std::vector<double>& stops, const start_options& options,
+                               const objective_view& objective, const scene* around) {
+  require_options(options);
+  if (around != nullptr) {
+    require_scene(chain, *around);
+  }
+  return start_search(chain, path, stops, options, objective, around).choose();
 }
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE start_search_result<-16> find_start(const start_problem<16>&);
-#endif
-
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,15 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include "goal_equations.hpp"
+#include "inverse_kinematics_search.hpp"
+#include "planning_model.hpp"
+#include "small_vector.hpp"
+#include "solution_refinement.hpp"
+#include "splitmix64.hpp"
 #include <duet/kinematics/motion_plan.hpp>
-#include <duet/robotics/inverse_kinematics_result.hpp>
-#include <duet/robotics/inverse_kinematics_search.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/small_vector.hpp>
-#include <duet/robotics/solution_refinement.hpp>
-#include <duet/robotics/splitmix64.hpp>
-#include <duet/robotics/tip_goal.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <cmath>
 #include <limits>
@@ -20,12 +19,13 @@
 /// Search for the preferred solution of a goal.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Search for solutions from the start and from random configurations, of which each is refined by
 /// `solution_refinement`.
 template <int Capacity>
 class solution_search {
-  using search = inverse_kinematics_search<Capacity, tip_goal>;
+  using search = inverse_kinematics_search<Capacity, scaled_goal>;
 
 public:
   using attempt = typename search::attempt;
@@ -41,23 +41,21 @@ public:
     bool is_complete = false; ///< true if there are no others
   };
 
-  /// \param preferences  null if the first solution is as good as any
-  [[nodiscard]] attempt operator()(const tip_goal& goal,
-                                   const solution_preferences<Capacity>* preferences,
-                                   const known_solutions& known = {}) const;
+  /// \param is_choosy  false if the first solution is as good as any
+  [[nodiscard]] attempt operator()(const scaled_goal& goal, const objective_view& objective,
+                                   bool is_choosy, const known_solutions& known = {}) const;
 
 private:
   /// Joints moved by full turns within the limits as long as that lowers the objective.
   [[nodiscard]] small_vector<Capacity>
-  improved_by_full_turns(small_vector<Capacity> theta,
-                         const solution_preferences<Capacity>& preferences) const {
+  improved_by_full_turns(small_vector<Capacity> theta, const objective_view& objective) const {
     constexpr double max_change = 0x1p20;
-    double min_value = preferences.objective(theta);
+    double min_value = objective(model_.chain_joints(theta));
     const auto is_lower_by = [&](int i, double change) {
       small_vector<Capacity> other = theta;
       other[i] += change;
       const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
-      const double value = is_within ? preferences.objective(other) : min_value;
+      const double value = is_within ? objective(model_.chain_joints(other)) : min_value;
       const bool result = is_within && is_less(value, min_value);
       if (result) {
         theta = other;
@@ -89,13 +87,12 @@ private:
 
 template <int Capacity>
 typename solution_search<Capacity>::attempt
-solution_search<Capacity>::operator()(const tip_goal& goal,
-                                      const solution_preferences<Capacity>* preferences,
-                                      const known_solutions& known) const {
-  if (preferences == nullptr || is_beyond(model_.reach, goal, tolerance_)) {
+solution_search<Capacity>::operator()(const scaled_goal& goal, const objective_view& objective,
+                                      bool is_choosy, const known_solutions& known) const {
+  if (!is_choosy || is_beyond(model_.reach, goal, tolerance_)) {
     return search_(goal);
   }
-  const solution_refinement<Capacity> refine(model_, goal, *preferences, tolerance_);
+  const solution_refinement<Capacity> refine(model_, goal, objective, tolerance_);
   attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
   double min_value = std::numeric_limits<double>::infinity(); // of the objective
   int iterations = 0, candidates = 0, restarts = 0;
@@ -103,13 +100,12 @@ solution_search<Capacity>::operator()(const tip_goal& goal,
     constexpr int rounds = 4; // after self-motions other full turns may be better
     std::optional<typename solution_refinement<Capacity>::point> refined;
     for (int k = 0; k < rounds; ++k) {
-      const auto other =
-          preferences->has_objective() ? improved_by_full_turns(theta, *preferences) : theta;
+      const auto other = objective ? improved_by_full_turns(theta, objective) : theta;
       if (refined && norm(other - theta) == 0) {
         break;
       }
       refined = refine(other, options_.max_iterations);
-      if (!refined || !preferences->has_objective()) {
+      if (!refined || !objective) {
         break;
       }
       theta = refined->theta;
@@ -139,7 +135,7 @@ solution_search<Capacity>::operator()(const tip_goal& goal,
       best = next;
     }
     if (restarts == options_.max_restarts || candidates == options_.candidates ||
-        (candidates == 1 && !preferences->has_objective())) {
+        (candidates == 1 && !objective)) {
       break;
     }
   }
@@ -151,9 +147,5 @@ solution_search<Capacity>::operator()(const tip_goal& goal,
   return best;
 }
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class solution_search<8>;
-DUET_COMPILED_TEMPLATE class solution_search<16>;
-#endif
-
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "bounded_step.hpp"
+#include "small_vector.hpp"
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/small_vector.hpp>
 
 #include <array>
 #include <cmath>
@@ -14,6 +14,7 @@
 /// Singular configurations: null space, missing twist and escape direction.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Singular value that counts as zero.
 inline constexpr double singularity_threshold = 1e-5;
@@ -197,4 +198,5 @@ template <int Capacity>
   return damped_gram(gram_of(jacobian)).smallest();
 }
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,11 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "bounded_step.hpp"
+#include "planning_model.hpp"
+#include "small_vector.hpp"
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/motion_plan.hpp>
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/small_vector.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +18,7 @@
 /// Steps of a chain that bring its tip to a pose nearby, within the limits of the joints.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Joint-centring step (joint-limit avoidance): up to a `step` away from limits, growing towards
 /// them.
@@ -33,9 +34,6 @@ template <class V>
   return result;
 }
 
-/// Poses as a function of a parameter. Its type is erased, so that planners are compiled once for
-/// all.
-using path_function = std::function<dual_quaternion<double>(double)>;
 /// Poses of the tip as a function of a parameter, with lengths in the planner's unit.
 using tip_path = std::function<tip_pose(double)>;
 
@@ -192,4 +190,5 @@ private:
   static constexpr int max_iterations = 12;
 };
 
+DUET_ABI_END
 } // namespace duet::detail

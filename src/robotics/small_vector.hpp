@@ -12,6 +12,7 @@
 /// factorisations take the compiler longer than all the rest of a planner.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 template <int N>
 struct small_vector {
@@ -128,4 +129,5 @@ private:
   bool is_positive_ = true;
 };
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,14 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include "planning_model.hpp"
+#include "small_vector.hpp"
+#include "tip_pose.hpp"
+
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/motion_plan.hpp>
-#include <duet/robotics/goal_equations.hpp>
-#include <duet/robotics/inverse_kinematics_search.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/pose_region.hpp>
-#include <duet/robotics/small_vector.hpp>
+#include <duet/quaternion/three_vector.hpp>
+#include <duet/robotics/goals.hpp>
 
 #include <algorithm>
 #include <array>
@@ -16,45 +16,50 @@
 #include <cstddef>
 
 /// \file
-/// Type-erased goals of the inverse kinematics search, which is compiled once for all of them.
+/// Goals as linear equations at each configuration, for the search for joint coordinates.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
-/// Interface of a goal for the search, with lengths in the planner's unit.
-class tip_goal {
-public:
-  virtual ~tip_goal() = default;
-  [[nodiscard]] virtual twist_constraint constraint(const tip_pose& tip) const = 0;
-  [[nodiscard]] virtual double distance_from(const three_vector<double>&) const { return 0; }
+/// Equations J Δ = e of a goal at some θ.
+template <int Capacity>
+struct goal_equations {
+  chain_state<Capacity> at;
+  small_twist e;
+  pose_error residual;
+  std::array<bool, 6> is_free{}; ///< true for each of the six rows without an equation
 };
 
-/// Goal of the type G, which uses the user's unit of length.
-template <TipGoal G>
-class tip_goal_of final : public tip_goal {
-public:
-  /// \param length  the planner's unit of length
-  tip_goal_of(const G& goal, double length) : goal_(goal), length_(length) {}
-  [[nodiscard]] twist_constraint constraint(const tip_pose& tip) const override {
+/// Sets the equations of a pose: all six components of the twist.
+template <int Capacity>
+void set_equations(goal_equations<Capacity>& x, const tip_pose& goal) {
+  x.e = error_twist(x.at.tip, goal);
+  x.residual = {length_of(goal.translation - x.at.tip.translation), deviation_of(x.e).rotation};
+}
+/// True if a pose is certainly out of reach.
+[[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_pose& goal,
+                                    const pose_tolerance& tolerance) {
+  return reach.is_beyond(goal, tolerance);
+}
+
+/// Goal with lengths in the planner's unit.
+struct scaled_goal {
+  goal_view goal; ///< in the user's unit
+  double length;  ///< the planner's unit of length
+
+  [[nodiscard]] twist_constraint constraint(const tip_pose& tip) const {
     twist_constraint x =
-        goal_.constraint(to_dual_quaternion({tip.rotation, length_ * tip.translation}));
-    x.lower.head<3>() /= length_;
-    x.upper.head<3>() /= length_;
-    x.matrix.topRightCorner<3, 3>() /= length_;
-    x.matrix.bottomLeftCorner<3, 3>() *= length_;
+        goal.constraint(to_dual_quaternion({tip.rotation, length * tip.translation}));
+    x.lower.head<3>() /= length;
+    x.upper.head<3>() /= length;
+    x.matrix.topRightCorner<3, 3>() /= length;
+    x.matrix.bottomLeftCorner<3, 3>() *= length;
     return x;
   }
-  [[nodiscard]] double distance_from(const three_vector<double>& point) const override {
-    if constexpr (requires { goal_.distance_from(point.eigen()); }) {
-      const three_vector<double> unscaled_point = length_ * point;
-      return goal_.distance_from(unscaled_point.eigen()) / length_;
-    } else {
-      return 0;
-    }
+  [[nodiscard]] double distance_from(const three_vector<double>& point) const {
+    const three_vector<double> unscaled_point = length * point;
+    return goal.distance_from(unscaled_point.eigen()) / length;
   }
-
-private:
-  const G& goal_;
-  double length_;
 };
 
 /// Full pose as a goal.
@@ -105,7 +110,7 @@ template <int Capacity>
 
 /// Sets the equations M J Δ = e of a goal; rows within their bounds impose no equation.
 template <int Capacity>
-void set_equations(goal_equations<Capacity>& x, const tip_goal& goal) {
+void set_equations(goal_equations<Capacity>& x, const scaled_goal& goal) {
   const twist_constraint constraint = goal.constraint(x.at.tip);
   const residual_twist unsatisfied(constraint);
   x.e = unsatisfied.e;
@@ -125,15 +130,11 @@ void set_equations(goal_equations<Capacity>& x, const tip_goal& goal) {
 
 /// True if a goal is certainly out of reach: the tip is never farther from the first joint than the
 /// lengths of links, prismatic joints and tool together.
-[[nodiscard]] inline bool is_beyond(const chain_reach& reach, const tip_goal& goal,
+[[nodiscard]] inline bool is_beyond(const chain_reach& reach, const scaled_goal& goal,
                                     const pose_tolerance& tolerance) {
   const double max_distance = (reach.links + reach.travel + reach.tool) * (1 + 1e-12);
   return reach.has_joints && goal.distance_from(reach.first) > max_distance + tolerance.translation;
 }
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class inverse_kinematics_search<8, tip_goal>;
-DUET_COMPILED_TEMPLATE class inverse_kinematics_search<16, tip_goal>;
-#endif
-
+DUET_ABI_END
 } // namespace duet::detail

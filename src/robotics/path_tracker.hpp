@@ -1,12 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
+#include "bounded_step.hpp"
+#include "path_step.hpp"
+#include "planning_model.hpp"
+#include "small_vector.hpp"
 #include <duet/kinematics/motion_plan.hpp>
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/path_step.hpp>
-#include <duet/robotics/planning_model.hpp>
-#include <duet/robotics/small_vector.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +18,7 @@
 /// Tracking of a path, waypoint by waypoint.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Moves the joints along a path as far as possible without self-motions.
 template <int Capacity>
@@ -208,9 +208,5 @@ bool path_tracker<Capacity>::track(partial_plan& x, double end, double part,
   return true;
 }
 
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class path_tracker<8>;
-DUET_COMPILED_TEMPLATE class path_tracker<16>;
-#endif
-
+DUET_ABI_END
 } // namespace duet::detail

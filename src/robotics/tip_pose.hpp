@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "bounded_step.hpp"
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/bounded_step.hpp>
 
 #include <cmath>
 
@@ -14,6 +14,7 @@
 /// Pose of a chain's tip, and the error between two poses.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Pose of the tip.
 using tip_pose = link_displacement<double>;
@@ -57,4 +58,5 @@ using tip_pose = link_displacement<double>;
   return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).rotation};
 }
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "bounded_step.hpp"
+#include "small_vector.hpp"
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/robotics/bounded_step.hpp>
-#include <duet/robotics/small_vector.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,6 +17,7 @@
 /// the nearest pose to a goal out of reach.
 
 namespace duet::detail {
+DUET_ABI_BEGIN
 
 /// Squared error ½|e|², e = [displacement of the origin; 2 log r] from the tip to a goal.
 template <int Capacity>
@@ -83,4 +84,5 @@ newton_step(const squared_error<Capacity>& error,
   return factors.solve(right);
 }
 
+DUET_ABI_END
 } // namespace duet::detail

@@ -1,0 +1,174 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/core/errors.hpp>
+#include <duet/kinematics/motion_plan.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/three_vector.hpp>
+#include <duet/robotics/goals.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+namespace duet {
+namespace {
+
+using detail::components, detail::require;
+
+/// \throws invalid_input for a vector that is not a unit vector
+void require_unit(const vector3<double>& n, const char* function, const char* name) {
+  require(std::abs(n.squaredNorm() - 1) <= 1e-6, "duet: ", function, ": the ", name, " (", n[0],
+          ", ", n[1], ", ", n[2], ") is not a unit vector");
+}
+
+/// Rotation that takes one unit vector to another: a half turn about their bisector.
+[[nodiscard]] quaternion<double> relative_rotation(const vector3<double>& from,
+                                                   const vector3<double>& to) {
+  vector3<double> bisector = from + to;
+  if (!(bisector.norm() > 1e-8)) { // opposite vectors: any orthogonal one
+    int smallest = 0;
+    from.cwiseAbs().minCoeff(&smallest);
+    bisector = from.cross(vector3<double>::Unit(smallest));
+  }
+  bisector.normalize();
+  return {0, bisector[0], bisector[1], bisector[2]};
+}
+
+/// Sets a row of `twist_constraint`: lower ≤ n·ω ≤ upper.
+void constrain_rotation(twist_constraint& constraint, Eigen::Index row, const vector3<double>& n,
+                        double lower, double upper) {
+  constraint.matrix.block<1, 3>(row, 3) = n.transpose();
+  constraint.lower[row] = lower;
+  constraint.upper[row] = upper;
+}
+
+/// Constrains the rotation that takes an axis a of the tip to b, exactly or to within `max_tilt`.
+void constrain_axis(twist_constraint& constraint, const vector3<double>& a,
+                    const vector3<double>& b, double tilt) {
+  int smallest = 0;
+  a.cwiseAbs().minCoeff(&smallest);
+  const vector3<double> across = a.cross(b), any = a.cross(vector3<double>::Unit(smallest));
+  const vector3<double> t = any / any.norm();
+  const double sine = across.norm(), angle = std::atan2(sine, a.dot(b));
+  const vector3<double> u = sine > 0 ? vector3<double>(across / sine) : t;
+  if (tilt > 0) {
+    // The angle grows by −u·ω.
+    constrain_rotation(constraint, 3, -u, -std::numeric_limits<double>::infinity(), tilt - angle);
+    return;
+  }
+  const vector3<double> s = a.cross(t);
+  constrain_rotation(constraint, 3, t, angle * u.dot(t), angle * u.dot(t));
+  constrain_rotation(constraint, 4, s, angle * u.dot(s), angle * u.dot(s));
+}
+
+} // namespace
+
+DUET_ABI_BEGIN
+
+task_space_region position_goal(const vector3<double>& position) {
+  return {.frame = pose(quaternion<double>(1), position),
+          .max_tilt = std::numbers::pi,
+          .rotation_lower = -std::numbers::pi,
+          .rotation_upper = std::numbers::pi};
+}
+
+task_space_region free_axis_goal(const dual_quaternion<double>& a, const vector3<double>& axis) {
+  return {.frame = a,
+          .axis = components(axis),
+          .rotation_lower = -std::numbers::pi,
+          .rotation_upper = std::numbers::pi};
+}
+
+task_space_region pointing_goal(const vector3<double>& axis, const vector3<double>& direction,
+                                double tilt) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  require_unit(axis, "pointing_goal", "axis");
+  require_unit(direction, "pointing_goal", "direction");
+  auto result = free_axis_goal(
+      pose(relative_rotation(axis, direction), vector3<double>(vector3<double>::Zero())), axis);
+  result.lower = {-infinity, -infinity, -infinity};
+  result.upper = {infinity, infinity, infinity};
+  result.max_tilt = tilt;
+  return result;
+}
+
+task_space_region position_and_pointing_goal(const vector3<double>& position,
+                                             const vector3<double>& axis,
+                                             const vector3<double>& direction, double tilt) {
+  require_unit(axis, "position_and_pointing_goal", "axis");
+  require_unit(direction, "position_and_pointing_goal", "direction");
+  auto result = free_axis_goal(pose(relative_rotation(axis, direction), position), axis);
+  result.max_tilt = tilt;
+  return result;
+}
+
+twist_constraint task_space_region::constraint(const dual_quaternion<double>& tip) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  constexpr double pi = std::numbers::pi;
+  twist_constraint result;
+  const quaternion<double> r = rotation(frame);
+  const matrix3<double> axes = rotation_matrix(r);
+  const vector3<double> at = axes.transpose() * (translation(tip) - translation(frame));
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const double from = lower[std::size_t(i)], to = upper[std::size_t(i)];
+    if (from > -infinity || to < infinity) {
+      result.matrix.block<1, 3>(i, 0) = axes.col(i).transpose();
+      result.lower[i] = from - at[i];
+      result.upper[i] = to - at[i];
+    }
+  }
+  const vector3<double> n(axis[0], axis[1], axis[2]);
+  const vector3<double> a = rotate(rotation(tip), n), b = rotate(r, n);
+  if (max_tilt < pi) {
+    constrain_axis(result, a, b, max_tilt);
+  }
+  const double range = rotation_upper - rotation_lower;
+  if (range < 2 * pi) {
+    // With R = s t, t a rotation about n and s one about an axis orthogonal to it, the angle of t
+    // is that of the quaternion's component along n, and grows by (a + b)·ω / (1 + a·b).
+    const quaternion<double> q = conj(r) * rotation(tip);
+    const double angle = 2 * std::atan2(n.dot(vector3<double>(q.x(), q.y(), q.z())), q.w());
+    const double centre = rotation_lower + range / 2;
+    const double nearest = centre + std::remainder(angle - centre, 2 * pi);
+    constrain_rotation(result, 5, (a + b) / std::max(1 + a.dot(b), 1e-9), rotation_lower - nearest,
+                       rotation_upper - nearest);
+  }
+  return result;
+}
+
+double task_space_region::distance_from(const vector3<double>& point) const {
+  const vector3<double> at =
+      rotation_matrix(rotation(frame)).transpose() * (point - translation(frame));
+  vector3<double> outside;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    outside[i] = at[i] - std::clamp(at[i], lower[std::size_t(i)], upper[std::size_t(i)]);
+  }
+  return outside.norm();
+}
+
+DUET_ABI_END
+namespace detail {
+DUET_ABI_BEGIN
+
+void require_goal(const task_space_region& r, const std::string& name) {
+  require_pose(r.frame, "inverse_kinematics", "the frame of " + name);
+  for (std::size_t i = 0; i < 3; ++i) {
+    require(r.upper[i] - r.lower[i] >= 0, "duet: inverse_kinematics: ", name, " goes from ",
+            r.lower[i], " to ", r.upper[i], " along axis ", i,
+            " of its frame (expected lower <= upper)");
+  }
+  const auto n = components(r.axis);
+  require(std::abs(dot(n, n) - 1) <= 1e-6, "duet: inverse_kinematics: the axis of ", name, " (",
+          n.x, ", ", n.y, ", ", n.z, ") is not a unit vector");
+  require(r.max_tilt >= 0, "duet: inverse_kinematics: max_tilt of ", name, " is ", r.max_tilt,
+          " (expected a non-negative number)");
+  require(r.rotation_upper - r.rotation_lower >= 0,
+          "duet: inverse_kinematics: the rotation angle of ", name, " goes from ", r.rotation_lower,
+          " to ", r.rotation_upper, " (expected lower <= upper)");
+}
+
+DUET_ABI_END
+} // namespace detail
+} // namespace duet
