@@ -7,7 +7,6 @@
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/comparison/simplified.hpp>
-#include <duet/core/compiled.hpp>
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/progress.hpp>
 #include <duet/derivative/function.hpp>
@@ -216,11 +215,6 @@ template <class Pair>
   }
   return result;
 }
-
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE comparison compared(const std::string&, const formula_pair&,
-                                           std::vector<worst_errors>, const comparison_options&);
-#endif
 
 } // namespace detail
 

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -184,13 +183,5 @@ template <CurveType Spline, class U, class T>
 DUET_REFUSED("fit: the knots are missing: fit<Curve>(parameters, samples, clamped_knots(breaks, "
              "4), options)")
 fit_result<Spline> fit(const U&, const std::vector<quaternion<T>>&, const fit_options&);
-
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE fit_result<cumulative_bspline<double>>
-fit(std::vector<double>, std::vector<quaternion<double>>, std::vector<double>, const fit_options&);
-DUET_COMPILED_TEMPLATE fit_result<cumulative_bspline<screw_dual<double>>>
-fit(std::vector<double>, std::vector<quaternion<screw_dual<double>>>, std::vector<double>,
-    const fit_options&);
-#endif
 
 } // namespace duet

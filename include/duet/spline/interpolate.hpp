@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiled.hpp>
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
@@ -178,35 +177,6 @@ template <CurveType Spline, class T>
     }
   }
 }
-
-#ifdef DUET_COMPILED
-DUET_COMPILED_TEMPLATE class cubic_equations<double>;
-DUET_COMPILED_TEMPLATE class rotation_vector_cubic_equations<double>;
-DUET_COMPILED_TEMPLATE class rotation_vector_quintic_equations<double>;
-DUET_COMPILED_TEMPLATE class spline_newton<cubic_equations<double>>;
-DUET_COMPILED_TEMPLATE class spline_newton<rotation_vector_cubic_equations<double>>;
-DUET_COMPILED_TEMPLATE class spline_newton<rotation_vector_quintic_equations<double>>;
-DUET_COMPILED_TEMPLATE cumulative_bspline<double> curve_through(const std::vector<double>&,
-                                                                std::vector<quaternion<double>>,
-                                                                const curve_ends<double>&,
-                                                                interpolation_report*);
-DUET_COMPILED_TEMPLATE rotation_vector_spline<double> curve_through(const std::vector<double>&,
-                                                                    std::vector<quaternion<double>>,
-                                                                    const curve_ends<double>&,
-                                                                    interpolation_report*);
-DUET_COMPILED_TEMPLATE rotation_vector_spline<double, 6>
-curve_through(const std::vector<double>&, std::vector<quaternion<double>>,
-              const curve_ends<double>&, interpolation_report*);
-DUET_COMPILED_TEMPLATE cumulative_bspline<screw_dual<double>>
-curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
-              const curve_ends<screw_dual<double>>&, interpolation_report*);
-DUET_COMPILED_TEMPLATE rotation_vector_spline<screw_dual<double>>
-curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
-              const curve_ends<screw_dual<double>>&, interpolation_report*);
-DUET_COMPILED_TEMPLATE rotation_vector_spline<screw_dual<double>, 6>
-curve_through(const std::vector<double>&, std::vector<quaternion<screw_dual<double>>>,
-              const curve_ends<screw_dual<double>>&, interpolation_report*);
-#endif
 
 } // namespace detail
 
