@@ -1,6 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# What users of duet need: read by the build and by the installed package alike.
+# What headers of duet need: read by the build and by the installed package alike.
 
 include(CMakeFindDependencyMacro)
 
@@ -12,5 +12,3 @@ if(Eigen3_VERSION VERSION_LESS 3.4)
 endif()
 find_dependency(Boost 1.74)
 find_dependency(Threads)
-# For read_urdf and read_mesh alone, and for the library, which has them.
-find_package(EXPAT QUIET)
