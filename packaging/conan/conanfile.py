@@ -5,6 +5,7 @@
 from pathlib import Path
 
 from conan import ConanFile
+from conan.errors import ConanInvalidConfiguration
 from conan.tools.build import check_min_cppstd
 from conan.tools.cmake import CMake, CMakeDeps, CMakeToolchain, cmake_layout
 from conan.tools.files import copy, rmdir
@@ -16,11 +17,11 @@ class DuetRecipe(ConanFile):
     description = "Rotations, rigid motions and their exact derivatives, by dual numbers"
     license = "MIT"
     topics = ("automatic-differentiation", "quaternions", "dual-quaternions", "splines", "robotics")
-    package_type = "static-library"
+    package_type = "library"
     settings = "os", "arch", "compiler", "build_type"
-    options = {"compiled": [True, False]}
+    options = {"io": [True, False], "robotics": [True, False], "shared": [True, False], "fPIC": [True, False]}
     # Of Boost duet needs headers alone.
-    default_options = {"compiled": False, "boost/*:header_only": True}
+    default_options = {"io": True, "robotics": True, "shared": False, "fPIC": True, "boost/*:header_only": True}
 
     def export_sources(self):
         top = Path(self.recipe_folder).parent.parent
@@ -28,8 +29,11 @@ class DuetRecipe(ConanFile):
             copy(self, pattern, src=str(top), dst=self.export_sources_folder)
 
     def configure(self):
-        if not self.options.compiled:
+        if not self.options.io:
             self.package_type = "header-library"
+            self.options.rm_safe("shared")
+        if self.package_type == "header-library" or self.options.shared:
+            self.options.rm_safe("fPIC")
 
     def layout(self):
         cmake_layout(self)
@@ -37,17 +41,22 @@ class DuetRecipe(ConanFile):
     def requirements(self):
         self.requires("eigen/[>=3.4 <6]", transitive_headers=True)
         self.requires("boost/[>=1.74 <2]", transitive_headers=True)
-        self.requires("expat/[>=2.5 <3]", transitive_headers=True, transitive_libs=True)
+        if self.options.io:
+            self.requires("expat/[>=2.5 <3]")
 
     def validate(self):
         check_min_cppstd(self, 20)
+        if self.options.robotics and not self.options.io:
+            raise ConanInvalidConfiguration("duet: the option robotics=True needs io=True")
 
     def generate(self):
         CMakeDeps(self).generate()
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["DUET_BUILD_TESTS"] = False
         toolchain.cache_variables["DUET_BUILD_EXAMPLES"] = False
-        toolchain.cache_variables["DUET_BUILD_COMPILED"] = bool(self.options.compiled)
+        toolchain.cache_variables["CMAKE_DISABLE_FIND_PACKAGE_assimp"] = True
+        toolchain.cache_variables["DUET_BUILD_IO"] = bool(self.options.io)
+        toolchain.cache_variables["DUET_BUILD_ROBOTICS"] = bool(self.options.robotics)
         toolchain.generate()
 
     def build(self):
@@ -58,23 +67,27 @@ class DuetRecipe(ConanFile):
     def package(self):
         CMake(self).install()
         copy(self, "LICENSE", src=self.source_folder, dst=str(Path(self.package_folder) / "licenses"))
-        rmdir(self, str(Path(self.package_folder) / "share" / "licenses"))
+        share = Path(self.package_folder) / "share"  # beside the licence it has CMake's files, if there is no library
+        rmdir(self, str(share if self.options.io else share / "licenses"))
 
     def package_id(self):
-        if not self.info.options.compiled:
+        if not self.info.options.io:
             self.info.clear()
 
     def package_info(self):
         # CMake finds duet's own package, with its targets and components, not one that Conan makes up.
         self.cpp_info.set_property("cmake_find_mode", "none")
-        self.cpp_info.set_property("pkg_config_name", "duet")
-        self.cpp_info.bindirs = []
-        if self.options.compiled:
-            self.cpp_info.builddirs = ["lib/cmake/duet"]
-            self.cpp_info.libs = ["duet_compiled"]
-            self.cpp_info.defines = ["DUET_COMPILED"]
-        else:
-            self.cpp_info.builddirs = ["share/cmake/duet"]
-            self.cpp_info.libdirs = []
+        headers = self.cpp_info.components["duet"]
+        headers.set_property("pkg_config_name", "duet")
+        headers.requires = ["eigen::eigen", "boost::headers"]
+        headers.bindirs = []
+        headers.libdirs = []
+        headers.builddirs = ["lib/cmake/duet" if self.options.io else "share/cmake/duet"]
         if self.settings.get_safe("os") in ("Linux", "FreeBSD"):
-            self.cpp_info.system_libs = ["pthread"]
+            headers.system_libs = ["pthread"]
+        for name, requires in (("io", ["duet", "expat::expat"]), ("robotics", ["io"])):
+            if self.options.get_safe(name):
+                library = self.cpp_info.components[name]
+                library.set_property("pkg_config_name", f"duet-{name}")
+                library.libs = [f"duet_{name}"]
+                library.requires = requires

@@ -26,4 +26,7 @@ class DuetTest(ConanFile):
 
     def test(self):
         if can_run(self):
-            self.run(os.path.join(self.cpp.build.bindir, "consumer"), env="conanrun")
+            for program in ("headers", "files", "planning"):
+                path = os.path.join(self.cpp.build.bindir, program)
+                if os.path.exists(os.path.join(self.build_folder, path)):
+                    self.run(path, env="conanrun")
