@@ -4,6 +4,7 @@
 without Conan, which cannot be had everywhere.
 
 usage: conan.py <top of the project> <folder for what it makes> <CMake's generator> <compiler> <version>
+                <build folder of the project>
 """
 
 import fnmatch
@@ -12,17 +13,36 @@ import os
 import shutil
 import subprocess
 import sys
+from collections import defaultdict
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
 
 TOP, FOLDER = Path(sys.argv[1]), Path(sys.argv[2])
-GENERATOR, COMPILER, VERSION = sys.argv[3:]
-BUILD_IS_RUN = True  # not for the library, which takes long to compile
+GENERATOR, COMPILER, VERSION, LIBRARIES = sys.argv[3:]
+BUILD_IS_RUN = True  # not for the libraries, which take long to compile: they are those of the folder LIBRARIES
 
 
 def check(is_so, what):
     if not is_so:
         sys.exit(f"conan: not so: {what}")
+
+
+class Options(SimpleNamespace):
+    def get_safe(self, name):
+        return getattr(self, name, None)
+
+    def rm_safe(self, name):
+        vars(self).pop(name, None)
+
+
+class Properties:
+    """What a package or a component of it says of itself."""
+
+    def __init__(self):
+        self.bindirs, self.libdirs, self.includedirs = ["bin"], ["lib"], ["include"]
+        self.libs, self.defines, self.builddirs, self.system_libs, self.requires = [], [], [], [], []
+        self.properties, self.components = {}, defaultdict(Properties)
+        self.set_property = self.properties.__setitem__
 
 
 class ConanFile:
@@ -34,13 +54,11 @@ class ConanFile:
         self.export_sources_folder = self.source_folder = str(folder / "source")
         self.build_folder = str(folder / "build")
         self.package_folder = str(folder / "package")
-        self.options = SimpleNamespace(**options)
+        self.options = Options(**options)
         self.info = SimpleNamespace(options=self.options, clear=lambda: setattr(self, "is_same_for_all", True))
         self.is_same_for_all = False
         self.settings = SimpleNamespace(get_safe=lambda name: {"os": "Linux"}.get(name))
-        self.cpp_info = SimpleNamespace(bindirs=["bin"], libdirs=["lib"], includedirs=["include"], libs=[], defines=[],
-                                        builddirs=[], system_libs=[], properties={})
-        self.cpp_info.set_property = self.cpp_info.properties.__setitem__
+        self.cpp_info = Properties()
         self.cpp = SimpleNamespace(build=SimpleNamespace(bindir="."))
         self.required, self.cache, self.generated, self.least_standard = [], {}, [], None
 
@@ -81,8 +99,8 @@ class CMake:
             self.cmake("--build", self.recipe.build_folder)
 
     def install(self):
-        if BUILD_IS_RUN:
-            self.cmake("--install", self.recipe.build_folder, "--prefix", self.recipe.package_folder)
+        folder = self.recipe.build_folder if BUILD_IS_RUN else LIBRARIES
+        self.cmake("--install", folder, "--prefix", self.recipe.package_folder)
 
 
 def copy(recipe, pattern, src, dst):
@@ -100,6 +118,7 @@ def module(name, **contents):
 
 
 module("conan", ConanFile=ConanFile)
+module("conan.errors", ConanInvalidConfiguration=type("ConanInvalidConfiguration", (Exception,), {}))
 module("conan.tools")
 module("conan.tools.build", can_run=lambda recipe: True,
        check_min_cppstd=lambda recipe, standard: setattr(recipe, "least_standard", standard))
@@ -119,41 +138,58 @@ sys.dont_write_bytecode = True
 shutil.rmtree(FOLDER, ignore_errors=True)
 DuetRecipe = recipe_class(TOP / "packaging/conan/conanfile.py")
 check(DuetRecipe.version == VERSION, f"the recipe is of version {VERSION}")
-check(DuetRecipe.options["compiled"] == [True, False] and DuetRecipe.default_options["compiled"] is False,
-      "headers alone are the default")
+for option in ("io", "robotics"):
+    check(DuetRecipe.options[option] == [True, False] and DuetRecipe.default_options[option] is True,
+          f"{option} is built by default")
+
+
+def recipe_with(folder, **options):
+    recipe = DuetRecipe(FOLDER / folder, shared=False, fPIC=True, **options)
+    recipe.recipe_folder = str(TOP / "packaging/conan")
+    return recipe
+
 
 made = {}
-for compiled in (False, True):
-    BUILD_IS_RUN = not compiled
-    made[compiled] = recipe = DuetRecipe(FOLDER / ("compiled" if compiled else "headers"), compiled=compiled)
-    recipe.recipe_folder = str(TOP / "packaging/conan")
+for has_libraries in (False, True):
+    BUILD_IS_RUN = not has_libraries
+    made[has_libraries] = recipe = recipe_with("libraries" if has_libraries else "headers",
+                                               io=has_libraries, robotics=has_libraries)
     for step in ("export_sources", "configure", "layout", "requirements", "validate", "generate", "build", "package",
                  "package_id", "package_info"):
         getattr(recipe, step)()
     check(sorted(recipe.required) == [
-        ("boost/[>=1.74 <2]", True, False), ("eigen/[>=3.4 <6]", True, False), ("expat/[>=2.5 <3]", True, True)],
-        "what it requires")
+        ("boost/[>=1.74 <2]", True, False), ("eigen/[>=3.4 <6]", True, False),
+        *[("expat/[>=2.5 <3]", False, False)] * has_libraries], "what it requires")
     check(recipe.least_standard == 20 and recipe.generated == ["CMakeDeps", "CMakeToolchain"], "C++20, by CMake")
-    check(recipe.is_same_for_all == (not compiled), "headers are the same for all settings, the library is not")
+    check(recipe.is_same_for_all == (not has_libraries), "headers are the same for all settings, libraries are not")
     cache = (Path(recipe.build_folder) / "CMakeCache.txt").read_text()
-    check(f"DUET_BUILD_COMPILED:UNINITIALIZED={'ON' if compiled else 'OFF'}" in cache or
-          f"DUET_BUILD_COMPILED:BOOL={'ON' if compiled else 'OFF'}" in cache, "CMake is told of the library")
+    for option in ("DUET_BUILD_IO", "DUET_BUILD_ROBOTICS"):
+        check(f"{option}:BOOL={'ON' if has_libraries else 'OFF'}" in cache, "CMake is told of the libraries")
+    package, info = Path(recipe.package_folder), recipe.cpp_info.components
+    check((package / "include/duet/duet.hpp").exists() and (package / "licenses/LICENSE").exists(), "headers and licence")
+    check((package / info["duet"].builddirs[0] / "duetConfig.cmake").exists(), "CMake's package is where it is said to be")
+    check(info["duet"].libs == [] and info["duet"].libdirs == [], "headers have no library")
+    check(package.joinpath("include").is_dir() and sorted(os.listdir(package)) ==
+          ["include", *["lib"] * has_libraries, "licenses", *["share"] * (not has_libraries)], "nothing else is packed")
+    for name in info:
+        for library in info[name].libs:
+            check((package / f"lib/lib{library}.a").exists(), f"{library} is packed")
 
-headers, library = made[False], made[True]
-check(headers.package_type == "header-library" and library.package_type == "static-library", "kinds of packages")
-check(headers.cpp_info.libdirs == [] and headers.cpp_info.libs == [], "headers have no library")
-check(library.cpp_info.libs == ["duet_compiled"] and library.cpp_info.defines == ["DUET_COMPILED"], "the library")
-package = Path(headers.package_folder)
-check((package / "include/duet/duet.hpp").exists() and (package / "licenses/LICENSE").exists(), "headers and licence")
-check(sorted(os.listdir(package)) == ["include", "licenses", "share"], "nothing else is packed")
-check(headers.cpp_info.builddirs == ["share/cmake/duet"] and library.cpp_info.builddirs == ["lib/cmake/duet"] and
-      (package / "share/cmake/duet/duetConfig.cmake").exists(), "CMake's package is where it is said to be")
+    BUILD_IS_RUN = True
+    test = recipe_class(TOP / "packaging/conan/test_package/conanfile.py")(FOLDER / f"test_{recipe.package_type}")
+    test.source_folder = str(TOP / "packaging/conan/test_package")
+    test.tested_reference_str = f"duet/{VERSION}"
+    test.cache["duet_DIR"] = str(package / info["duet"].builddirs[0])
+    for step in ("requirements", "layout", "build", "test"):
+        getattr(test, step)()
+    check(test.required == [(f"duet/{VERSION}", False, False)], "what is tested")
 
-BUILD_IS_RUN = True
-test = recipe_class(TOP / "packaging/conan/test_package/conanfile.py")(FOLDER / "test")
-test.source_folder = str(TOP / "packaging/conan/test_package")
-test.tested_reference_str = f"duet/{VERSION}"
-test.cache["duet_DIR"] = str(package / headers.cpp_info.builddirs[0])
-for step in ("requirements", "layout", "build", "test"):
-    getattr(test, step)()
-check(test.required == [(f"duet/{VERSION}", False, False)], "what is tested")
+check(made[False].package_type == "header-library", "without libraries it has headers alone")
+info = made[True].cpp_info.components
+check(made[True].package_type == "library" and info["io"].libs == ["duet_io"] and
+      info["robotics"].libs == ["duet_robotics"] and info["robotics"].requires == ["io"], "the libraries")
+try:
+    recipe_with("refused", io=False, robotics=True).validate()
+    check(False, "robotics without io is refused")
+except sys.modules["conan.errors"].ConanInvalidConfiguration as error:
+    check("duet: " in str(error), "why")

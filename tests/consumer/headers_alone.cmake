@@ -7,7 +7,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 set(prefix ${folder}/prefix)
 configure_headers(${folder}/build ${source})
 run(${CMAKE_COMMAND} --install ${folder}/build --prefix ${prefix})
-use_duet(${prefix})
+use_duet(${prefix} OFF)
 
 # That find_package(<request>) fails with these words.
 function(expect_refusal request words)
@@ -33,7 +33,28 @@ foreach(asked IN ITEMS ${major}.${next_minor} ${next_major}.0 ${last_major}.1)
     "Could not find a configuration file for package \"duet\" that is compatible with requested version \"${asked}\".")
   expect_refusal("duet ${asked} REQUIRED CONFIG" "/duet/duetConfig.cmake, version: ${version}")
 endforeach()
-expect_refusal("duet REQUIRED CONFIG COMPONENTS compiled"
-  "duet: was installed without the component 'compiled': configure duet with -D DUET_BUILD_COMPILED=ON")
+foreach(component IN ITEMS io robotics)
+  string(TOUPPER ${component} option)
+  expect_refusal("duet REQUIRED CONFIG COMPONENTS ${component}"
+    "duet: was installed without the component '${component}': configure duet with -D DUET_BUILD_${option}=ON")
+endforeach()
 expect_refusal("duet REQUIRED CONFIG COMPONENTS curves"
-  "duet: there is no component 'curves'; the only one is 'compiled'")
+  "duet: there is no component 'curves' (expected io or robotics)")
+
+# Nothing of it depends on the processor.
+file(GLOB folders RELATIVE ${prefix} ${prefix}/*)
+if(NOT folders STREQUAL "include;share")
+  message(FATAL_ERROR "headers alone install ${folders}")
+endif()
+
+file(STRINGS ${folder}/build/CPackConfig.cmake lines REGEX "CPACK_DEBIAN_PACKAGE_(ARCHITECTURE|DEPENDS)")
+if(NOT lines MATCHES "ARCHITECTURE \"all\"" OR lines MATCHES "expat")
+  message(FATAL_ERROR "the Debian package of headers alone says ${lines}")
+endif()
+
+# duet::robotics needs duet::io.
+execute_process(COMMAND ${CMAKE_COMMAND} -S ${source} -B ${folder}/build -DDUET_BUILD_ROBOTICS=ON
+  OUTPUT_QUIET ERROR_VARIABLE said RESULT_VARIABLE result)
+if(result EQUAL 0 OR NOT said MATCHES "duet: DUET_BUILD_ROBOTICS needs duet::io")
+  message(FATAL_ERROR "duet::robotics without duet::io is configured: ${said}")
+endif()

@@ -1,6 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# What pkg-config says of duet below `prefix`, and of the library, is what a program compiles with.
+# What pkg-config says of duet below `prefix`, and of the libraries, is what a program compiles with.
 
 include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
@@ -23,11 +23,12 @@ function(ask result)
   set(status ${status} PARENT_SCOPE)
 endfunction()
 
-set(names duet)
-if(has_compiled)
-  list(APPEND names duet-compiled)
-endif()
-foreach(name IN LISTS names)
+cmake_path(GET pkgconfig_folder PARENT_PATH library_folder)
+set(ENV{LD_LIBRARY_PATH} ${library_folder})
+set(program_of_duet headers)
+set(program_of_duet-io files)
+set(program_of_duet-robotics planning)
+foreach(name IN ITEMS duet duet-io duet-robotics)
   ask(said --modversion ${name})
   if(NOT said STREQUAL version)
     message(FATAL_ERROR "${name} is of version ${said}, not ${version}")
@@ -45,7 +46,7 @@ foreach(name IN LISTS names)
   endif()
   separate_arguments(flags UNIX_COMMAND "${flags}")
   set(program ${folder}/${name})
-  run(${compiler} -std=c++20 ${CMAKE_CURRENT_LIST_DIR}/main.cpp ${flags} -o ${program})
+  run(${compiler} -std=c++20 ${CMAKE_CURRENT_LIST_DIR}/${program_of_${name}}.cpp ${flags} -o ${program})
   run(${program})
 endforeach()
 

@@ -13,16 +13,17 @@ macro(run)
   endif()
 endmacro()
 
-# Configures duet, headers alone, in a build folder: <build> <source> [option ...].
+# Configures duet without libraries in a build folder: <build> <source> [option ...].
 function(configure_headers build tree)
   run(${CMAKE_COMMAND} -S ${tree} -B ${build} -G ${generator} -DCMAKE_CXX_COMPILER=${compiler}
-    -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_EXAMPLES=OFF ${ARGN})
+    -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_EXAMPLES=OFF -DDUET_BUILD_IO=OFF -DDUET_BUILD_ROBOTICS=OFF ${ARGN})
 endfunction()
 
-# A project finds duet below a prefix, and its program runs.
-function(use_duet prefix)
+# A project finds duet below a prefix, and its programs run: <prefix> <whether it has the libraries>.
+function(use_duet prefix has_libraries)
   run(${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/find_package ${folder}/consumer
     --build-generator ${generator}
     --build-options -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_PREFIX_PATH=${prefix} -Dexpected_prefix=${prefix}
-    --test-command ${folder}/consumer/consumer)
+      -Dhas_libraries=${has_libraries}
+    --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
 endfunction()

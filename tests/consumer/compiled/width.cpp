@@ -1,5 +1,0 @@
-// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-
-#include <duet/core/compiled.hpp>
-
-int main() {}

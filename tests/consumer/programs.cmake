@@ -1,0 +1,17 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# The programs of a project that uses duet, one for each target of it that `libraries` names, and their tests.
+
+enable_testing()
+foreach(pair IN ITEMS headers:duet files:io planning:robotics)
+  string(REGEX MATCH "^(.*):(.*)$" pair ${pair})
+  set(program ${CMAKE_MATCH_1})
+  set(library ${CMAKE_MATCH_2})
+  if(library STREQUAL "duet" OR library IN_LIST libraries)
+    add_executable(${program} ${CMAKE_CURRENT_LIST_DIR}/${program}.cpp)
+    target_link_libraries(${program} PRIVATE duet::${library})
+    add_test(NAME ${program} COMMAND ${program})
+  elseif(TARGET duet::${library} AND NOT allow_further_libraries)
+    message(FATAL_ERROR "duet::${library} is not expected here")
+  endif()
+endforeach()

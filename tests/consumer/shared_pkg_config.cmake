@@ -1,0 +1,5 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# What pkg-config says of shared libraries.
+
+include(${CMAKE_CURRENT_LIST_DIR}/pkg_config.cmake)
