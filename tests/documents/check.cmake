@@ -5,10 +5,10 @@
 # are excerpts for the eye and are not compiled.
 #
 # A program that begins with duet/duet.hpp, as all do that can, is given it precompiled: nothing else
-# is, so that it must still include what else it needs. Others, of what is heavier, are linked to the library
-# duet::compiled where it is given.
+# is, so that it must still include what else it needs. One that includes a header of duet/io or duet/robotics is
+# linked to the libraries; others must do without.
 #
-# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header> [-Dlibrary=<file>]
+# cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header> -Dlibraries=<files and flags>
 #   -Dfolder=<for programs> -P check.cmake
 
 cmake_minimum_required(VERSION 3.22)
@@ -49,9 +49,9 @@ while(TRUE)
   set(link "")
   if(precompiled AND code MATCHES "^\n*#include <duet/duet.hpp>\n")
     set(include -include ${precompiled})
-  elseif(library)
-    set(include -DDUET_COMPILED)
-    set(link ${library} -lexpat)
+  endif()
+  if(code MATCHES "#include <duet/(io|robotics)[/.]")
+    set(link ${libraries})
   endif()
   execute_process(
     COMMAND ${compile} -Wall -Wextra -Werror ${include} ${program}.cpp -o ${program} ${link}

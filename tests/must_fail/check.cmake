@@ -11,9 +11,7 @@
 #
 # Of several mistakes in one form each line ends with `// mistake`: the compiler must name every one of them.
 #
-# A snippet without flags of its own is given a precompiled header, where one is named; one that searches for
-# goals, paths or all solutions, which that header has not, is checked without what the library holds: that
-# takes a fifth of the time.
+# A snippet without flags of its own is given a precompiled header, where one is named.
 #
 # cmake -Dcompile=<compiler and flags> -Dsnippet=<file> -Dcontrol=<compile the right way, too> [-Dprecompiled=<header>] -P check.cmake
 
@@ -54,11 +52,7 @@ if(compile MATCHES "clang")
   list(APPEND compile -ferror-limit=0)
 endif()
 read_comment("wrong flags" wrong_flags)
-file(STRINGS ${snippet} searches
-  REGEX "#include <duet/robotics/(all_inverse_kinematics|choose_start|follow_path|goals|self_motion_curves)")
-if(searches)
-  list(APPEND compile -DDUET_COMPILED)
-elseif(precompiled AND NOT flags AND NOT wrong_flags)
+if(precompiled AND NOT flags AND NOT wrong_flags)
   list(APPEND compile -include ${precompiled})
 endif()
 

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 // expect: duet: find_start_configuration takes no start
 // within: 3
-// flags: -DDUET_COMPILED
 
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/choose_start.hpp>
