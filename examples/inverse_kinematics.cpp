@@ -12,6 +12,7 @@
 
 #include <duet/core/text/csv.hpp>
 #include <duet/duet.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <algorithm>
 #include <cstddef>
