@@ -56,9 +56,15 @@ def problem_if(wrong, text):
 
 
 texts = {path.relative_to(TOP / "include").as_posix(): read(path) for path in sorted((TOP / "include/duet").rglob("*.hpp"))}
-# Sources of compiled libraries and their private headers, in src/<layer>/.
-sources = {path.relative_to(TOP).as_posix(): read(path) for path in sorted((TOP / "src").glob("*/*.[ch]pp"))}
+# Sources of compiled libraries in src/<layer>/, and their private headers there and in folders below.
+sources = {path.relative_to(TOP).as_posix(): read(path) for path in sorted((TOP / "src").rglob("*.[ch]pp"))}
 includes = {header: re.findall(r"^[ \t]*#[ \t]*include[ \t]*(.*)", text, re.M) for header, text in (texts | sources).items()}
+
+
+def private_headers(source):
+    """What a source or private header includes of its library, by paths relative to its own folder."""
+    names = [re.fullmatch(r'"([a-z_]+/)?([a-z_]+\.hpp)"', include) for include in includes[source]]
+    return [f"{Path(source).parent.as_posix()}/{name[1] or ''}{name[2]}" for name in names if name]
 
 
 def check_text(header, text):
@@ -71,8 +77,11 @@ def check_text(header, text):
     problem_if(re.search(r"[ ;{](throw[ ;]|try [{]|catch [(])", code) and header != "duet/core/error_handler.hpp",
                f"{header} has a throw, try or catch: raise, catching of core/error_handler.hpp, which do without exceptions too")
     named = set(re.findall(r"std::([a-z0-9_]+)", code))
+    included = set(includes[header]) # a source also has what the private header of its name includes
+    for private in private_headers(header) if header.endswith(".cpp") else ():
+        included.update(includes.get(private, ()) if Path(private).stem == Path(header).stem else ())
     for std_header, names in STD_NAMES.items():
-        for name in sorted(named.intersection(names.split())) if f"<{std_header}>" not in includes[header] else ():
+        for name in sorted(named.intersection(names.split())) if f"<{std_header}>" not in included else ():
             problems.append(f"{header} says std::{name} and does not include <{std_header}>")
     words = [word for word in dict.fromkeys(COMPILER.findall(code)) if word not in STANDARD]
     problem_if(words and not header.startswith("duet/core/compiler/"), f"{header} has {';'.join(words)}, which is for core/compiler/")
@@ -83,27 +92,28 @@ def check_layer(header, layer):
     for include in includes[header] if layer in LAYERS else ():
         duet = re.match(r"<duet/([^/]*)/", include)
         library = re.match(r"<((Eigen|boost|assimp)[/a-z0-9_]*|expat\.h(?=>$))", include)
-        private = re.fullmatch(r'"([a-z_]+\.hpp)"', include)
         if duet and duet[1] == "interop" != layer:
             problems.append(f"{header} includes {include}, but interop/ is for users alone")
         elif duet:
             problem_if(duet[1] not in ALLOWED[layer], f"{header} includes {include}, which is no layer below {layer}/")
         elif library:
+            problem_if(library[1].startswith(("expat", "assimp")) and header in texts, f"{header} includes {include}, which is for src/ alone")
             bridge = library[2] and re.fullmatch(r"duet/dual/eigen[/_][a-z]*\.hpp", header)
             problem_if(not bridge and ALLOWED[layer].isdisjoint({"/".join(library[1].split("/")[:2]), library[2]}),
                        f"{header} includes {include}, but {layer}/ does without that library")
-        elif private and header in sources:
-            problem_if(f"src/{layer}/{private[1]}" not in sources, f"{header} includes {include}, which is not in its folder")
+        elif header in sources and include.startswith('"'):
+            problem_if(sources.keys().isdisjoint({f"{Path(header).parent.as_posix()}/{include[1:-1]}"}),
+                       f"{header} includes {include}, which is not in its folder or one below")
         else:
             problem_if(not STD_INCLUDE.fullmatch(include),
                        f"{header} includes {include}, which is neither <duet/…>, nor Eigen, Boost, expat, Assimp or std")
 
 
-def reached_from(headers, without=()):
+def reached_from(headers):
     reached, waiting = set(), list(headers)
     while waiting:
         header = waiting.pop().strip("<>")
-        if header.startswith("duet/") and header not in reached and header not in without:
+        if header.startswith("duet/") and header not in reached:
             reached.add(header)
             waiting += includes.get(header, [])
     return reached
@@ -126,12 +136,6 @@ for header, text in texts.items():
             first = (includes[first] or ["nothing"])[0].strip("<>")
     problem_if(CONFIG not in (first, header) and f"<{header}>" not in includes.get(CONFIG, []),
                f"{header} comes to {first} before core/config.hpp, which says that C++20 is needed")
-    # A header may end with its definitions. If they include another header that includes it, a file that begins with that
-    # other one has the definitions before the declarations they need.
-    for definitions in re.findall(r"\n#ifndef DUET_COMPILED\n#include <(duet/[^>]*)>\n#endif\n\Z", text):
-        for include in sorted(reached_from(includes.get(definitions, []), (header, definitions))):
-            problem_if(f"<{header}>" in includes.get(include, []),
-                       f"{definitions} comes to {include}, which includes {header}, which ends with the former")
 
 problem_if(not texts, f"no headers in {TOP}/include/duet")
 by_name = [f"duet/{name}" for name in re.findall(r"([a-z_/]+\.hpp)[,)]", texts.get("duet/duet.hpp", ""))]
