@@ -1,6 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# Does every header compile alone? As a module of clang each sees what it includes and nothing else,
+# Every header compiles alone, the private ones of src/ too. As a module of clang each sees what it includes and nothing else,
 # and is read once: seconds for all, where a file for each takes minutes.
 #
 # cmake -Dcompile=<clang and flags> -Dinclude=<folder> -Dfolder=<for files> -P headers.cmake
@@ -11,7 +11,7 @@ file(REMOVE_RECURSE ${folder})
 file(MAKE_DIRECTORY ${folder})
 
 # One module for each header of duet, and one for all that they include from elsewhere.
-file(GLOB_RECURSE headers ${include}/duet/*.hpp)
+file(GLOB_RECURSE headers ${include}/duet/*.hpp ${include}/../src/*.hpp)
 set(modules "")
 set(outside "")
 foreach(header IN LISTS headers)

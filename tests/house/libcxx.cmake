@@ -1,6 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# With libc++, what tests of every kind of number and curve expect holds.
+# With libc++, what tests of every kind of number and curve expect holds, and errors are caught by their types across
+# the boundary of a shared library.
 #
 # cmake "-Dcompile=<clang and flags>" -Dproject=<folder> -Dfolder=<for files> -P libcxx.cmake
 
@@ -21,3 +22,21 @@ execute_process(
     ${folder}/tests.cpp -o ${folder}/tests -pthread
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${folder}/tests COMMAND_ERROR_IS_FATAL ANY)
+
+# Both libraries as one.
+file(WRITE ${folder}/duet.hpp "#include <duet/duet.hpp>\n")
+list(APPEND compile -fPIC -pthread -Wno-ignored-attributes)
+execute_process(COMMAND ${compile} -fpch-instantiate-templates -x c++-header ${folder}/duet.hpp -o ${folder}/duet.hpp.gch COMMAND_ERROR_IS_FATAL ANY)
+list(APPEND compile -include ${folder}/duet.hpp)
+file(GLOB sources ${project}/src/*/*.cpp)
+execute_process(
+  COMMAND ${compile} -shared -Wl,--version-script=${project}/src/exported_symbols.map ${sources}
+    -o ${folder}/libduet.so -lexpat
+  COMMAND_ERROR_IS_FATAL ANY)
+foreach(program IN ITEMS files planning)
+  execute_process(
+    COMMAND ${compile} ${project}/tests/consumer/${program}.cpp -o ${folder}/${program}
+      -L ${folder} -lduet -Wl,-rpath,${folder}
+    COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${folder}/${program} WORKING_DIRECTORY ${folder} COMMAND_ERROR_IS_FATAL ANY)
+endforeach()

@@ -1,7 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# Do all headers compile in plain C++20 as clang reads them for Windows in MSVC's stead (its ABI, its
-# extensions, long of 32 bits, long double of 64)? There is no standard library of MSVC here: MinGW's
+# All headers, and the sources of the libraries, compile in plain C++20 as clang reads them for Windows in MSVC's
+# stead (its ABI, its extensions, long of 32 bits, long double of 64). There is no standard library of MSVC here: MinGW's
 # libstdc++ replaces it, with macros that say that clang is GNU's.
 #
 # cmake -Dcompile=<clang and flags> -Dinclude=<folder> -Dfolder=<for files> -P microsoft.cmake
@@ -24,17 +24,23 @@ file(GLOB_RECURSE headers RELATIVE ${include} ${include}/duet/*.hpp)
 list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>")
 list(JOIN headers "\n" lines)
 file(WRITE ${folder}/everything.cpp "${lines}\n")
+file(WRITE ${folder}/duet.hpp "#include <duet/duet.hpp>\n")
 
-execute_process(
-  COMMAND ${compile} --target=x86_64-pc-windows-msvc -fms-compatibility -fms-extensions -fms-compatibility-version=19.30
-    -DDUET_PORTABLE -fsyntax-only -Wall -Wextra -Werror -Wno-ignored-attributes -Wno-unknown-attributes
-    -nostdinc++ -isystem ${standard_library} -isystem ${standard_library}/x86_64-w64-mingw32
-    -isystem /usr/share/mingw-w64/include -isystem ${folder}
-    # What MinGW's headers ask for; and type_info::raw_name, which Boost finds in MSVC's library alone.
-    -fgnuc-version=12.2.0 -D__MINGW32__ -D__MINGW64__ -D__MSVCRT__ -D__declspec=__declspec
-    -D__GLIBCXX_TYPE_INT_N_0=__int128 -D__GLIBCXX_BITSIZE_INT_N_0=128
-    -DBOOST_TYPE_INDEX_FORCE_NO_RTTI_COMPATIBILITY
-    ${folder}/everything.cpp
+list(APPEND compile --target=x86_64-pc-windows-msvc -fms-compatibility -fms-extensions -fms-compatibility-version=19.30
+  -DDUET_PORTABLE -DDUET_WITHOUT_EXPAT -Wall -Wextra -Werror -Wno-ignored-attributes -Wno-unknown-attributes
+  -nostdinc++ -isystem ${standard_library} -isystem ${standard_library}/x86_64-w64-mingw32
+  -isystem /usr/share/mingw-w64/include -isystem ${folder}
+  # What MinGW's headers ask for; and type_info::raw_name, which Boost finds in MSVC's library alone.
+  -fgnuc-version=12.2.0 -D__MINGW32__ -D__MINGW64__ -D__MSVCRT__ -D__declspec=__declspec
+  -D__GLIBCXX_TYPE_INT_N_0=__int128 -D__GLIBCXX_BITSIZE_INT_N_0=128
+  -DBOOST_TYPE_INDEX_FORCE_NO_RTTI_COMPATIBILITY)
+execute_process(COMMAND ${compile} -fsyntax-only ${folder}/everything.cpp COMMAND_ERROR_IS_FATAL ANY)
+# Sources share what they read for long. (Templates are instantiated there, or every source would do so.)
+execute_process(COMMAND ${compile} -fpch-instantiate-templates -x c++-header ${folder}/duet.hpp -o ${folder}/duet.pch
+  COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB sources ${include}/../src/*/*.cpp)
+execute_process(COMMAND ${compile} -fsyntax-only -include-pch ${folder}/duet.pch ${sources}
   COMMAND_ERROR_IS_FATAL ANY)
 list(LENGTH headers count)
-message("${count} headers compile as for MSVC")
+list(LENGTH sources source_count)
+message("${count} headers and ${source_count} sources compile as for MSVC")
