@@ -2,20 +2,16 @@
 #pragma once
 
 /// \file
-/// Everything in duet except headers that take long to compile or are rarely needed, which programs
-/// include explicitly: sparse Jacobians and Hessians (derivative/sparse.hpp), robot descriptions
-/// (io/urdf.hpp, io/srdf.hpp, io/mesh_file.hpp), kinematic trees (kinematics/tree_jacobian.hpp,
-/// kinematics/centre_of_mass.hpp, kinematics/tree_limits.hpp), closed chains (io/loop_file.hpp,
-/// robotics/loop_positions.hpp, robotics/loop_trace.hpp, robotics/mobility.hpp), sweeps over
-/// configurations (kinematics/sweep.hpp), fits (spline/fit.hpp), all solutions of inverse
-/// kinematics (robotics/all_inverse_kinematics.hpp, robotics/differentiable_branch.hpp,
-/// robotics/self_motion_curves.hpp), partial goals, objectives and start configurations
-/// (robotics/goals.hpp, robotics/choose_start.hpp), self-collision
-/// pairs and bounding capsules (robotics/pairs_apart.hpp, robotics/bounding_capsules.hpp), time
-/// parametrisation (robotics/time_parametrised.hpp), tables, recordings and plans as files
-/// (io/table_file.hpp, io/recording.hpp, io/save_plan.hpp, core/text/csv.hpp), the planner of the
-/// lecture notes (motion/printed_plan.hpp), the nearest pose on a screw motion
-/// (dual_quaternion/nearest.hpp), and `interop/`.
+/// Everything in the headers of duet::duet except those that take long to compile or are rarely
+/// needed, which programs include explicitly: sparse Jacobians and Hessians
+/// (derivative/sparse.hpp), kinematic trees (kinematics/tree_jacobian.hpp,
+/// kinematics/centre_of_mass.hpp, kinematics/tree_limits.hpp), loops of trees
+/// (kinematics/tree_loop.hpp), distances of shapes (kinematics/closest_points.hpp), trajectories of
+/// joints (kinematics/joint_trajectory.hpp), sweeps over configurations
+/// (kinematics/sweep.hpp), chains of all types as one type (kinematics/chain_view.hpp), fits
+/// (spline/fit.hpp), CSV (core/text/csv.hpp), the planner of the lecture notes
+/// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp), and
+/// `interop/`. The headers of the compiled libraries are in duet/io.hpp and duet/robotics.hpp.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
@@ -81,8 +77,6 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
-#include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>

@@ -174,7 +174,7 @@ public:
     }
     return result;
   }
-  /// The same, clamped to the limits, which round-off may have violated.
+  /// Joints in the user's units, clamped to the limits, which round-off may have violated.
   [[nodiscard]] bounded_vector<Capacity> joints_within_limits(const vector& theta) const {
     bounded_vector<Capacity> result = chain_joints(theta);
     for (int i = 0; i < size; ++i) {

@@ -7,6 +7,7 @@ usage: python3 tests/house/tree.py
 """
 
 import functools
+import posixpath
 import re
 import sys
 from pathlib import Path
@@ -102,8 +103,8 @@ def check_layer(header, layer):
             problem_if(not bridge and ALLOWED[layer].isdisjoint({"/".join(library[1].split("/")[:2]), library[2]}),
                        f"{header} includes {include}, but {layer}/ does without that library")
         elif header in sources and include.startswith('"'):
-            problem_if(sources.keys().isdisjoint({f"{Path(header).parent.as_posix()}/{include[1:-1]}"}),
-                       f"{header} includes {include}, which is not in its folder or one below")
+            problem_if(posixpath.normpath(f"{posixpath.dirname(header)}/{include[1:-1]}") not in sources,
+                       f"{header} includes {include}, which there is not in src/")
         else:
             problem_if(not STD_INCLUDE.fullmatch(include),
                        f"{header} includes {include}, which is neither <duet/…>, nor Eigen, Boost, expat, Assimp or std")
@@ -139,8 +140,10 @@ for header, text in texts.items():
 
 problem_if(not texts, f"no headers in {TOP}/include/duet")
 by_name = [f"duet/{name}" for name in re.findall(r"([a-z_/]+\.hpp)[,)]", texts.get("duet/duet.hpp", ""))]
-for header in sorted(texts.keys() - reached_from(["duet/duet.hpp", *by_name])):
-    problem_if(header.count("/") > 1 and not header.startswith("duet/interop/"), f"<duet/duet.hpp> neither includes nor names {header}")
+for header in sorted(texts.keys() - reached_from(["duet/duet.hpp", "duet/io.hpp", "duet/robotics.hpp", *by_name])):
+    problem_if(header.count("/") > 1 and not header.startswith("duet/interop/"), f"no header of all of duet includes or names {header}")
+problem_if(any(header.startswith(("duet/io/", "duet/robotics/")) for header in reached_from(["duet/duet.hpp"])),
+           "<duet/duet.hpp> includes a header of a compiled library")
 
 for path in sorted((TOP / "docs").glob("*.md")):
     page, text = f"docs/{path.name}", read(path)

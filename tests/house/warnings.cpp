@@ -6,6 +6,8 @@
 #include <duet/duet.hpp>
 #include <duet/io/urdf.hpp>
 #include <duet/kinematics/sweep.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 #include <duet/spline/fit.hpp>
 

@@ -7,6 +7,7 @@
 
 #include <duet/duet.hpp>
 #include <duet/io/urdf.hpp>
+#include <duet/robotics/inverse_kinematics.hpp>
 
 #include <array>
 #include <cmath>

@@ -18,6 +18,7 @@
 #include <numbers>
 #include <vector>
 
+namespace test_robotics_long_chains {
 namespace {
 
 using namespace duet;
@@ -135,3 +136,4 @@ TEST_CASE("chain_view has the poses, Jacobians and tables of its chain") {
 }
 
 } // namespace
+} // namespace test_robotics_long_chains

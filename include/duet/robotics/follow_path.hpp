@@ -44,7 +44,7 @@ motion_plan follow(const chain_view& chain, const Eigen::Ref<const Eigen::Vector
                    const plan_options& options, const objective_view& objective,
                    const scene* around);
 
-/// The same along screw motions from pose to pose.
+/// Joint path along screw motions from pose to pose, pose i at the parameter i.
 motion_plan follow_poses(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
                          std::span<const dual_quaternion<double>> poses,
                          const plan_options& options, const objective_view& objective,
