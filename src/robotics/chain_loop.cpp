@@ -23,8 +23,7 @@ void chain_screws::normalise() {
     sum += across * p;
   }
   // If all axes are parallel `squares` is singular. It is therefore damped, and the solution is
-  // refined as often as is needed to remove the effect of the damping otherwise. (Eigen's
-  // decompositions take g++ two seconds to compile.)
+  // refined as often as is needed to remove the effect of the damping otherwise.
   const Eigen::Matrix3d damped = (squares + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
   Eigen::Vector3d solution = Eigen::Vector3d::Zero();
   for (int k = 0; k < 6; ++k) {

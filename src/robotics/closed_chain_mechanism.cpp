@@ -14,6 +14,7 @@
 #include <duet/robotics/closed_tree.hpp>
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -65,17 +66,13 @@ Eigen::VectorXd closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
 }
 
 std::vector<int> closed_chain_mechanism::independent_coordinates(const Eigen::VectorXd& q) const {
-  Eigen::MatrixXd rates = detail::linearised(*this, q).kernel();
-  std::vector<int> result;
-  while (Eigen::Index(result.size()) < rates.cols()) { // the pivots alone: less to compile
-    Eigen::Index next = 0;
-    rates.rowwise().squaredNorm().maxCoeff(&next);
-    result.push_back(int(next));
-    const Eigen::VectorXd along = rates.row(next).normalized();
-    for (Eigen::Index i = 0; i < rates.rows(); ++i) {
-      rates.row(i) -= rates.row(i).dot(along) * along;
-    }
+  const Eigen::MatrixXd rates = detail::linearised(*this, q).kernel();
+  if (rates.cols() == 0) {
+    return {}; // Eigen does not factorise empty matrices
   }
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factors(rates.transpose());
+  const auto pivots = factors.colsPermutation().indices().head(rates.cols());
+  std::vector<int> result(pivots.begin(), pivots.end());
   std::sort(result.begin(), result.end());
   return result;
 }

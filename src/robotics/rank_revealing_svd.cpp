@@ -11,7 +11,6 @@ rank_revealing_svd::rank_revealing_svd(const Eigen::MatrixXd& a)
     : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
       v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
   if (a.size() > 0) { // Eigen has no singular values of empty matrices
-    // Full pivoting takes compilers a third of the time.
     const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
         a, Eigen::ComputeFullU | Eigen::ComputeFullV);
     u_ = svd.matrixU();
