@@ -3,7 +3,10 @@
 #include "timing/path_velocity_constraints.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace duet::detail {
 DUET_ABI_BEGIN

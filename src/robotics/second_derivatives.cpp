@@ -5,6 +5,8 @@
 #include "loops/rank_revealing_svd.hpp"
 
 #include <cstddef>
+#include <optional>
+#include <vector>
 
 namespace duet::detail {
 DUET_ABI_BEGIN

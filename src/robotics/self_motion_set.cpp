@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 namespace duet::detail {
 DUET_ABI_BEGIN

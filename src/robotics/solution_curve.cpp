@@ -10,6 +10,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
 
 namespace duet::detail {
 DUET_ABI_BEGIN

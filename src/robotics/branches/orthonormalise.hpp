@@ -33,7 +33,7 @@ void orthonormalise(M& m, Others&... others) {
 }
 
 /// Minimum-norm solution x of J x = e for a Jacobian J of six independent rows: Qᵀ(L⁻¹e)
-/// with J = L Q. (g++ takes 0.3 s for it, 1.7 s for Eigen's LU decomposition.)
+/// with J = L Q. Faster than Householder reflections for matrices of this size.
 template <int Joints>
 [[nodiscard]] Eigen::Matrix<double, Joints, 1>
 least_solution(const Eigen::Matrix<double, 6, Joints>& jacobian,
