@@ -90,7 +90,7 @@ std::string driven_motion::driven() const {
 std::string driven_motion::text(const Eigen::VectorXd& q) const {
   std::string result;
   for (const int i : drives_) {
-    result += (result.empty() ? "" : ", ") + to_text(q[i]);
+    result += (result.empty() ? "" : ", ") + duet::to_text(q[i]);
   }
   return drives_.size() == 1 ? result : "(" + result + ")";
 }

@@ -30,7 +30,7 @@ TEST_CASE("save_plan, save_trajectory: files contain all digits") {
   motion_plan plan;
   CHECK_THROWS_AS(save_plan(path, plan), invalid_input);
   for (int k = 0; k < 3; ++k) {
-    plan.joints.emplace_back(k / 3.0, -std::sqrt(k + 2.0));
+    plan.joints.push_back(Eigen::Vector2d(k / 3.0, -std::sqrt(k + 2.0)));
     plan.poses.push_back(pose(from_rotation_vector(Eigen::Vector3d(.1 * k, .2, 1e-300)),
                               Eigen::Vector3d(k / 7.0, 1e-17, 3)));
     plan.tau.push_back(k / 2.0);

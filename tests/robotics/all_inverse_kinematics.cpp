@@ -93,7 +93,7 @@ vector configuration(const chain& arm, duet_test::random_source& random) {
 }
 
 /// Largest difference of a coordinate, modulo full turns.
-double distance(const chain& arm, const vector& a, const vector& b) {
+double distance(const chain& arm, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double largest = 0;
   for (int i = 0; i < arm.size(); ++i) {
     const double d = a[i] - b[i];

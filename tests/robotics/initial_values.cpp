@@ -7,20 +7,11 @@
 #include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/dual_quaternion/nearest.hpp>
 #include <duet/duet.hpp>
-#include <duet/io/recording.hpp>
-#include <duet/io/urdf.hpp>
+#include <duet/io.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/kinematics/tree_loop.hpp>
 #include <duet/motion/printed_plan.hpp>
-#include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/bounding_capsules.hpp>
-#include <duet/robotics/choose_start.hpp>
-#include <duet/robotics/loop_motion.hpp>
-#include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/loop_trace.hpp>
-#include <duet/robotics/mobility.hpp>
-#include <duet/robotics/self_motion_curves.hpp>
-#include <duet/robotics/time_parametrised.hpp>
+#include <duet/robotics.hpp>
 #include <duet/spline/fit.hpp>
 
 #include <doctest/doctest.h>

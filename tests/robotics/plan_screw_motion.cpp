@@ -91,7 +91,7 @@ TEST_CASE("plan_screw_motion: reaches near goals along the screw") {
     CHECK(plan.iterations <
           2.3 * double(plan.joints.size())); // a step to first order, and Newton's
     double margin = 10, smallest = 10;
-    for (const vector& theta : plan.joints) {
+    for (const Eigen::VectorXd& theta : plan.joints) {
       for (int i = 0; i < 7; ++i) {
         margin = std::min({margin, theta[i] - arm.limits(i).lower, arm.limits(i).upper - theta[i]});
       }

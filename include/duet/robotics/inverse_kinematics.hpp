@@ -67,7 +67,7 @@ DUET_ABI_END
 namespace detail {
 DUET_ABI_BEGIN
 
-/// What is preferred among the solutions of a goal.
+/// Preferences among the solutions of a goal: an objective, and clearance of obstacles.
 struct solution_preferences {
   objective_view objective;
   const scene* around = nullptr; ///< null without obstacles
