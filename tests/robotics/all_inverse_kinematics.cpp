@@ -93,7 +93,7 @@ vector configuration(const chain& arm, duet_test::random_source& random) {
 }
 
 /// Largest difference of a coordinate, modulo full turns.
-double distance(const chain& arm, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+double joint_distance(const chain& arm, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   double largest = 0;
   for (int i = 0; i < arm.size(); ++i) {
     const double d = a[i] - b[i];
@@ -105,7 +105,7 @@ double distance(const chain& arm, const Eigen::VectorXd& a, const Eigen::VectorX
 
 bool contains(const chain& arm, const result& found, const vector& theta, double tolerance = 1e-7) {
   return std::any_of(found.solutions.begin(), found.solutions.end(),
-                     [&](const auto& s) { return distance(arm, s.joints, theta) < tolerance; });
+                     [&](const auto& s) { return joint_distance(arm, s.joints, theta) < tolerance; });
 }
 
 double smallest_singular_value(const chain& arm, const vector& theta) {
@@ -132,7 +132,7 @@ void check_solutions(const chain& arm, const result& found, const dual_quaternio
       CHECK((!is_angle || (s.joints[i] > -pi && s.joints[i] <= pi)));
     }
     for (std::size_t other = 0; other < k; ++other) {
-      CHECK(distance(arm, s.joints, found.solutions[other].joints) > 1e-7);
+      CHECK(joint_distance(arm, s.joints, found.solutions[other].joints) > 1e-7);
       CHECK_FALSE(std::lexicographical_compare(s.joints.begin(), s.joints.end(),
                                                found.solutions[other].joints.begin(),
                                                found.solutions[other].joints.end()));
@@ -602,7 +602,7 @@ TEST_CASE("all_inverse_kinematics: solutions of inverse_kinematics from random g
     if (one.reason == stop_reason::reached) {
       CHECK(contains(arm, found, one.joints, 1e-6));
       for (std::size_t i = 0; i < is_met.size(); ++i) {
-        is_met[i] = is_met[i] || distance(arm, one.joints, found.solutions[i].joints) < 1e-6;
+        is_met[i] = is_met[i] || joint_distance(arm, one.joints, found.solutions[i].joints) < 1e-6;
       }
     }
   }
@@ -643,7 +643,7 @@ TEST_CASE("all_inverse_kinematics: solutions at a branch point have multiplicity
       int count = 0, nearest = 0;
       for (const auto& s : found.solutions) {
         count += s.multiplicity;
-        nearest = distance(arm, s.joints, theta) < 2e-6 ? s.multiplicity : nearest;
+        nearest = joint_distance(arm, s.joints, theta) < 2e-6 ? s.multiplicity : nearest;
       }
       CHECK(count % 2 == 0);
       CHECK(nearest == (offset < 1e-8 ? 2 : 1));
