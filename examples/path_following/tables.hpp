@@ -40,7 +40,7 @@ inline std::string path_csv(const duet::motion_plan& plan) {
 
 /// The arm at the start, pale, and at the end, as thick lines from joint to joint, with the
 /// required path and that of the tip.
-template <class Arm, int N, class Path>
+template <class Arm, class Path>
 example::drawing drawing_of(const Arm& arm, const duet::motion_plan& plan, const Path& path,
                             double turns) {
   example::drawing d(example::point(.7, -1, .5));

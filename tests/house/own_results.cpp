@@ -4,6 +4,7 @@
 // arguments and local variables that are gone when `auto` keeps the result.
 
 #include <duet/duet.hpp>
+#include <duet/robotics/objective.hpp>
 
 #include <array>
 #include <tuple>
