@@ -6,6 +6,7 @@
 #include "quadratic_step.hpp"
 #include "small_vector.hpp"
 #include <duet/kinematics/motion_plan.hpp>
+#include <duet/robotics/objective.hpp>
 
 #include <Eigen/Core>
 
