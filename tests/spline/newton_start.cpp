@@ -6,7 +6,6 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/curve_ends.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/newton.hpp>

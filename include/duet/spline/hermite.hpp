@@ -6,7 +6,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/half_rate.hpp>
+#include <duet/spline/end_conditions.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 

@@ -6,7 +6,6 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/spline/blocks/products.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/curve_ends.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/cubic.hpp>
 #include <duet/spline/equations/curve_equations.hpp>

@@ -8,7 +8,7 @@
 #include <duet/spline/basis.hpp>
 #include <duet/spline/blocks/tridiagonal.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/rate_gradients.hpp>
 #include <duet/spline/equations/small_angles.hpp>

@@ -3,7 +3,7 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/end_conditions.hpp>
 
 #include <concepts>
 #include <cstddef>

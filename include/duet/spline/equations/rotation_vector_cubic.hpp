@@ -4,7 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/blocks/tridiagonal.hpp>
-#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/rotation_vector_equations.hpp>
 #include <duet/spline/rotation_vector_segment.hpp>

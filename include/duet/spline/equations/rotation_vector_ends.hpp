@@ -4,7 +4,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/end_conditions.hpp>
 
 #include <algorithm>
 #include <array>

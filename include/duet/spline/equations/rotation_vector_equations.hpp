@@ -5,7 +5,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/rotation_vector_ends.hpp>
 #include <duet/spline/equations/small_angles.hpp>
 #include <duet/spline/orientations.hpp>

@@ -5,7 +5,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/blocks/band_lu.hpp>
-#include <duet/spline/curve_ends.hpp>
+#include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/quintic_piece.hpp>
 #include <duet/spline/equations/rotation_vector_equations.hpp>
