@@ -7,9 +7,8 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
-#include <duet/spline/equations/curve_equations.hpp>
+#include <duet/spline/equations/cubic.hpp>
 #include <duet/spline/equations/newton.hpp>
-#include <duet/spline/equations/small_angles.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>

@@ -11,7 +11,6 @@
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
-#include <duet/spline/refused_rows.hpp>
 
 #include <algorithm>
 #include <cmath>

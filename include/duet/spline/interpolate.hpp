@@ -4,17 +4,16 @@
 #include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/foreign.hpp>
+#include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/blocks/products.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/cubic.hpp>
-#include <duet/spline/equations/curve_equations.hpp>
 #include <duet/spline/equations/newton.hpp>
-#include <duet/spline/equations/rotation_vector_cubic.hpp>
-#include <duet/spline/equations/rotation_vector_quintic.hpp>
+#include <duet/spline/equations/rotation_vector.hpp>
 #include <duet/spline/hermite.hpp>
 #include <duet/spline/orientations.hpp>
-#include <duet/spline/refused_rows.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <algorithm>
@@ -177,6 +176,14 @@ template <CurveType Spline, class T>
   }
 }
 
+template <class X>
+using itself = X;
+
+template <class X>
+inline constexpr bool is_standard_vector = false;
+template <class X, class Allocator>
+inline constexpr bool is_standard_vector<std::vector<X, Allocator>> = true;
+
 } // namespace detail
 
 /// Interpolates rotations or poses: the curve of type `Spline` with S(u_i) = Q_i. `Spline` is
@@ -240,6 +247,36 @@ DUET_REFUSED(
     "cumulative_bspline<double>, poses a cumulative_bspline<dual<double, 1, screw_tag>>")
 Spline interpolate(const std::vector<real_type_t<T>>&, const std::vector<quaternion<T>>&,
                    const More&...);
+
+/// Declares rejected overloads of `function<Spline>` for arguments other than those shown;
+/// `result<Spline>` is the type of its result.
+#define DUET_REFUSES_ROWS(function, result, arguments)                                             \
+  template <CurveType Spline, class U, detail::ForeignRows Rows, class... More>                    \
+  DUET_REFUSED_FOREIGN_ROWS(function)                                                              \
+  result<Spline> function(const U&, const Rows&, const More&...);                                  \
+  template <CurveType Spline, class U, class Rows, class... More>                                  \
+    requires(!detail::ForeignRows<Rows> &&                                                         \
+             (!detail::is_standard_vector<U> || !detail::is_standard_vector<Rows>))                \
+  DUET_REFUSED(#function " takes standard vectors: std::vector<double> of parameters, "            \
+                         "std::vector<quaternion<double>> of samples")                             \
+  result<Spline> function(const U&, const Rows&, const More&...);                                  \
+  template <CurveType Spline, class T>                                                             \
+  DUET_REFUSED(#function ": the parameters are missing: " #function "<Curve>" arguments)           \
+  result<Spline> function(const std::vector<quaternion<T>>&);                                      \
+  template <CurveType Spline, class T, class Other, class... More>                                 \
+  DUET_REFUSED(#function ": the parameters come first: " #function "<Curve>" arguments)            \
+  result<Spline> function(const std::vector<quaternion<T>>&, const Other&, const More&...);        \
+  template <class U, class T, class... More>                                                       \
+    requires(!CurveType<U>)                                                                        \
+  DUET_REFUSED(#function ": the type of the curve is missing: " #function                          \
+                         "<cumulative_bspline<double>>" arguments)                                 \
+  result<cumulative_bspline<T>> function(const U&, const std::vector<quaternion<T>>&,              \
+                                         const More&...);                                          \
+  template <template <class, int> class Spline, class... X>                                        \
+  DUET_REFUSED(#function ": the scalar of the curve is missing: " #function                        \
+                         "<cumulative_bspline<double>>" arguments)                                 \
+  result<cumulative_bspline<double>>                                                               \
+  function(const X&...);
 
 DUET_REFUSES_ROWS(interpolate, detail::itself, "(parameters, samples)")
 

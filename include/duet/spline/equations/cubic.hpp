@@ -1,24 +1,29 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/stumpff.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/blocks/products.hpp>
 #include <duet/spline/blocks/tridiagonal.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
-#include <duet/spline/equations/curve_equations.hpp>
-#include <duet/spline/equations/rate_gradients.hpp>
-#include <duet/spline/equations/small_angles.hpp>
+#include <duet/spline/equations/newton.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -26,6 +31,146 @@
 /// Equations for the increments of the interpolating cumulative cubic.
 
 namespace duet::detail {
+
+/// Equation Σ weights_j x_j = right for small rotations, which commute to first order, so that
+/// coordinates do not mix.
+template <class T>
+struct small_angle_equation {
+  std::array<real_type_t<T>, 3> weights;
+  vector3<T> right;
+};
+
+/// Solution of all these equations; zero if they are singular.
+template <class R, class Equations>
+[[nodiscard]] std::vector<vector3<R>> small_angle_solution(const Equations& equations) {
+  const std::size_t n = equations.size();
+  typename Equations::matrix matrix;
+  auto& rows = matrix.rows();
+  rows.resize(n);
+  std::vector<vector3<R>> x(n);
+  for (std::size_t row = 0; row < n; ++row) {
+    const small_angle_equation<R> equation = equations.small_angles(row);
+    for (std::size_t j = 0; j < 3; ++j) {
+      matrix3<R>& block = rows[row].at(equations.block_position(row, j));
+      block.setZero();
+      for (int k = 0; k < 3; ++k) {
+        block(k, k) = equation.weights[j];
+      }
+    }
+    x[row] = equation.right;
+  }
+  if (!matrix.factorise(equations.corner_columns())) {
+    x.assign(n, vector3<R>::Zero());
+    return x;
+  }
+  matrix.solve(x);
+  return x;
+}
+
+/// Size of a step of the unknowns from x relative to the values it changes: the maximum over all
+/// equations of the change divided by the largest term of the equation. So small equations of short
+/// intervals count as much as those of long ones.
+template <class R, class Equations>
+[[nodiscard]] R relative_step(const Equations& equations, const std::vector<vector3<R>>& x,
+                              const std::vector<vector3<R>>& step) {
+  using std::abs;
+  const std::size_t n = x.size();
+  std::vector<R> moved(n, R(0)), term(n);
+  R largest(0);
+  for (std::size_t row = 0; row < n; ++row) {
+    const small_angle_equation<R> equation = equations.small_angles(row);
+    term[row] = length(equation.right);
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::size_t k = equations.unknown(row, j);
+      const R weight = abs(equation.weights[j]);
+      const R change = weight * length(step[k]);
+      moved[row] += change;
+      term[row] = std::max(R(term[row] + change), R(weight * length(x[k])));
+    }
+    largest = std::max(largest, term[row]);
+  }
+  // Far from all rotations, terms decay below the smallest numbers: they are bounded from below.
+  const R epsilon = std::numeric_limits<R>::epsilon();
+  const R min_term = largest * (epsilon * epsilon) * (epsilon * epsilon);
+  R result(0);
+  for (std::size_t row = 0; row < n; ++row) {
+    const R ratio = moved[row] > 0 ? R(moved[row] / std::max(term[row], min_term)) : moved[row];
+    result = larger_or_nan(result, ratio);
+  }
+  return result;
+}
+
+/// Derivatives of a vector with respect to three vectors.
+template <class R>
+using gradient_by_three = std::array<matrix3<R>, 3>;
+
+/// Transposed rotation matrix of e = exp(v), and J(v).
+template <class R>
+struct rotation_factor {
+  matrix3<R> back, jacobian;
+  explicit rotation_factor(const vector3<R>& v) {
+    const R s = dot(components(v), components(v));
+    const auto [cosine, ratio] = first_stumpff_pair(s);
+    // c_1(4s), 2c_2(4s) and 4c_3(4s) from those of s
+    jacobian = axial_matrix<R>(cosine * ratio, -ratio * ratio, 4 * stumpff<3>(R(4 * s)), v);
+    back = axial_matrix<R>(cosine * cosine - s * ratio * ratio, -2 * cosine * ratio,
+                           2 * ratio * ratio, v);
+  }
+};
+
+/// Derivatives of −P* δP with respect to ω_0, ω_1 and ω_2 for the product P = e_1 e_2 …, e = exp(b
+/// ω_j) for each factor (j, b). Each factor rotates the derivatives back and adds b J(b ω_j) δω_j.
+template <class R, std::size_t Factors>
+[[nodiscard]] gradient_by_three<R>
+minus_product_gradient(const std::array<std::pair<std::size_t, R>, Factors>& factors,
+                       const std::array<vector3<R>, 3>& omega) {
+  gradient_by_three<R> by;
+  by.fill(matrix3<R>::Zero());
+  std::array<bool, 3> is_taken_in{};
+  for (const auto& [j, b] : factors) {
+    if (b != 0) {
+      const rotation_factor<R> e(b * components(omega[j]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (is_taken_in[k]) {
+          by[k] = product(e.back, by[k]);
+        }
+      }
+      is_taken_in[j] = true;
+      add_multiple(by[j], R(-b), e.jacobian);
+    }
+  }
+  return by;
+}
+
+/// Derivatives of e* (b_0 ω_0 + b_1 ω_1) e + b_2 ω_2, e = exp(ω_2), with respect to ω_0, ω_1 and
+/// ω_2; or without e.
+template <class R>
+[[nodiscard]] gradient_by_three<R>
+end_gradient(const std::array<R, 3>& b, const std::array<vector3<R>, 3>& omega, bool is_rotated) {
+  gradient_by_three<R> by;
+  by.fill(matrix3<R>::Zero());
+  for (std::size_t j = 0; j < 3; ++j) {
+    for (int i = 0; i < 3; ++i) {
+      by[j](i, i) = b[j];
+    }
+  }
+  if (is_rotated) { // ŵ = e* w e changes by 2 ŵ × J δω_2
+    const rotation_factor<R> e(omega[2]);
+    vector3<R> twice_rate = vector3<R>::Zero();
+    for (std::size_t j = 0; j < 2; ++j) {
+      by[j] = product(e.back, by[j]);
+      add_product(twice_rate, R(2), by[j], omega[j]);
+    }
+    for (int k = 0; k < 3; ++k) {
+      const int next = (k + 1) % 3, other = (k + 2) % 3;
+      for (int i = 0; i < 3; ++i) {
+        by[2](k, i) +=
+            twice_rate[next] * e.jacobian(other, i) - twice_rate[other] * e.jacobian(next, i);
+      }
+    }
+  }
+  return by;
+}
 
 /// Equations for the half-angle vectors ω_1, ω_2 … of the cubic through Q_0 … Q_n: with the piece S
 /// of its span,

@@ -3,18 +3,65 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/rounding.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/blocks/products.hpp>
+#include <duet/spline/end_conditions.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 /// \file
-/// Newton's method and continuation for the equations of an interpolating curve, over real numbers.
+/// Requirements of `interpolate` on a type of curve and its equations, for those who extend duet,
+/// and Newton's method with continuation for these equations, over real numbers.
 
-namespace duet::detail {
+namespace duet {
+
+/// Type of curves through rotations or poses, with its scalar, its parameter's type and its order.
+template <class S>
+concept CurveType = requires {
+  typename S::scalar_type;
+  typename S::real_type;
+  S::order;
+};
+
+namespace detail {
+
+/// Equations over T of curves of type `Spline`, found by `interpolate`; a new type of curve
+/// specialises this.
+template <class Spline, class T = typename Spline::scalar_type>
+struct equations_of {};
+template <class Spline, class T = typename Spline::scalar_type>
+using equations_of_t = typename equations_of<Spline, T>::type;
+
+/// Equations F(x) = 0 for the parameters of an interpolating curve, in blocks of N numbers.
+///
+/// They are constructed from parameters, samples with aligned signs and end conditions, and have
+/// - `min_samples(kind)`, the minimum number of samples for these end conditions;
+/// - `start()`, the initial guess, near the solution for small rotations;
+/// - `residuals(x, r)`, which sets r = F(x);
+/// - `scale(λ)`, which changes the equations to those of a smaller motion;
+/// - `relative_step(x, step)`, the size of a step relative to the values it changes;
+/// - `curve(u, q, x)`, the curve of a solution;
+/// - over real numbers, `linearise(x, r, matrix)`: F and its factorised Jacobian, false if that is
+///   singular.
+template <class E>
+concept CurveEquations = requires(E e, const E f, const typename E::unknowns x,
+                                  typename E::unknowns r, typename E::real_type lambda,
+                                  const typename E::matrix& jacobian) {
+  { E::min_samples(end_condition_kind()) } -> std::same_as<std::size_t>;
+  f.residuals(x, r);
+  e.scale(lambda);
+  { f.max_rotation() } -> std::same_as<std::pair<typename E::real_type, std::size_t>>;
+  { f.unevenness() } -> std::convertible_to<typename E::real_type>;
+  jacobian.solve(r);
+};
 
 /// Newton's method on real equations, from their own initial guess. If it fails because rotations
 /// are too large, predictor–corrector continuation from smaller rotations follows; among several
@@ -179,4 +226,5 @@ private:
   int iterations_ = 0;
 };
 
-} // namespace duet::detail
+} // namespace detail
+} // namespace duet
