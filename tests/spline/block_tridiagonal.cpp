@@ -5,7 +5,7 @@
 
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/blocks/tridiagonal.hpp>
+#include <duet/spline/blocks.hpp>
 
 #include <Eigen/Dense>
 #include <doctest/doctest.h>

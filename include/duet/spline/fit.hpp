@@ -2,21 +2,36 @@
 #pragma once
 
 #include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/dual_quaternion/exponential_jacobian.hpp>
+#include <duet/dual_quaternion/twist.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
+#include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/blocks.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/fit_options.hpp>
-#include <duet/spline/fitting/bspline_fit.hpp>
+#include <duet/spline/fit_start.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <sstream>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -26,6 +41,25 @@
 /// smoothed out.
 
 namespace duet {
+
+/// Options of `fit`.
+struct fit_options {
+  /// Characteristic length: distance between poses that counts as much as a rotation by 1 rad.
+  double characteristic_length = 1;
+  /// Outlier threshold, in the unit of the residuals. Larger residuals count by their size, not by
+  /// their square (Huber's loss). Samples farther off than four times the threshold and twelve
+  /// times the median of their neighbours are ignored, so that outliers, however far, do not move
+  /// the curve. 0: three times the median residual. Infinity, the default: plain least squares.
+  double outlier_threshold = std::numeric_limits<double>::infinity();
+  /// Relative weights wᵢ > 0 of the samples; empty, the default: all equal.
+  std::vector<double> weights = {};
+  /// Covariance matrices Σᵢ of the samples' errors, or one for all: 3 × 3 of rotation vectors in
+  /// the sample's body axes, rad²; for poses 6 × 6 of twists [v; ω] there. Residuals, and with them
+  /// `outlier_threshold`, are then |Lᵢ⁻¹ rᵢ| in standard deviations, Σᵢ = Lᵢ Lᵢᵀ, and
+  /// `characteristic_length` has no effect. Empty, the default: errors of one size.
+  std::vector<Eigen::MatrixXd> covariances = {};
+  int max_iterations = 100; ///< maximum number of Levenberg–Marquardt iterations
+};
 
 /// Fitted curve and the distances of the samples from it.
 template <CurveType Spline>
@@ -51,6 +85,9 @@ struct fit_result {
 };
 
 namespace detail {
+
+template <class T, int Order>
+class bspline_fit;
 
 /// \throws invalid_input unless there are no weights, or one for each sample, positive and finite
 inline void require_fit_weights(const std::vector<double>& weights, std::size_t samples) {
@@ -183,4 +220,591 @@ DUET_REFUSED("fit: the knots are missing: fit<Curve>(parameters, samples, clampe
              "4), options)")
 fit_result<Spline> fit(const U&, const std::vector<quaternion<T>>&, const fit_options&);
 
+namespace detail {
+
+/// Residuals of samples at given parameters, as functions of the control points of the curve.
+template <class T, int Order>
+class bspline_residuals {
+protected:
+  using R = real_type_t<T>;
+  using element = quaternion<T>;
+  static constexpr int dimension = manifold<element>::dimension;
+  static constexpr int unknowns = Order * dimension;
+  static constexpr std::size_t factors = std::size_t(Order) - 1;
+  using tangent = Eigen::Matrix<R, dimension, 1>;
+  using square = Eigen::Matrix<R, dimension, dimension>;
+  using basis_type = bspline_basis<Order, R>;
+
+  bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> data,
+                    const fit_options& options)
+      : samples_(std::move(data)), characteristic_length_(R(options.characteristic_length)),
+        sample_weights_(options.weights), whitening_(inverse_roots(options.covariances)) {
+    first_.reserve(u.size());
+    weights_.reserve(u.size());
+    for (const R& parameter : u) {
+      const std::size_t span = basis.find_span(parameter);
+      first_.push_back(basis.first_function(span));
+      weights_.push_back(basis.template weights<0>(span, parameter)[0]);
+    }
+  }
+
+  [[nodiscard]] const std::vector<element>& samples() const { return samples_; }
+  /// Index of the first of the `Order` control points on which each sample depends.
+  [[nodiscard]] const std::vector<std::size_t>& first() const { return first_; }
+
+  /// Norm, without overflow.
+  [[nodiscard]] static R size_of(const tangent& r) {
+    const R norm = r.norm();
+    return norm <= std::numeric_limits<R>::max() ? norm : R(r.stableNorm());
+  }
+
+  [[nodiscard]] std::vector<R> residuals(const std::vector<element>& controls) const {
+    std::vector<R> result;
+    result.reserve(samples_.size());
+    last_span last;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      result.push_back(size_of(residual_at(i, controls, last)));
+    }
+    return result;
+  }
+
+  /// Half-angle vector from control point i − 1 to i.
+  [[nodiscard]] static vector3<T> increment(const std::vector<element>& controls, std::size_t i) {
+    return log_vector(relative_rotation(controls[i - 1], controls[i]), "fit");
+  }
+
+  /// Control points perturbed by tangent vectors in their body axes, one after the other.
+  [[nodiscard]] static std::vector<element>
+  moved_by(std::vector<element> controls, const Eigen::Matrix<R, Eigen::Dynamic, 1>& step) {
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+      const tangent d = step.template segment<dimension>(Eigen::Index(i) * dimension);
+      controls[i] = normalized(element(manifold<element>::plus(controls[i], d, frame::body)));
+    }
+    return controls;
+  }
+
+  [[nodiscard]] R weight_of(std::size_t i) const {
+    return sample_weights_.empty() ? R(1) : R(sample_weights_[i]);
+  }
+  /// Cost Σ wᵢ ρ(rᵢ) with a limit of Huber's loss for each sample; samples with limit 0 do not
+  /// count.
+  [[nodiscard]] R cost_of(const std::vector<element>& controls,
+                          const std::vector<R>& limits) const {
+    R sum(0);
+    last_span last;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (limits[i] > 0) {
+        sum += weight_of(i) * huber_loss(size_of(residual_at(i, controls, last)), limits[i]);
+      }
+    }
+    return sum;
+  }
+
+  /// Common data of samples on one span: the control point at its start, the increments, and their
+  /// derivatives with respect to the control points.
+  struct segment {
+    element start;
+    std::array<vector3<T>, factors> increments; ///< half-angle vectors
+    /// J_r⁻¹ and J_l⁻¹ of the increments: their derivatives with respect to the control points
+    /// after and before.
+    std::array<matrix3<T>, factors> by_next, by_last;
+  };
+  /// Span of the caller's last sample, valid until the control points change.
+  struct last_span {
+    std::size_t first = std::size_t(-1);
+    bool has_rates = false;
+    segment shared;
+  };
+
+  [[nodiscard]] tangent residual_at(std::size_t i, const std::vector<element>& controls,
+                                    last_span& last) const {
+    move_to(first_[i], controls, last);
+    element value = last.shared.start;
+    for (std::size_t j = 0; j < factors; ++j) {
+      value = value * duet::exp(part(i, j, last));
+    }
+    return scaled(twice(residual(value, i)), i);
+  }
+
+  struct linear_residual {
+    tangent value;
+    /// Derivatives with respect to the control points in body axes, one after the other,
+    /// transposed.
+    Eigen::Matrix<R, unknowns, dimension> gradient;
+  };
+
+  /// Residual i and its derivatives. With c exp(δ/2) for a control point c, φ = 2 log(c* c⁺) has
+  /// the rate φ̇ = J_r⁻¹(φ) δ⁺ − J_l⁻¹(φ) δ, and the factor exp(wφ/2) has the rate w J_r(wφ) φ̇ in
+  /// its body axes. The factors behind it transform this rate to the axes of the value. The
+  /// residual r changes by −J_l⁻¹(r) times the rate of the value.
+  [[nodiscard]] linear_residual linearised(std::size_t i, const std::vector<element>& controls,
+                                           last_span& last) const {
+    move_to(first_[i], controls, last);
+    add_rates(last);
+    std::array<element, factors> exponentials;
+    element value = last.shared.start;
+    for (std::size_t j = 0; j < factors; ++j) {
+      exponentials[j] = duet::exp(part(i, j, last));
+      value = value * exponentials[j];
+    }
+    linear_residual result;
+    const vector3<T> r = twice(residual(value, i));
+    result.value = scaled(r, i);
+    matrix3<T> by_value = -left_jacobian_inverse(r);
+    matrix3<T> by_element = matrix3<T>::Zero();
+    for (std::size_t j = factors; j-- > 0;) {
+      matrix3<T> by_increment = product(by_value, right_jacobian(twice(part(i, j, last))));
+      for (T& each : by_increment.reshaped()) {
+        each *= weights_[i][j];
+      }
+      put(by_element + product(by_increment, last.shared.by_next[j]), j + 1, i, result.gradient);
+      by_element = -product(by_increment, last.shared.by_last[j]);
+      by_value = product(by_value, rotation_matrix(conj(exponentials[j])));
+    }
+    put(by_element + by_value, 0, i, result.gradient);
+    return result;
+  }
+
+private:
+  /// Moves to the span of the control points from `first` on.
+  static void move_to(std::size_t first, const std::vector<element>& controls, last_span& last) {
+    if (last.first == first) {
+      return;
+    }
+    last.first = first;
+    last.has_rates = false;
+    last.shared.start = controls[first];
+    for (std::size_t j = 0; j < factors; ++j) {
+      last.shared.increments[j] = increment(controls, first + j + 1);
+    }
+  }
+  static void add_rates(last_span& last) {
+    for (std::size_t j = 0; j < factors && !last.has_rates; ++j) {
+      const vector3<T> phi = twice(last.shared.increments[j]);
+      last.shared.by_next[j] = right_jacobian_inverse(phi);
+      last.shared.by_last[j] = left_jacobian_inverse(phi);
+    }
+    last.has_rates = true;
+  }
+
+  [[nodiscard]] vector3<T> part(std::size_t i, std::size_t j, const last_span& last) const {
+    return weights_[i][j] * components(last.shared.increments[j]);
+  }
+
+  /// Logarithm log(S* Q) along the shorter arc.
+  [[nodiscard]] vector3<T> residual(const element& value, std::size_t i) const {
+    const bool is_opposite = innermost(dot(value, samples_[i])) < 0;
+    return log_vector(relative_rotation(value, is_opposite ? element(-samples_[i]) : samples_[i]),
+                      "fit");
+  }
+
+  [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return R(2) * components(half); }
+  [[nodiscard]] static matrix3<T> product(const matrix3<T>& a, const matrix3<T>& b) {
+    return a.lazyProduct(b);
+  }
+
+  /// Whitening matrices L⁻¹ of the covariances L Lᵀ.
+  ///
+  /// \throws invalid_input for a wrong number or size of covariances, and for a covariance that is
+  /// not symmetric or not positive definite
+  [[nodiscard]] std::vector<square> inverse_roots(const std::vector<Eigen::MatrixXd>& covariances) {
+    const std::size_t count = covariances.size();
+    require(count <= 1 || count == samples_.size(), "duet: fit: ", count, " covariances for ",
+            samples_.size(), " samples (expected one for each, or one for all)");
+    std::vector<square> result;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::MatrixXd& covariance = covariances[i];
+      require(covariance.rows() == dimension && covariance.cols() == dimension,
+              "duet: fit: covariance ", i, " is ", covariance.rows(), " x ", covariance.cols(),
+              ", not ", dimension, " x ", dimension);
+      require(covariance.isApprox(covariance.transpose()), "duet: fit: covariance ", i,
+              " is not symmetric");
+      const Eigen::LLT<square> root(covariance.template cast<R>());
+      require(covariance.allFinite() && root.info() == Eigen::Success, "duet: fit: covariance ", i,
+              " is not positive definite");
+      result.push_back(root.matrixL().solve(square::Identity()));
+    }
+    return result;
+  }
+  [[nodiscard]] const square& whitening(std::size_t i) const {
+    return whitening_[whitening_.size() > 1 ? i : 0];
+  }
+
+  /// Residual in its unit: [v/characteristic length; ω] for poses; in standard deviations if there
+  /// are covariances.
+  [[nodiscard]] tangent scaled(const vector3<T>& r, std::size_t i) const {
+    tangent result;
+    if constexpr (dimension == 3) {
+      result = r;
+    } else {
+      result = twist_of<R>(r);
+    }
+    if (!whitening_.empty()) {
+      result = whitening(i).lazyProduct(result).eval();
+    } else if constexpr (dimension == 6) {
+      result.template head<3>() /= characteristic_length_;
+    }
+    return result;
+  }
+
+  /// Stores the transposed linear map m from rates of control point j to residual i.
+  void put(const matrix3<T>& m, std::size_t j, std::size_t i,
+           Eigen::Matrix<R, unknowns, dimension>& gradient) const {
+    auto block = gradient.template middleRows<dimension>(Eigen::Index(j) * dimension);
+    if constexpr (dimension == 3) {
+      block = m.transpose();
+    } else {
+      block = unfolded(m).transpose();
+    }
+    if (!whitening_.empty()) {
+      block = block.lazyProduct(whitening(i).transpose()).eval();
+    } else if constexpr (dimension == 6) {
+      block.template leftCols<3>() /= characteristic_length_;
+    }
+  }
+
+  std::vector<element> samples_;
+  R characteristic_length_;
+  std::vector<double> sample_weights_;
+  std::vector<square> whitening_; ///< empty, one for all samples or one for each
+  std::vector<std::size_t> first_;
+  std::vector<std::array<R, factors>> weights_;
+};
+
+/// Corrects Gauss–Newton steps by limited-memory BFGS (two-loop recursion). The Gauss–Newton matrix
+/// lacks the second derivatives of the residuals and would need hundreds of steps if residuals are
+/// large.
+template <Real R>
+class gradient_changes {
+  using vector = Eigen::Matrix<R, Eigen::Dynamic, 1>;
+
+public:
+  [[nodiscard]] bool empty() const { return changes_.empty(); }
+  void clear() { changes_.clear(); }
+
+  /// Records the step to the next point, and the gradient before the step.
+  void step(vector taken, const vector& gradient) {
+    step_ = std::move(taken);
+    gradient_ = gradient;
+  }
+  /// Records the gradient after the step. The change counts if the cost is convex along the step.
+  void arrive(const vector& gradient) {
+    if (step_.size() != gradient.size()) {
+      return;
+    }
+    change c{step_, gradient - gradient_, R(0)};
+    c.product = c.step.dot(c.gradient);
+    if (c.product > 0) {
+      if (changes_.size() == 8) {
+        changes_.erase(changes_.begin());
+      }
+      changes_.push_back(std::move(c));
+    }
+  }
+
+  /// Replaces x by H⁻¹ x, where H is the factorised matrix with the corrections.
+  template <class Factors>
+  void solve(const Factors& factors, vector& x) const {
+    std::vector<R> along(changes_.size());
+    for (std::size_t k = changes_.size(); k-- > 0;) {
+      along[k] = changes_[k].step.dot(x) / changes_[k].product;
+      x -= along[k] * changes_[k].gradient;
+    }
+    factors.solve(x);
+    for (std::size_t k = 0; k < changes_.size(); ++k) {
+      x += (along[k] - changes_[k].gradient.dot(x) / changes_[k].product) * changes_[k].step;
+    }
+  }
+
+private:
+  struct change {
+    vector step, gradient;
+    R product;
+  };
+
+  vector step_, gradient_;
+  std::vector<change> changes_;
+};
+
+/// Least-squares problem of `fit`: minimises Σ wᵢ ρ(rᵢ) over the control points, which are
+/// perturbed in their tangent spaces (body axes). The normal equations are banded, as a sample
+/// depends on `Order` neighbouring control points.
+template <class T, int Order>
+class bspline_fit : bspline_residuals<T, Order> {
+  using residual_type = bspline_residuals<T, Order>;
+  using residual_type::dimension;
+  using residual_type::first;
+  using residual_type::residual_at;
+  using residual_type::samples;
+  using residual_type::size_of;
+  using residual_type::unknowns;
+  using typename residual_type::basis_type;
+  using typename residual_type::element;
+  using typename residual_type::R;
+  using typename residual_type::tangent;
+  using vector = Eigen::Matrix<R, Eigen::Dynamic, 1>;
+
+public:
+  bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> data,
+              const fit_options& options)
+      : bspline_fit(basis, u, central_sample(data, R(options.characteristic_length)), data,
+                    options) {}
+
+private:
+  /// Constructs the problem with samples relative to one of them, which preserves digits of small
+  /// rotations and translations between samples.
+  bspline_fit(const basis_type& basis, const std::vector<R>& u, const element& origin,
+              std::vector<element> data, const fit_options& options)
+      : residual_type(basis, u, samples_relative_to(origin, std::move(data)), options),
+        options_(options), basis_(&basis), u_(&u), origin_(origin),
+        limits_(u.size(), R(options.outlier_threshold)) {
+    if (is_robust()) {
+      controls_ =
+          robust_centre<T>().controls(basis, u, this->samples(), R(options.characteristic_length));
+      approach();
+    } else {
+      controls_ = control_points_at_averages(basis, u, this->samples());
+      const std::vector<R> sizes = residuals();
+      if (!(*std::max_element(sizes.begin(), sizes.end()) < too_far<R>())) {
+        const auto [index, size] = farthest_from_neighbours();
+        raise(invalid_sample(
+            index, message("is ", size, " from the samples around it, too far for least ",
+                           "squares (fit_options::outlier_threshold makes the fit robust)")));
+      }
+    }
+  }
+
+public:
+  /// True if sample i counts; outliers that are too far off do not.
+  [[nodiscard]] bool counts(std::size_t i) const { return limits_[i] > 0; }
+  [[nodiscard]] R outlier_threshold() const { return R(options_.outlier_threshold); }
+
+  [[nodiscard]] cumulative_bspline<T, Order> curve(const basis_type& basis) const {
+    std::vector<element> controls;
+    for (const element& control : controls_) {
+      controls.push_back(origin_ * control);
+    }
+    std::vector<vector3<T>> increments{vector3<T>::Zero()};
+    for (std::size_t i = 1; i < controls_.size(); ++i) {
+      increments.push_back(this->increment(controls_, i));
+    }
+    return {basis, std::move(controls), std::move(increments)};
+  }
+
+  [[nodiscard]] std::vector<R> residuals() const { return residual_type::residuals(controls_); }
+
+  /// Minimises the cost over the control points; returns the number of steps.
+  ///
+  /// \throws no_convergence if the iteration does not converge
+  int solve() { return iterations_ + descend(options_.max_iterations, true); }
+
+private:
+  static constexpr R tolerance = R(1e-11); // rad
+  static constexpr R max_rotation = R(0.5);
+  static constexpr R min_outlier_threshold =
+      R(1e-9); ///< samples that fit to round-off have no outliers
+
+  [[nodiscard]] bool is_robust() const {
+    return options_.outlier_threshold < std::numeric_limits<double>::infinity();
+  }
+
+  /// Damped least squares (Levenberg–Marquardt); returns the number of steps.
+  ///
+  /// \throws no_convergence if `must_converge` and the iteration does not
+  int descend(int max_steps, bool must_converge) {
+    const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
+    using std::sqrt;
+    const R rounding = 8 * std::numeric_limits<R>::epsilon() * sqrt(R(samples().size()));
+    R damping(0), step(0), before(std::numeric_limits<R>::max()), rate(1);
+    for (int iteration = 1; iteration <= max_steps; ++iteration) {
+      bool is_bold = must_converge && is_robust();
+      const R cost = assemble(is_bold);
+      if (iteration > 10) { // Gauss–Newton steps alone are mostly enough, and faster at the end
+        changes_.arrive(-gradient_);
+      }
+      R next(0);
+      for (;;) {
+        std::vector<element> moved = moved_control_points(damping, step);
+        next = moved.empty() ? std::numeric_limits<R>::infinity() : this->cost_of(moved, limits_);
+        const bool is_tiny = !moved.empty() && step <= tolerance;
+        if (next <= cost * (1 + rounding) || (is_tiny && damping == 0)) {
+          controls_ = std::move(moved);
+          changes_.step(last_step_, -gradient_);
+          damping = damping > R(1e-9) ? R(damping / 10) : R(0);
+          break;
+        }
+        if (is_tiny) { // the cost is at its minimum to round-off
+          return iteration;
+        }
+        if (!changes_.empty()) {
+          changes_.clear();
+          continue;
+        }
+        if (is_bold) {
+          is_bold = false;
+          static_cast<void>(assemble(false));
+          continue;
+        }
+        damping = damping > 0 ? R(damping * 10) : R(1e-6);
+        if (!(damping < R(1e12))) {
+          if (!must_converge) {
+            return iteration;
+          }
+          fail("finds no step that reduces the cost", iteration, step);
+        }
+      }
+      // An error e in the control points adds e² to the cost, which therefore stops changing before
+      // the steps vanish. Steps shrink, at a rate given by the last two, down to round-off.
+      const bool is_low = step <= tolerance || cost - next <= gain * next;
+      const bool is_shrinking = 2 * step <= before;
+      const R last_rate = std::exchange(rate, damping > 0 ? R(1) : R(step / before));
+      before = step;
+      if (is_low && (!must_converge || !is_shrinking || iteration == max_steps ||
+                     step * std::max(rate, last_rate) <= std::numeric_limits<R>::epsilon())) {
+        return iteration;
+      }
+    }
+    if (must_converge) {
+      fail("does not converge", max_steps, step);
+    }
+    return max_steps;
+  }
+
+  /// Approaches the samples robustly: the outlier limits follow from medians of the distances of
+  /// the surrounding samples from the curve so far.
+  void approach() {
+    constexpr int rounds = 12;
+    R scale = std::numeric_limits<R>::infinity(); // sum of the limits
+    for (int round = 0; round < rounds; ++round) {
+      const R last = scale;
+      scale = set_limits();
+      if (!(scale < R(0.9) * last)) {
+        break;
+      }
+      iterations_ += descend(round == 0 ? 1 : 4, false);
+    }
+    if (!(options_.outlier_threshold > 0)) {
+      options_.outlier_threshold =
+          double(std::max(R(3 * median_of(residuals())), min_outlier_threshold));
+    }
+    static_cast<void>(set_limits());
+    for (R& limit : limits_) {
+      limit = std::min(limit, R(options_.outlier_threshold));
+    }
+  }
+
+  R set_limits() {
+    const R min_limit = std::max(R(options_.outlier_threshold), min_outlier_threshold);
+    return set_outlier_limits(residuals(), first(), min_limit, limits_);
+  }
+
+  /// Assembles JᵀWJ and −JᵀW r at the control points, W the weights of Huber's loss; returns the
+  /// cost there.
+  ///
+  /// \param is_bold  true to omit most of the curvature along residuals beyond the limit, which the
+  ///                 loss does not have: steps are then correct near the solution, but possibly too
+  ///                 long far from it; with the curvature they are too short
+  [[nodiscard]] R assemble(bool is_bold) {
+    R cost(0);
+    gradient_.setZero(Eigen::Index(controls_.size()) * dimension);
+    normal_.set_zero(controls_.size());
+    typename residual_type::last_span last;
+    Eigen::Matrix<R, unknowns, unknowns> squares = Eigen::Matrix<R, unknowns, unknowns>::Zero();
+    const auto flush = [&](std::size_t span) { // called once for all samples on a span
+      for (std::size_t a = 0; a < std::size_t(Order); ++a) {
+        for (std::size_t b = 0; b <= a; ++b) {
+          normal_.at(span + a, span + b) += squares.template block<dimension, dimension>(
+              Eigen::Index(a) * dimension, Eigen::Index(b) * dimension);
+        }
+      }
+      squares.setZero();
+    };
+    for (std::size_t i = 0; i < samples().size(); ++i) {
+      if (!counts(i)) {
+        continue;
+      }
+      if (first()[i] != last.first && last.first != std::size_t(-1)) {
+        flush(last.first);
+      }
+      const auto [value, gradient] = this->linearised(i, controls_, last);
+      const R length = size_of(value), sample_weight = this->weight_of(i);
+      cost += sample_weight * huber_loss(length, limits_[i]);
+      const R weight =
+          length <= limits_[i] ? sample_weight : R(sample_weight * (limits_[i] / length));
+      gradient_.template segment<unknowns>(Eigen::Index(last.first) * dimension) -=
+          weight * (gradient * value);
+      const Eigen::Matrix<R, unknowns, dimension> weighted = weight * gradient;
+      for (int a = 0; a < unknowns; ++a) { // by columns, which Eigen handles fast
+        squares.col(a).noalias() += gradient.lazyProduct(weighted.row(a).transpose());
+      }
+      if (weight < sample_weight && is_bold) {
+        const Eigen::Matrix<R, unknowns, 1> along = gradient * (value / length);
+        squares -= R(0.9) * weight * along.lazyProduct(along.transpose());
+      }
+    }
+    if (last.first != std::size_t(-1)) {
+      flush(last.first);
+    }
+    return cost;
+  }
+
+  /// Control points after one step; empty if there is no step with this damping.
+  [[nodiscard]] std::vector<element> moved_control_points(const R& damping, R& step) {
+    factors_ = normal_;
+    if (damping > 0) {
+      factors_.scale_diagonal(1 + damping);
+    }
+    if (!factors_.factorise()) {
+      return {};
+    }
+    vector delta = gradient_;
+    changes_.solve(factors_, delta);
+    step = delta.template lpNorm<Eigen::Infinity>();
+    if (!delta.allFinite()) {
+      return {};
+    }
+    // Only rotations of control points are bounded: the curve is linear in translations.
+    R largest_angle(0);
+    for (Eigen::Index i = dimension; i <= delta.size(); i += dimension) {
+      largest_angle = std::max(largest_angle, R(delta.template segment<3>(i - 3).norm()));
+    }
+    const R fraction = largest_angle > max_rotation ? R(max_rotation / largest_angle) : R(1);
+    last_step_ = fraction * delta;
+    return this->moved_by(controls_, last_step_);
+  }
+
+  /// Index of the sample farthest from the samples around it, and its distance from them.
+  [[nodiscard]] std::pair<std::size_t, R> farthest_from_neighbours() const {
+    const std::vector<R> sizes = residual_type::residuals(
+        robust_centre<T>().controls(*basis_, *u_, samples(), R(options_.characteristic_length)));
+    const auto farthest = std::max_element(sizes.begin(), sizes.end());
+    return {std::size_t(farthest - sizes.begin()), *farthest};
+  }
+
+  /// Reports failure. If plain least squares fail because of a sample far from all others, the
+  /// message names it.
+  [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
+    const auto [index, size] = farthest_from_neighbours();
+    std::string cause;
+    if (!is_robust() && size > 30) {
+      cause = message(": sample ", index, " is ", size, " from the samples around it ",
+                      "(fit_options::outlier_threshold makes the fit robust)");
+    }
+    raise(no_convergence(message("duet: fit: the iteration ", what, " after ",
+                                 iterations_ + iterations, " steps, the last one ", step, cause)));
+  }
+
+  fit_options options_;
+  const basis_type* basis_;
+  const std::vector<R>* u_;
+  element origin_;        ///< sample to which the others are relative
+  std::vector<R> limits_; ///< outlier limits of Huber's loss for each sample; 0: does not count
+  std::vector<element> controls_;
+  int iterations_ = 0;
+  block_band_matrix<R, dimension, std::size_t(Order) - 1> normal_, factors_;
+  vector gradient_, last_step_; ///< negative gradient
+  gradient_changes<R> changes_;
+};
+
+} // namespace detail
 } // namespace duet

@@ -6,7 +6,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/blocks/products.hpp>
+#include <duet/spline/blocks.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/cubic.hpp>

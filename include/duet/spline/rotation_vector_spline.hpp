@@ -9,7 +9,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
-#include <duet/spline/blocks/products.hpp>
+#include <duet/spline/blocks.hpp>
 #include <duet/spline/knots.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>

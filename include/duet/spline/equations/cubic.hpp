@@ -9,8 +9,7 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
-#include <duet/spline/blocks/products.hpp>
-#include <duet/spline/blocks/tridiagonal.hpp>
+#include <duet/spline/blocks.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/newton.hpp>

@@ -5,7 +5,7 @@
 #include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/blocks/products.hpp>
+#include <duet/spline/blocks.hpp>
 #include <duet/spline/end_conditions.hpp>
 
 #include <algorithm>

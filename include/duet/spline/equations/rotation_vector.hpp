@@ -7,9 +7,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/spline/blocks/band_lu.hpp>
-#include <duet/spline/blocks/products.hpp>
-#include <duet/spline/blocks/tridiagonal.hpp>
+#include <duet/spline/blocks.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/newton.hpp>
 #include <duet/spline/orientations.hpp>
