@@ -230,17 +230,7 @@ public:
 
   /// Largest rotation angle between neighbouring samples, rad, and the index of the sample before
   /// it.
-  [[nodiscard]] std::pair<R, std::size_t> max_rotation() const {
-    using std::sqrt;
-    std::pair<R, std::size_t> result{R(0), 0};
-    for (std::size_t i = 0; i < angles_.size(); ++i) {
-      const R angle = 2 * sqrt(R(innermost(dot(components(angles_[i]), components(angles_[i])))));
-      if (angle > result.first) {
-        result = {angle, i};
-      }
-    }
-    return result;
-  }
+  [[nodiscard]] std::pair<R, std::size_t> max_rotation() const { return largest_rotation(angles_); }
 
   /// Changes the equations to those of a smaller motion: Q_i⁻¹ Q_{i+1} to the power λ, end rates
   /// times λ.

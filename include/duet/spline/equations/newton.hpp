@@ -5,6 +5,7 @@
 #include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/blocks.hpp>
 #include <duet/spline/end_conditions.hpp>
 
@@ -62,6 +63,23 @@ concept CurveEquations = requires(E e, const E f, const typename E::unknowns x,
   { f.unevenness() } -> std::convertible_to<typename E::real_type>;
   jacobian.solve(r);
 };
+
+/// Largest rotation angle, rad, and its index, of half-angle vectors between neighbouring samples.
+template <class T>
+[[nodiscard]] std::pair<real_type_t<T>, std::size_t>
+largest_rotation(const std::vector<vector3<T>>& half_angles) {
+  using R = real_type_t<T>;
+  using std::sqrt;
+  std::pair<R, std::size_t> result{R(0), 0};
+  for (std::size_t i = 0; i < half_angles.size(); ++i) {
+    const R angle =
+        2 * sqrt(R(innermost(dot(components(half_angles[i]), components(half_angles[i])))));
+    if (angle > result.first) {
+      result = {angle, i};
+    }
+  }
+  return result;
+}
 
 /// Newton's method on real equations, from their own initial guess. If it fails because rotations
 /// are too large, predictor–corrector continuation from smaller rotations follows; among several

@@ -199,16 +199,7 @@ public:
   /// Largest rotation angle between neighbouring samples, rad, and the index of the sample before
   /// it.
   [[nodiscard]] std::pair<R, std::size_t> max_rotation() const {
-    using std::sqrt;
-    std::pair<R, std::size_t> largest{R(-1), 0};
-    for (std::size_t i = 0; i < rotations_.size(); ++i) {
-      const R angle =
-          2 * sqrt(R(innermost(dot(components(rotations_[i]), components(rotations_[i])))));
-      if (angle > largest.first) {
-        largest = {angle, i};
-      }
-    }
-    return largest;
+    return largest_rotation(rotations_);
   }
 
   /// Size of a step from x relative to the values it changes. For real T.
