@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <sstream>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -139,13 +138,9 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
   static_assert(detail::Becomes<std::invoke_result_t<const F&, const R&>, quaternion<T>>,
                 "duet: adaptive_table: the function must return a rotation, quaternion<T>, or a "
                 "pose, dual_quaternion<T>");
-  std::ostringstream message;
-  if (!(first < last) || !(tolerance > 0)) {
-    message << "duet: adaptive_table: the range is from " << first << " to " << last
-            << " and the tolerance " << tolerance
-            << " (expected a range that is not empty and a positive tolerance)";
-    detail::raise(invalid_input(message.str()));
-  }
+  detail::require(first < last && tolerance > 0, "duet: adaptive_table: the range is from ", first,
+                  " to ", last, " and the tolerance ", tolerance,
+                  " (expected a range that is not empty and a positive tolerance)");
   lookup_table<T> table;
   const std::size_t count = std::max<std::size_t>(4, options.initial_samples);
   for (std::size_t i = 0; i < count; ++i) {
@@ -177,10 +172,10 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
     finer.parameters.push_back(table.parameters.back());
     finer.elements.push_back(table.elements.back());
     if (finer.parameters.size() > options.max_samples) {
-      message << "duet: adaptive_table: the error with " << table.parameters.size()
-              << " samples is " << worst << ", above the tolerance " << tolerance
-              << ", and options.max_samples is " << options.max_samples;
-      detail::raise(no_convergence(message.str()));
+      detail::raise(no_convergence(
+          detail::message("duet: adaptive_table: the error with ", table.parameters.size(),
+                          " samples is ", worst, ", above the tolerance ", tolerance,
+                          ", and options.max_samples is ", options.max_samples)));
     }
     table = std::move(finer);
   }
@@ -203,12 +198,9 @@ estimated_errors(const lookup_table<typename Spline::scalar_type>& table,
                  const curve_ends<typename Spline::scalar_type>& ends = not_a_knot{},
                  double characteristic_length = 1) {
   const std::size_t count = table.parameters.size();
-  if (count < 9 || count != table.elements.size()) {
-    std::ostringstream message;
-    message << "duet: estimated_errors: needs nine samples or more, got " << count
-            << " parameters and " << table.elements.size() << " elements";
-    detail::raise(invalid_input(message.str()));
-  }
+  detail::require(count >= 9 && count == table.elements.size(),
+                  "duet: estimated_errors: needs nine samples or more, got ", count,
+                  " parameters and ", table.elements.size(), " elements");
   const auto elements = normalized_quaternions(table.elements);
   const auto& u = table.parameters;
   std::vector<double> misses(count, 0.);

@@ -15,7 +15,6 @@
 #include <concepts>
 #include <cstddef>
 #include <span>
-#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -51,12 +50,8 @@ template <class R, class F>
 template <class T, class R, class Out, class F>
 void evaluate_blocks(const char* function, std::span<const R> parameters, std::span<Out> out,
                      execution how, const F& f) {
-  if (parameters.size() != out.size()) {
-    std::ostringstream message;
-    message << "duet: " << function << ": " << parameters.size() << " parameters, but room for "
-            << out.size() << " results";
-    raise(invalid_input(message.str()));
-  }
+  require(parameters.size() == out.size(), "duet: ", function, ": ", parameters.size(),
+          " parameters, but room for ", out.size(), " results");
   parallel_for_blocks(
       parameters.size(),
       [&](std::size_t first, std::size_t last) {

@@ -30,7 +30,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -123,13 +122,9 @@ void require_samples_for_control_points(const bspline_basis<Order, R>& basis,
     while (sample < u.size() && u[sample] < high && !is_inside(sample)) {
       ++sample;
     }
-    if (sample == u.size() || !is_inside(sample)) {
-      std::ostringstream message;
-      message << "duet: fit: there are too few samples for control point " << i
-              << ", which acts on parameters from " << low << " to " << high << " (" << advice
-              << ")";
-      raise(invalid_input(message.str()));
-    }
+    require(sample < u.size() && is_inside(sample),
+            "duet: fit: there are too few samples for control point ", i,
+            ", which acts on parameters from ", low, " to ", high, " (", advice, ")");
     ++sample;
   }
 }
@@ -159,14 +154,11 @@ template <CurveType Spline, class R, detail::SampleOf<Spline> T>
   static_assert(std::is_same_v<Spline, cumulative_bspline<T, Spline::order>> &&
                     std::is_same_v<R, real_type_t<T>>,
                 "duet: fit makes cumulative_bspline<T, Order> from quaternion<T>");
-  std::ostringstream message;
   detail::check_samples("fit", parameters, samples.size(), 0);
-  if (!(options.characteristic_length > 0) || !(options.outlier_threshold >= 0)) {
-    message << "duet: fit: characteristic_length is " << options.characteristic_length
-            << " and outlier_threshold is " << options.outlier_threshold
-            << " (expected a positive length and a non-negative threshold)";
-    detail::raise(invalid_input(message.str()));
-  }
+  detail::require(options.characteristic_length > 0 && options.outlier_threshold >= 0,
+                  "duet: fit: characteristic_length is ", options.characteristic_length,
+                  " and outlier_threshold is ", options.outlier_threshold,
+                  " (expected a positive length and a non-negative threshold)");
   detail::require_fit_weights(options.weights, samples.size());
   const bspline_basis<Spline::order, R> basis(std::move(knots));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
@@ -174,11 +166,12 @@ template <CurveType Spline, class R, detail::SampleOf<Spline> T>
       parameters[i] = basis.rounded_into_domain(parameters[i]);
     }
     if (!basis.contains(parameters[i])) {
-      message << "parameter " << detail::all_digits(parameters[i])
-              << " is outside the knots' domain, " << detail::all_digits(basis.front()) << " to "
-              << detail::all_digits(basis.back()) << " (clamped_knots of parameters from "
-              << parameters.front() << " to " << parameters.back() << " have all samples in it)";
-      detail::raise(invalid_sample(i, message.str()));
+      detail::raise(invalid_sample(
+          i, detail::message("parameter ", detail::all_digits(parameters[i]),
+                             " is outside the knots' domain, ", detail::all_digits(basis.front()),
+                             " to ", detail::all_digits(basis.back()),
+                             " (clamped_knots of parameters from ", parameters.front(), " to ",
+                             parameters.back(), " have all samples in it)")));
     }
   }
   detail::require_samples_for_control_points(
