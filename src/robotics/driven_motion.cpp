@@ -52,7 +52,7 @@ Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
   Eigen::MatrixXd result(j.cols(), j.rows());
   for (Eigen::Index i = 0; i < j.rows(); ++i) {
     result.col(i) = svd.solve(Eigen::VectorXd::Unit(j.rows(), i), j.cols())
-                        .cwiseProduct(detail::entries(mechanism_.units(), dependent_));
+                        .cwiseProduct(mechanism_.units()(dependent_));
   }
   return result;
 }
@@ -96,9 +96,9 @@ std::string driven_motion::text(const Eigen::VectorXd& q) const {
 }
 [[noreturn]] void driven_motion::fail(const std::string& what, const Eigen::VectorXd& q,
                                       const Eigen::VectorXd& target) const {
-  const Eigen::VectorXd u = detail::entries(q, drives_);
+  const Eigen::VectorXd u = q(drives_);
   Eigen::VectorXd to = q;
-  detail::put(target, drives_, to);
+  to(drives_) = target;
   detail::raise(loop_closure_failure("duet: driven_motion: the loops do not close beyond " +
                                          driven() + " = " + text(q) + " on the line from " +
                                          text(start_) + " to " + text(to) + ": " + what,
@@ -107,9 +107,8 @@ std::string driven_motion::text(const Eigen::VectorXd& q) const {
 
 Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
   detail::require(target.allFinite(), "duet: driven_motion: the driven coordinates are not finite");
-  const Eigen::VectorXd units = mechanism_.units();
   const Eigen::VectorXd displacement =
-      (target - detail::entries(start_, drives_)).cwiseQuotient(detail::entries(units, drives_));
+      (target - start_(drives_)).cwiseQuotient(mechanism_.units()(drives_));
   const double length = displacement.norm();
   if (length == 0) {
     return start_;
@@ -138,7 +137,7 @@ Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
           const auto reached = curve.at(length, guess, step);
           if (reached || curve.residuals(guess.x).norm() <= 1e-12) {
             Eigen::VectorXd q = curve.coordinates(reached ? reached->x : guess.x);
-            detail::put(target, drives_, q);
+            q(drives_) = target;
             return q;
           }
         }
@@ -159,7 +158,7 @@ Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
       const auto guess = curve.advance(current, part * to.step);
       if (const auto reached = curve.at(length, guess ? *guess : to.end, step)) {
         Eigen::VectorXd q = curve.coordinates(reached->x);
-        detail::put(target, drives_, q);
+        q(drives_) = target;
         return q;
       }
     }

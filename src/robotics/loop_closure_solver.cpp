@@ -42,19 +42,6 @@ Eigen::MatrixXd columns(const Eigen::MatrixXd& of, const std::vector<int>& these
   return result;
 }
 
-Eigen::VectorXd entries(const Eigen::VectorXd& of, const std::vector<int>& these) {
-  Eigen::VectorXd result(Eigen::Index(these.size()));
-  for (std::size_t i = 0; i < these.size(); ++i) {
-    result[Eigen::Index(i)] = of[these[i]];
-  }
-  return result;
-}
-
-void put(const Eigen::VectorXd& numbers, const std::vector<int>& these, Eigen::VectorXd& into) {
-  for (std::size_t i = 0; i < these.size(); ++i) {
-    into[these[i]] = numbers[Eigen::Index(i)];
-  }
-}
 loop_closure_solver::loop_closure_solver(const closed_chain_mechanism& of,
                                          const Eigen::VectorXd& guess, const std::vector<int>& free,
                                          int max_steps)
@@ -78,9 +65,7 @@ bool loop_closure_solver::step() {
     }
     dx *= std::min(1.0, max_norm / length);
     Eigen::VectorXd next = q_;
-    for (Eigen::Index k = 0; k < dx.size(); ++k) {
-      next[free_[std::size_t(k)]] += dx[k] * of_.units()[free_[std::size_t(k)]];
-    }
+    next(free_) += dx.cwiseProduct(of_.units()(free_));
     const Eigen::VectorXd f = of_.residuals(next);
     const double norm = f.norm();
     if (norm < norm_) {

@@ -28,8 +28,7 @@ public:
   /// unit sphere, from many starts.
   [[nodiscard]] bool has_acceleration(const Eigen::VectorXd& q, const rank_revealing_svd& a) {
     const Eigen::MatrixXd kernel = a.kernel();
-    const Eigen::MatrixXd across = a.cokernel();
-    const std::vector<Eigen::MatrixXd> forms = quadratic_forms(of_, q, across, kernel);
+    const std::vector<Eigen::MatrixXd> forms = quadratic_forms(of_, q, a.cokernel(), kernel);
     for (int start = 0; start < 20; ++start) {
       if (common_zero(forms, direction(kernel.cols()), 1e-7)) {
         return true;
@@ -41,9 +40,7 @@ public:
   /// A configuration at about the distance `far_away`, along a random direction of the kernel.
   [[nodiscard]] std::optional<Eigen::VectorXd>
   position(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel, double far_away) {
-    const Eigen::VectorXd displacement = kernel * direction(kernel.cols());
-    const loop_closure_solver solver(of_, q + far_away * displacement.cwiseProduct(of_.units()),
-                                     all_but(of_.size(), {}));
+    const loop_closure_solver solver = closed_near(q, kernel, far_away);
     const double moved = (solver.coordinates() - q).cwiseQuotient(of_.units()).norm();
     if (solver.has_closed() && moved > far_away / 3 && moved < 3 * far_away) {
       return solver.coordinates();
@@ -58,9 +55,7 @@ public:
     const Eigen::Index count = 2 * kernel.cols() + 2;
     Eigen::MatrixXd displacements(q.size(), count);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Eigen::VectorXd displacement = kernel * direction(kernel.cols());
-      const loop_closure_solver solver(of_, q + step * displacement.cwiseProduct(of_.units()),
-                                       all_but(of_.size(), {}));
+      const loop_closure_solver solver = closed_near(q, kernel, step);
       displacements.col(k) = (solver.coordinates() - q).cwiseQuotient(of_.units()) / step;
       if (!solver.has_closed()) {
         displacements.col(k).setZero();
@@ -73,6 +68,12 @@ public:
 
 private:
   [[nodiscard]] Eigen::VectorXd direction(Eigen::Index n) { return random_direction(random_, n); }
+  /// Closes the loops from a distance along a random direction of the kernel.
+  [[nodiscard]] loop_closure_solver closed_near(const Eigen::VectorXd& q,
+                                                const Eigen::MatrixXd& kernel, double distance) {
+    const Eigen::VectorXd displacement = kernel * direction(kernel.cols());
+    return {of_, q + distance * displacement.cwiseProduct(of_.units()), all_but(of_.size(), {})};
+  }
 
   const closed_chain_mechanism& of_;
   random_source random_{1};

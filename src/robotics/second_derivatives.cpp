@@ -33,16 +33,14 @@ std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
       const Eigen::VectorXd along =
           i == j ? second(columns.col(j)) : second(columns.col(i) + columns.col(j));
       for (std::size_t k = 0; k < result.size(); ++k) {
-        Eigen::MatrixXd& form = result[k];
-        form(i, j) = along[Eigen::Index(k)];
+        result[k](i, j) = along[Eigen::Index(k)];
       }
     }
   }
   for (Eigen::MatrixXd& form : result) {
     for (Eigen::Index j = 0; j < n; ++j) {
       for (Eigen::Index i = 0; i < j; ++i) {
-        form(i, j) = (form(i, j) - form(i, i) - form(j, j)) / 2;
-        form(j, i) = form(i, j);
+        form(j, i) = form(i, j) = (form(i, j) - form(i, i) - form(j, j)) / 2;
       }
     }
   }
@@ -59,22 +57,16 @@ Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
   return result.normalized();
 }
 
-Eigen::MatrixXd form_gradients(const std::vector<Eigen::MatrixXd>& forms,
-                               const Eigen::VectorXd& v) {
-  Eigen::MatrixXd result(Eigen::Index(forms.size()), v.size());
-  for (std::size_t k = 0; k < forms.size(); ++k) {
-    result.row(Eigen::Index(k)) = 2 * (forms[k] * v).transpose();
-  }
-  return result;
-}
-
 std::optional<Eigen::VectorXd> common_zero(const std::vector<Eigen::MatrixXd>& forms,
                                            Eigen::VectorXd v, double rounding) {
   const auto count = Eigen::Index(forms.size());
   Eigen::VectorXd f(count + 1);
   Eigen::MatrixXd j(count + 1, v.size());
   for (int i = 0; i < 40; ++i) {
-    j << form_gradients(forms, v), v.transpose();
+    for (Eigen::Index k = 0; k < count; ++k) {
+      j.row(k) = 2 * (forms[std::size_t(k)] * v).transpose();
+    }
+    j.row(count) = v.transpose();
     f << j.topRows(count) * v / 2, (v.squaredNorm() - 1) / 2;
     if (f.norm() < rounding) {
       return v;

@@ -19,21 +19,21 @@ DUET_ABI_BEGIN
 
 std::optional<curve_point> solution_curve::start(double direction) const {
   Eigen::VectorXd x(Eigen::Index(dependent_.size()) + 1);
-  x << entries(q0_.cwiseQuotient(of_.units()), dependent_), 0;
+  x << q0_.cwiseQuotient(of_.units())(dependent_), 0;
   return point(x, Eigen::VectorXd::Unit(x.size(), x.size() - 1) * direction);
 }
 
 Eigen::VectorXd solution_curve::coordinates(const Eigen::VectorXd& x) const {
   Eigen::VectorXd q = q0_.cwiseQuotient(of_.units());
-  put(x.head(x.size() - 1), dependent_, q);
-  put(entries(q, drives_) + x[x.size() - 1] * direction_, drives_, q);
+  q(dependent_) = x.head(x.size() - 1);
+  q(drives_) += x[x.size() - 1] * direction_;
   return q.cwiseProduct(of_.units());
 }
 
 Eigen::VectorXd solution_curve::rates(const Eigen::VectorXd& tangent) const {
   Eigen::VectorXd v(of_.size());
-  put(tangent.head(tangent.size() - 1), dependent_, v);
-  put(tangent[tangent.size() - 1] * direction_, drives_, v);
+  v(dependent_) = tangent.head(tangent.size() - 1);
+  v(drives_) = tangent[tangent.size() - 1] * direction_;
   return v.cwiseProduct(of_.units());
 }
 

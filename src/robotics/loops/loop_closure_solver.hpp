@@ -26,11 +26,6 @@ DUET_ABI_BEGIN
 
 /// The columns of a matrix at these indices.
 [[nodiscard]] Eigen::MatrixXd columns(const Eigen::MatrixXd& of, const std::vector<int>& these);
-/// The entries of a vector at these indices.
-[[nodiscard]] Eigen::VectorXd entries(const Eigen::VectorXd& of, const std::vector<int>& these);
-
-/// Replaces the entries of a vector at these indices.
-void put(const Eigen::VectorXd& numbers, const std::vector<int>& these, Eigen::VectorXd& into);
 
 /// Damped least squares (Levenberg–Marquardt method) for F(q) = 0.
 class loop_closure_solver {

@@ -32,10 +32,6 @@ using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
 /// A uniformly distributed unit vector.
 [[nodiscard]] Eigen::VectorXd random_direction(random_source& random, Eigen::Index n);
 
-/// Derivatives of all forms with respect to v, in rows.
-[[nodiscard]] Eigen::MatrixXd form_gradients(const std::vector<Eigen::MatrixXd>& forms,
-                                             const Eigen::VectorXd& v);
-
 /// A unit vector v for which all forms vanish, by Newton's method from an initial guess; empty if
 /// it does not converge.
 [[nodiscard]] std::optional<Eigen::VectorXd> common_zero(const std::vector<Eigen::MatrixXd>& forms,

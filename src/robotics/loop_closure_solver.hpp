@@ -1,0 +1,98 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/robotics/closed_tree.hpp>
+
+#include <Eigen/Core>
+
+#include <vector>
+
+/// \file
+/// Closure of the loops of a mechanism by damped least squares. For those who extend duet.
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Singular value decomposition of a matrix with its numerical rank: the dependent
+/// rows and columns.
+class rank_revealing_svd {
+public:
+  explicit rank_revealing_svd(const Eigen::MatrixXd& a);
+
+  /// Relative tolerance of the rank: singular values below this fraction of the largest one count
+  /// as zero. Near a singular configuration they are as far from zero as q is from it, and q is
+  /// known to half the digits where equations are singular.
+  static constexpr double rank_tolerance = 1e-6;
+
+  [[nodiscard]] Eigen::Index rank() const { return rank_; }
+  [[nodiscard]] const Eigen::VectorXd& singular_values() const { return s_; }
+  /// U and V of the decomposition U S Vᵀ.
+  [[nodiscard]] const Eigen::MatrixXd& left() const { return u_; }
+  [[nodiscard]] const Eigen::MatrixXd& right() const { return v_; }
+  /// Orthonormal basis of the image (column space), as columns.
+  [[nodiscard]] Eigen::MatrixXd image() const { return u_.leftCols(rank_); }
+  /// Orthonormal basis of the orthogonal complement of the image, as columns.
+  [[nodiscard]] Eigen::MatrixXd cokernel() const { return u_.rightCols(u_.cols() - rank_); }
+  /// Orthonormal basis of the kernel (null space), as columns.
+  [[nodiscard]] Eigen::MatrixXd kernel() const { return v_.rightCols(v_.cols() - rank_); }
+  /// Minimum-norm least-squares solution of A x = b, where A is taken to have a given rank.
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b, Eigen::Index rank) const;
+  /// Damped least-squares solution V (σ / (σ² + λ)) Uᵀ b.
+  [[nodiscard]] Eigen::VectorXd damped_solve(const Eigen::VectorXd& b, double lambda) const;
+
+private:
+  Eigen::MatrixXd u_, v_;
+  Eigen::VectorXd s_;
+  Eigen::Index rank_ = 0;
+};
+
+struct periodic_coordinates {
+  std::vector<bool> angles; ///< for each coordinate, true if a full turn of it changes no pose
+  std::vector<int> vectors; ///< numbers of the first coordinates of rotation vectors
+
+  explicit periodic_coordinates(const closed_chain_mechanism& of);
+};
+
+/// The numbers from 0 to n − 1 except for these.
+[[nodiscard]] std::vector<int> all_but(int n, const std::vector<int>& these);
+
+/// Constraint Jacobian ∂F/∂q, each column per unit of its coordinate.
+[[nodiscard]] Eigen::MatrixXd unit_jacobian(const closed_chain_mechanism& of,
+                                            const Eigen::VectorXd& q);
+[[nodiscard]] rank_revealing_svd linearised(const closed_chain_mechanism& of,
+                                            const Eigen::VectorXd& q);
+
+/// The columns of a matrix at these indices.
+[[nodiscard]] Eigen::MatrixXd columns(const Eigen::MatrixXd& of, const std::vector<int>& these);
+/// The entries of a vector at these indices.
+[[nodiscard]] Eigen::VectorXd entries(const Eigen::VectorXd& of, const std::vector<int>& these);
+
+/// Replaces the entries of a vector at these indices.
+void put(const Eigen::VectorXd& numbers, const std::vector<int>& these, Eigen::VectorXd& into);
+
+/// Damped least squares (Levenberg–Marquardt method) for F(q) = 0.
+class loop_closure_solver {
+public:
+  /// \param free  numbers of the coordinates that may move
+  loop_closure_solver(const closed_chain_mechanism& of, const Eigen::VectorXd& guess,
+                      const std::vector<int>& free, int max_steps = 200);
+
+  [[nodiscard]] bool has_closed() const;
+  [[nodiscard]] double residual() const { return norm_; }
+  [[nodiscard]] const Eigen::VectorXd& coordinates() const { return q_; }
+
+private:
+  /// Makes a step that reduces the residual; false if no step reduces it.
+  [[nodiscard]] bool step();
+
+  static constexpr double max_norm = 1; ///< maximum norm of a step
+  const closed_chain_mechanism& of_;
+  std::vector<int> free_;
+  Eigen::VectorXd q_, f_;
+  double norm_;
+  double damping_ = 1e-2;
+};
+
+DUET_ABI_END
+} // namespace duet::detail
