@@ -1,27 +1,420 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "loops/loop_closure_solver.hpp"
+#include "loop_closure_solver.hpp"
 
 #include <duet/core/errors.hpp>
+#include <duet/core/random_source.hpp>
 #include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/kinematics/closed_loop.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
+#include <duet/kinematics/robot_description.hpp>
 #include <duet/kinematics/tree_loop.hpp>
+#include <duet/kinematics/tree_table.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/robotics/closed_tree.hpp>
+#include <duet/robotics/loop_positions.hpp>
+#include <duet/robotics/mobility.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/QR>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+rank_revealing_svd::rank_revealing_svd(const Eigen::MatrixXd& a)
+    : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
+      v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
+  if (a.size() > 0) { // Eigen has no singular values of empty matrices
+    const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
+        a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    u_ = svd.matrixU();
+    v_ = svd.matrixV();
+    s_ = svd.singularValues();
+  }
+  while (rank_ < s_.size() && s_[rank_] > rank_tolerance * s_[0]) {
+    ++rank_;
+  }
+}
+
+Eigen::VectorXd rank_revealing_svd::solve(const Eigen::VectorXd& b, Eigen::Index rank) const {
+  const Eigen::VectorXd y = u_.leftCols(rank).transpose() * b;
+  return v_.leftCols(rank) * y.cwiseQuotient(s_.head(rank));
+}
+
+Eigen::VectorXd rank_revealing_svd::damped_solve(const Eigen::VectorXd& b, double lambda) const {
+  const Eigen::VectorXd y = u_.leftCols(s_.size()).transpose() * b;
+  const auto damped = [&](double sigma, double x) { return sigma * x / (sigma * sigma + lambda); };
+  return v_.leftCols(s_.size()) * s_.binaryExpr(y, damped);
+}
+
+periodic_coordinates::periodic_coordinates(const closed_chain_mechanism& of)
+    : angles(std::size_t(of.size()), false) {
+  int i = 0;
+  for (const tree_joint& each : of.tree().joints()) {
+    if (each.mimic) {
+      continue;
+    }
+    const joint_kind kind = each.motion.kind;
+    if (kind == joint_kind::revolute || kind == joint_kind::continuous) {
+      angles[std::size_t(i)] = true;
+    } else if (kind == joint_kind::planar) {
+      angles[std::size_t(i) + 2] = true;
+    } else if (kind == joint_kind::spherical || kind == joint_kind::floating) {
+      vectors.push_back(kind == joint_kind::floating ? i + 3 : i);
+    }
+    i += each.motion.coordinates();
+  }
+  for (const tree_node& node : of.tree().table().nodes) {
+    const coordinate_source& source = of.tree().table().sources[std::size_t(node.coordinate)];
+    if (!node.is_ball &&
+        (node.step.is_translational || source.multiplier != std::round(source.multiplier))) {
+      angles[std::size_t(source.own)] = false; // links that mimic the coordinate would move
+    }
+  }
+}
+
+std::vector<int> all_but(int n, const std::vector<int>& these) {
+  std::vector<int> result;
+  for (const int i : these) {
+    require(0 <= i && i < n, "duet: closed_chain_mechanism: coordinate ", i,
+            " does not exist, the mechanism has ", n);
+  }
+  for (int i = 0; i < n; ++i) {
+    if (std::find(these.begin(), these.end(), i) == these.end()) {
+      result.push_back(i);
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd unit_jacobian(const closed_chain_mechanism& of, const Eigen::VectorXd& q) {
+  return of.constraint_jacobian(q) * of.units().asDiagonal();
+}
+
+rank_revealing_svd linearised(const closed_chain_mechanism& of, const Eigen::VectorXd& q) {
+  return rank_revealing_svd(unit_jacobian(of, q));
+}
+
+Eigen::MatrixXd columns(const Eigen::MatrixXd& of, const std::vector<int>& these) {
+  Eigen::MatrixXd result(of.rows(), Eigen::Index(these.size()));
+  for (std::size_t i = 0; i < these.size(); ++i) {
+    result.col(Eigen::Index(i)) = of.col(these[i]);
+  }
+  return result;
+}
+
+loop_closure_solver::loop_closure_solver(const closed_chain_mechanism& of,
+                                         const Eigen::VectorXd& guess, const std::vector<int>& free,
+                                         int max_steps)
+    : of_(of), free_(free), q_(guess), f_(of.residuals(guess)), norm_(f_.norm()) {
+  for (int i = 0; i < max_steps && norm_ > 0 && step(); ++i) {
+  }
+}
+
+bool loop_closure_solver::has_closed() const {
+  return norm_ <= 1e-12 * std::max(1.0, q_.cwiseQuotient(of_.units()).norm());
+}
+
+bool loop_closure_solver::step() {
+  const Eigen::MatrixXd j = columns(unit_jacobian(of_, q_), free_);
+  const rank_revealing_svd svd(j);
+  for (int i = 0; i < 25; ++i) {
+    Eigen::VectorXd dx = -svd.damped_solve(f_, damping_ * norm_);
+    const double length = dx.norm();
+    if (!(length > 1e-16)) {
+      return false;
+    }
+    dx *= std::min(1.0, max_norm / length);
+    Eigen::VectorXd next = q_;
+    next(free_) += dx.cwiseProduct(of_.units()(free_));
+    const Eigen::VectorXd f = of_.residuals(next);
+    const double norm = f.norm();
+    if (norm < norm_) {
+      const double foreseen = norm_ * norm_ - (f_ + j * dx).squaredNorm();
+      const double gain = (norm_ * norm_ - norm * norm) / foreseen;
+      damping_ = std::max(1e-8, damping_ * (gain > .75 ? .1 : gain < .25 ? 4 : 1));
+      const bool goes_on = norm < (1 - 1e-5) * norm_;
+      q_ = next;
+      f_ = f;
+      norm_ = norm;
+      return goes_on;
+    }
+    if (norm_ < 1e-14) {
+      return false; // round-off
+    }
+    damping_ *= 10;
+  }
+  return false;
+}
+
+std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
+                                             const Eigen::VectorXd& q, const Eigen::MatrixXd& w,
+                                             const Eigen::MatrixXd& columns) {
+  const Eigen::Index n = columns.cols();
+  std::vector<Eigen::MatrixXd> result(std::size_t(w.cols()), Eigen::MatrixXd(n, n));
+  const auto second = [&](const Eigen::VectorXd& direction) {
+    Eigen::Matrix<along_line, Eigen::Dynamic, 1> x(q.size());
+    for (Eigen::Index i = 0; i < q.size(); ++i) {
+      x[i] = q[i] + of.units()[i] * direction[i] * along_line::variable(0);
+    }
+    const auto f = of.residuals(x);
+    Eigen::VectorXd all(f.size());
+    for (Eigen::Index i = 0; i < f.size(); ++i) {
+      all[i] = f[i].derivative(2);
+    }
+    return Eigen::VectorXd(w.transpose() * all);
+  };
+  for (Eigen::Index j = 0; j < n; ++j) {
+    for (Eigen::Index i = 0; i <= j; ++i) {
+      const Eigen::VectorXd along =
+          i == j ? second(columns.col(j)) : second(columns.col(i) + columns.col(j));
+      for (std::size_t k = 0; k < result.size(); ++k) {
+        result[k](i, j) = along[Eigen::Index(k)];
+      }
+    }
+  }
+  for (Eigen::MatrixXd& form : result) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      for (Eigen::Index i = 0; i < j; ++i) {
+        form(j, i) = form(i, j) = (form(i, j) - form(i, i) - form(j, j)) / 2;
+      }
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
+  Eigen::VectorXd result(n);
+  do {
+    for (double& x : result) {
+      x = random.normal();
+    }
+  } while (result.norm() < 1e-3);
+  return result.normalized();
+}
+
+std::optional<Eigen::VectorXd> common_zero(const std::vector<Eigen::MatrixXd>& forms,
+                                           Eigen::VectorXd v, double rounding) {
+  const auto count = Eigen::Index(forms.size());
+  Eigen::VectorXd f(count + 1);
+  Eigen::MatrixXd j(count + 1, v.size());
+  for (int i = 0; i < 40; ++i) {
+    for (Eigen::Index k = 0; k < count; ++k) {
+      j.row(k) = 2 * (forms[std::size_t(k)] * v).transpose();
+    }
+    j.row(count) = v.transpose();
+    f << j.topRows(count) * v / 2, (v.squaredNorm() - 1) / 2;
+    if (f.norm() < rounding) {
+      return v;
+    }
+    const rank_revealing_svd svd(j);
+    v -= svd.solve(f, svd.rank());
+  }
+  return std::nullopt;
+}
+
+DUET_ABI_END
+
+namespace {
+
+class assembly_search {
+public:
+  assembly_search(const closed_chain_mechanism& of, const Eigen::VectorXd& at,
+                  const std::vector<int>& fixed)
+      : of_(of), at_(at), free_(all_but(of.size(), fixed)), periodic_(of) {}
+
+  [[nodiscard]] assembly_search_result run(const assembly_search_options& options) {
+    assembly_search_result result;
+    random_source random(options.seed);
+    const auto is_enough = [&] {
+      const double chance = result.missing_probability() + 1. / std::max(1, result.converged);
+      return result.starts >= options.random_starts &&
+             (result.starts >= options.max_starts || chance <= options.missing_probability);
+    };
+    for (; !is_enough(); ++result.starts) {
+      const loop_closure_solver solver(of_, guess(random), free_, 100);
+      if (solver.has_closed()) {
+        ++result.converged;
+        add(result, wrapped(solver.coordinates()));
+      }
+    }
+    std::sort(result.positions.begin(), result.positions.end(), &comes_first);
+    return result;
+  }
+
+private:
+  [[nodiscard]] Eigen::VectorXd guess(random_source& random) const {
+    Eigen::VectorXd q = at_;
+    for (const int i : free_) {
+      const joint_limits<double>& limits = of_.tree().limits(i);
+      const double reach = std::numbers::pi * of_.units()[i];
+      const bool has_limits = std::isfinite(limits.lower) && std::isfinite(limits.upper);
+      q[i] =
+          has_limits ? random.uniform(limits.lower, limits.upper) : random.uniform(-reach, reach);
+    }
+    return q;
+  }
+
+  /// The coordinates without full turns.
+  [[nodiscard]] Eigen::VectorXd wrapped(Eigen::VectorXd q) const {
+    constexpr double full_turn = 2 * std::numbers::pi;
+    for (const int i : free_) {
+      if (periodic_.angles[std::size_t(i)]) {
+        const double x = std::remainder(q[i], full_turn);
+        q[i] = x <= -std::numbers::pi ? std::numbers::pi : x;
+      }
+    }
+    for (const int i : periodic_.vectors) {
+      if (std::find(free_.begin(), free_.end(), i) != free_.end()) {
+        const double angle = q.segment<3>(i).norm();
+        if (angle > std::numbers::pi) {
+          q.segment<3>(i) *= std::remainder(angle, full_turn) / angle;
+        }
+      }
+    }
+    return q;
+  }
+
+  /// Poses of all links: two configurations are the same if all links have the same poses.
+  [[nodiscard]] std::vector<Eigen::Matrix<double, 7, 1>>
+  link_poses(const Eigen::VectorXd& q) const {
+    std::vector<Eigen::Matrix<double, 7, 1>> result;
+    for (const dual_quaternion<double>& a : of_.tree().poses(q)) {
+      const quaternion<double> r = rotation(a);
+      const vector3<double> t = translation(a) / of_.length();
+      result.push_back({r.w(), r.x(), r.y(), r.z(), t[0], t[1], t[2]});
+    }
+    return result;
+  }
+  [[nodiscard]] static bool are_same(const std::vector<Eigen::Matrix<double, 7, 1>>& a,
+                                     const std::vector<Eigen::Matrix<double, 7, 1>>& b) {
+    constexpr double rounding = 1e-6; // singular configurations are known to half the digits
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double rotation_error = std::min((a[i].head<4>() - b[i].head<4>()).norm(),
+                                             (a[i].head<4>() + b[i].head<4>()).norm());
+      if (rotation_error > rounding || (a[i].tail<3>() - b[i].tail<3>()).norm() > rounding) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  void add(assembly_search_result& result, const Eigen::VectorXd& q) {
+    const auto poses = link_poses(q);
+    for (std::size_t i = 0; i < known_poses_.size(); ++i) {
+      if (are_same(poses, known_poses_[i])) {
+        ++result.positions[i].hits;
+        return;
+      }
+    }
+    known_poses_.push_back(poses);
+    assembly_configuration configuration{q, 0, 1, true};
+    const Eigen::MatrixXd j = columns(unit_jacobian(of_, q), free_);
+    const Eigen::VectorXd s = rank_revealing_svd(j).singular_values();
+    configuration.smallest_singular_value =
+        s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
+    for (int i = 0; i < of_.size(); ++i) {
+      const joint_limits<double>& limits = of_.tree().limits(i);
+      configuration.within_limits &= limits.lower <= q[i] && q[i] <= limits.upper;
+    }
+    result.positions.push_back(configuration);
+  }
+
+  [[nodiscard]] static bool comes_first(const assembly_configuration& a,
+                                        const assembly_configuration& b) {
+    for (Eigen::Index i = 0; i < a.coordinates.size(); ++i) {
+      if (std::abs(a.coordinates[i] - b.coordinates[i]) > 1e-6) {
+        return a.coordinates[i] < b.coordinates[i];
+      }
+    }
+    return false;
+  }
+
+  const closed_chain_mechanism& of_;
+  Eigen::VectorXd at_;
+  std::vector<int> free_;
+  periodic_coordinates periodic_;
+  std::vector<std::vector<Eigen::Matrix<double, 7, 1>>> known_poses_;
+};
+
+/// Search around a configuration. Lengths are relative to that of the mechanism.
+class neighbourhood {
+public:
+  explicit neighbourhood(const closed_chain_mechanism& of) : of_(of) {}
+
+  /// True if one of the rates that fulfil the equations has an acceleration: a v in the kernel K of
+  /// ∂F/∂q for which wᵀ ∂²F(v, v) = 0 for all w orthogonal to its image. By Newton's method on the
+  /// unit sphere, from many starts.
+  [[nodiscard]] bool has_acceleration(const Eigen::VectorXd& q, const rank_revealing_svd& a) {
+    const Eigen::MatrixXd kernel = a.kernel();
+    const std::vector<Eigen::MatrixXd> forms = quadratic_forms(of_, q, a.cokernel(), kernel);
+    for (int start = 0; start < 20; ++start) {
+      if (common_zero(forms, direction(kernel.cols()), 1e-7)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// A configuration at about the distance `far_away`, along a random direction of the kernel.
+  [[nodiscard]] std::optional<Eigen::VectorXd>
+  position(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel, double far_away) {
+    const loop_closure_solver solver = closed_near(q, kernel, far_away);
+    const double moved = (solver.coordinates() - q).cwiseQuotient(of_.units()).norm();
+    if (solver.has_closed() && moved > far_away / 3 && moved < 3 * far_away) {
+      return solver.coordinates();
+    }
+    return std::nullopt;
+  }
+
+  /// Dimension spanned by the configurations around q; first-order flexible directions
+  /// lead back to q.
+  [[nodiscard]] int dimension(const Eigen::VectorXd& q, const Eigen::MatrixXd& kernel) {
+    constexpr double step = .02;
+    const Eigen::Index count = 2 * kernel.cols() + 2;
+    Eigen::MatrixXd displacements(q.size(), count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const loop_closure_solver solver = closed_near(q, kernel, step);
+      displacements.col(k) = (solver.coordinates() - q).cwiseQuotient(of_.units()) / step;
+      if (!solver.has_closed()) {
+        displacements.col(k).setZero();
+      }
+    }
+    const Eigen::VectorXd spans =
+        rank_revealing_svd(kernel.transpose().lazyProduct(displacements)).singular_values();
+    return int((spans.array() > .1).count());
+  }
+
+private:
+  [[nodiscard]] Eigen::VectorXd direction(Eigen::Index n) { return random_direction(random_, n); }
+  /// Closes the loops from a distance along a random direction of the kernel.
+  [[nodiscard]] loop_closure_solver closed_near(const Eigen::VectorXd& q,
+                                                const Eigen::MatrixXd& kernel, double distance) {
+    const Eigen::VectorXd displacement = kernel * direction(kernel.cols());
+    return {of_, q + distance * displacement.cwiseProduct(of_.units()), all_but(of_.size(), {})};
+  }
+
+  const closed_chain_mechanism& of_;
+  random_source random_{1};
+};
+
+} // namespace
+} // namespace duet::detail
 
 namespace duet {
 DUET_ABI_BEGIN
@@ -38,7 +431,7 @@ closed_chain_mechanism::closed_chain_mechanism(kinematic_tree tree, loop_constra
     if (loop.kind == constraint_kind::distance &&
         !(loop.length > 0 && std::isfinite(loop.length))) {
       detail::bad_loop(constraints_, i,
-                       "the length is " + to_text(loop.length) + " (expected > 0)");
+                       "the length is " + duet::to_text(loop.length) + " (expected > 0)");
     }
     rows_ += equations_.back().size();
   }
@@ -59,7 +452,7 @@ Eigen::VectorXd closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
   if (!solver.has_closed()) {
     detail::raise(loop_closure_failure(
         "duet: closed_chain_mechanism: no configuration near the initial guess, residual " +
-            to_text(solver.residual()),
+            duet::to_text(solver.residual()),
         {guess.begin(), guess.end()}));
   }
   return solver.coordinates();
@@ -125,5 +518,60 @@ void closed_chain_mechanism::measure() {
     i += each.motion.coordinates();
   }
 }
+
+assembly_search_result find_assembly_configurations(const closed_chain_mechanism& mechanism,
+                                                    const std::vector<int>& fixed,
+                                                    const Eigen::VectorXd& at,
+                                                    const assembly_search_options& options) {
+  detail::require(Eigen::Index(fixed.size()) == at.size(),
+                  "duet: find_assembly_configurations: ", at.size(), " values for ", fixed.size(),
+                  " fixed coordinates");
+  detail::require(at.allFinite(),
+                  "duet: find_assembly_configurations: the fixed coordinates are not finite");
+  Eigen::VectorXd q = Eigen::VectorXd::Zero(mechanism.size());
+  static_cast<void>(detail::all_but(mechanism.size(), fixed));
+  for (std::size_t i = 0; i < fixed.size(); ++i) {
+    q[fixed[i]] = at[Eigen::Index(i)];
+  }
+  return detail::assembly_search(mechanism, q, fixed).run(options);
+}
+
+mobility_result mobility(const closed_chain_mechanism& mechanism, const Eigen::VectorXd& q) {
+  const double residual = mechanism.residuals(q).norm();
+  detail::require(residual <= 1e-9, "duet: mobility: the loops are not closed: residual ",
+                  residual);
+  const detail::rank_revealing_svd at_start = detail::linearised(mechanism, q);
+  const int n = mechanism.size();
+  mobility_result result;
+  result.kutzbach = n - mechanism.equation_count();
+  result.instantaneous = n - int(at_start.rank());
+  result.mobility = result.local = result.instantaneous;
+  if (at_start.rank() == mechanism.equation_count()) {
+    return result;
+  }
+  if (result.instantaneous == 0) {
+    result.evidence = mobility_evidence::first_order_rigid;
+    return result;
+  }
+  detail::neighbourhood around(mechanism);
+  result.mobility = 0;
+  if (!around.has_acceleration(q, at_start)) {
+    result.evidence = mobility_evidence::second_order_rigid;
+    return result;
+  }
+  result.evidence = mobility_evidence::sampled;
+  for (int attempt = 0; attempt < 8; ++attempt) {
+    if (const auto other = around.position(q, at_start.kernel(), .05)) {
+      const detail::rank_revealing_svd at_other = detail::linearised(mechanism, *other);
+      const int dimension = around.dimension(*other, at_other.kernel());
+      if (dimension > result.mobility) {
+        result.mobility = dimension;
+        result.local = n - int(at_other.rank());
+      }
+    }
+  }
+  return result;
+}
+
 DUET_ABI_END
 } // namespace duet

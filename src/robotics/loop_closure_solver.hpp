@@ -2,14 +2,18 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/random_source.hpp>
+#include <duet/dual/taylor.hpp>
 #include <duet/robotics/closed_tree.hpp>
 
 #include <Eigen/Core>
 
+#include <optional>
 #include <vector>
 
 /// \file
-/// Closure of the loops of a mechanism by damped least squares. For those who extend duet.
+/// Closure of the loops of a mechanism by damped least squares, and second derivatives of its
+/// equations. For those who extend duet.
 
 namespace duet::detail {
 DUET_ABI_BEGIN
@@ -65,11 +69,6 @@ struct periodic_coordinates {
 
 /// The columns of a matrix at these indices.
 [[nodiscard]] Eigen::MatrixXd columns(const Eigen::MatrixXd& of, const std::vector<int>& these);
-/// The entries of a vector at these indices.
-[[nodiscard]] Eigen::VectorXd entries(const Eigen::VectorXd& of, const std::vector<int>& these);
-
-/// Replaces the entries of a vector at these indices.
-void put(const Eigen::VectorXd& numbers, const std::vector<int>& these, Eigen::VectorXd& into);
 
 /// Damped least squares (Levenberg–Marquardt method) for F(q) = 0.
 class loop_closure_solver {
@@ -93,6 +92,27 @@ private:
   double norm_;
   double damping_ = 1e-2;
 };
+
+/// Scalar for second derivatives of the equations.
+using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
+
+/// The quadratic forms wᵀ ∂²F(K v, K v) in v, a symmetric matrix for each column w, from F along
+/// the lines of single columns of K and of sums of two: 2 b(u, v) = b(u + v, u + v) − b(u, u) −
+/// b(v, v).
+///
+/// \param columns  K, each row per unit of its coordinate
+[[nodiscard]] std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
+                                                           const Eigen::VectorXd& q,
+                                                           const Eigen::MatrixXd& w,
+                                                           const Eigen::MatrixXd& columns);
+
+/// A uniformly distributed unit vector.
+[[nodiscard]] Eigen::VectorXd random_direction(random_source& random, Eigen::Index n);
+
+/// A unit vector v for which all forms vanish, by Newton's method from an initial guess; empty if
+/// it does not converge.
+[[nodiscard]] std::optional<Eigen::VectorXd> common_zero(const std::vector<Eigen::MatrixXd>& forms,
+                                                         Eigen::VectorXd v, double rounding);
 
 DUET_ABI_END
 } // namespace duet::detail

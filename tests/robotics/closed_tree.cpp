@@ -6,7 +6,7 @@
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
 
-#include "../../src/robotics/loops/loop_closure_solver.hpp"
+#include "../../src/robotics/loop_closure_solver.hpp"
 #include <duet/derivative/jacobian.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
