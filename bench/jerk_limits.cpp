@@ -7,7 +7,7 @@
 /// the table of docs/time_parametrisation.md. Argument: number of seeds of each family (20);
 /// build/bench/bench/duet_jerk_limits_bench 10
 
-#include "../src/robotics/timing/timed_curve.hpp"
+#include "../src/robotics/timed_curve.hpp"
 #include "timing_families.hpp"
 
 #include <duet/robotics/time_parametrised.hpp>

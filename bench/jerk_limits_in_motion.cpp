@@ -6,7 +6,7 @@
 /// these motions. Prints the table of docs/time_parametrisation.md. Argument: number of seeds of
 /// each family, with four segments each (50); build/bench/bench/duet_jerk_limits_in_motion_bench 50
 
-#include "../src/robotics/timing/timed_curve.hpp"
+#include "../src/robotics/timed_curve.hpp"
 #include "timing_families.hpp"
 
 #include <duet/core/errors.hpp>

@@ -6,7 +6,7 @@
 /// docs/time_parametrisation.md. Argument: number of seeds of each family (100);
 /// build/bench/bench/duet_time_parametrisation_bench 10
 
-#include "../src/robotics/timing/timed_curve.hpp"
+#include "../src/robotics/timed_curve.hpp"
 #include "timing_families.hpp"
 
 #include <duet/robotics/time_parametrised.hpp>

@@ -4,7 +4,7 @@
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 
-#include "../../src/robotics/timing/timed_curve.hpp"
+#include "../../src/robotics/timed_curve.hpp"
 
 #include <duet/dual/taylor.hpp>
 #include <duet/robotics/time_parametrised.hpp>

@@ -3,8 +3,7 @@
 #include "support/message.hpp"
 #include "support/random.hpp"
 
-#include "../../src/robotics/timing/joint_paths.hpp"
-#include "../../src/robotics/timing/phase_plane_velocities.hpp"
+#include "../../src/robotics/timed_curve.hpp"
 
 #include <duet/core/text/number_text.hpp>
 #include <duet/robotics/time_parametrised.hpp>

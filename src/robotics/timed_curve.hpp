@@ -1,0 +1,299 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/kinematics/joint_trajectory.hpp>
+#include <duet/robotics/time_parametrised.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+/// \file
+/// Time parametrisation of joint curves: curves through waypoints, maximum squared path velocities
+/// x = ṡ² in the phase plane (s, ṡ) under velocity and acceleration limits, and minimum-time
+/// squared path velocities b(τ) = τ̇² under jerk limits, too (D. Verscheure et al., Time-optimal
+/// path tracking for robots: a convex optimization approach, 2009).
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Polygon of distinct points, with the arc length s of each along the polygon.
+struct joint_polygon {
+  std::vector<Eigen::VectorXd> points;
+  std::vector<double> s;
+  std::vector<double> waypoint_s; ///< arc length s of each given waypoint
+  Eigen::VectorXd first_slope,
+      last_slope; ///< slopes of the curve at its ends; 0: default of the type of curve
+
+  explicit joint_polygon(const std::vector<Eigen::VectorXd>& waypoints);
+  [[nodiscard]] std::size_t edges() const { return points.size() - 1; }
+  [[nodiscard]] double length(std::size_t k) const { return s[k + 1] - s[k]; }
+  [[nodiscard]] Eigen::VectorXd chord(std::size_t k) const {
+    return (points[k + 1] - points[k]) / length(k);
+  }
+};
+
+/// Slopes of the monotone piecewise cubic interpolant (PCHIP) of F. N. Fritsch and J. Butland (A
+/// method for constructing local monotone piecewise cubic interpolants, 1984): a weighted harmonic
+/// mean of the slopes of both edges, and 0 where their signs differ. Every component therefore
+/// rises and falls with the points and stays between them.
+[[nodiscard]] std::vector<Eigen::VectorXd> pchip_slopes(const joint_polygon& polygon);
+
+/// Slopes of the natural cubic spline through the points, which has continuous second derivatives;
+/// these are 0 at ends whose slopes are not given (natural end conditions). Its equations are h₁ d₀
+/// + 2 (h₀ + h₁) d₁ + h₀ d₂ = 3 (h₁ c₀ + h₀ c₁) with the lengths h and chords c of both edges.
+[[nodiscard]] std::vector<Eigen::VectorXd> natural_cubic_slopes(const joint_polygon& polygon);
+
+/// Piecewise cubic Hermite curve through the points of a polygon with given
+/// slopes, one cubic per edge.
+[[nodiscard]] std::vector<joint_cubic> hermite_curve(const joint_polygon& polygon,
+                                                     const std::vector<Eigen::VectorXd>& slopes);
+
+/// Waypoints, limits and boundary velocities of a time parametrisation, validated.
+struct time_parametrisation_input {
+  joint_polygon polygon;
+  std::size_t waypoints;
+  Eigen::VectorXd velocity, acceleration, jerk;
+  double initial_speed = 0, final_speed = 0; ///< path velocities ṡ at the ends
+  int parts;
+  Eigen::VectorXd lower, upper; ///< joint ranges on the curve; infinite: unbounded
+};
+
+[[nodiscard]] time_parametrisation_input
+validated_input(const std::vector<Eigen::VectorXd>& waypoints, const Eigen::VectorXd& velocity,
+                const Eigen::VectorXd& acceleration, const time_parametrisation_options& options);
+
+/// Replaces slopes at the ends of edges on which a joint would leave its range by those of the
+/// monotone curve (PCHIP).
+///
+/// \throws invalid_input if a joint still leaves its range because of its velocity at an end
+[[nodiscard]] std::vector<Eigen::VectorXd>
+slopes_within_ranges(const time_parametrisation_input& problem,
+                     std::vector<Eigen::VectorXd> slopes);
+
+/// Constraint |y + slope x| ≤ reach on the squared path velocities x = ṡ² at the start of a segment
+/// and y at its end.
+struct speed_bound {
+  double slope, reach;
+};
+
+/// Interval of the y between `lower` and `upper` that satisfy all constraints for a given x, from
+/// the value of one line at x to that of another.
+struct feasible_path_velocities {
+  struct line {
+    double at_zero, slope, value;
+  };
+  line lower, upper;
+
+  feasible_path_velocities(std::span<const speed_bound> bounds, double x, double from, double to);
+};
+
+/// Nearest value to x for which some y between `lower` and `upper` satisfies all constraints;
+/// NaN if no such y exists. The length of the interval of such y is a concave function of x.
+/// Newton's method approaches its nearer zero from outside without passing it, from one pair of
+/// active lines to the next.
+[[nodiscard]] double nearest_speed(std::span<const speed_bound> bounds, double x, double lower,
+                                   double upper);
+
+/// Constraints on ṡ² at the starts and ends of the segments of a path, between which it is linear
+/// in s.
+struct path_bounds {
+  std::vector<double> before, after; ///< largest ṡ² that velocity limits admit
+  std::vector<speed_bound> bounds;   ///< constraints, as many for each segment
+  std::size_t bounds_each;
+
+  explicit path_bounds(Eigen::Index joints) : bounds_each(std::size_t(3 * joints)) {}
+
+  void reserve(std::size_t parts);
+  [[nodiscard]] std::size_t size() const { return before.size(); }
+  [[nodiscard]] std::span<const speed_bound> of(std::size_t part) const;
+  /// Adds the constraints by which velocities and accelerations stay within limits on an entire
+  /// segment. With ṡ² linear in s the acceleration q' s̈ + q'' ṡ² is a quadratic polynomial and
+  /// lies between its Bernstein coefficients, which are linear in both ṡ².
+  void add(const joint_cubic& q, const Eigen::VectorXd& velocity,
+           const Eigen::VectorXd& acceleration);
+
+private:
+  /// Constraint |a x + b y| ≤ c, solved for y.
+  [[nodiscard]] speed_bound bound(double a, double b, double c);
+  /// Applies a velocity limit. If |q'| is below a line from l to r l, ṡ² may be below (limit /
+  /// line)², which is a convex function, and is above its chord divided by the largest ratio of the
+  /// two. That ratio is attained at (2 r + 1) / (3 r + 3) of the segment.
+  void apply_velocity_limit(const std::array<double, 3>& p, double limit);
+};
+
+/// Infeasible boundary velocity: the end of the path, and the largest ṡ² that is feasible there.
+struct infeasible_boundary {
+  bool at_start = false, at_end = false;
+  double largest = 0;
+};
+
+/// Maximum squared path velocities ṡ² at the ends of all segments. The backward pass finds the
+/// range from which the given end can be reached; the forward pass takes the largest values that
+/// this range and the constraints admit.
+///
+/// \param infeasible  set if a boundary velocity is infeasible; then the result has no meaning
+[[nodiscard]] std::vector<double> phase_plane_velocities(const path_bounds& path, double first,
+                                                         double last,
+                                                         infeasible_boundary& infeasible);
+
+/// Segment of a path on one edge of a curve and in one interval [k, k + 1] of τ: its start on the
+/// edge, and s relative to that start, a t + b t² + c t³ with t = τ − k − from, 0 ≤ t ≤ length.
+struct reference_piece {
+  std::size_t edge, interval;
+  double from, length, start, a, b, c;
+};
+
+/// True for each end of a path at which a motion is at rest.
+struct ends_at_rest {
+  bool first = true, last = true;
+};
+
+/// Arc length s of a path as a cubic B-spline of τ, 0 ≤ τ ≤ n: twice continuously differentiable
+/// and increasing, as its coefficients are except for the outer ones. At ends at rest s grows with
+/// τ³, so that a motion with any τ̇ > 0 there is at rest without acceleration.
+class reference_parametrisation {
+public:
+  /// Approximates given arc lengths.
+  ///
+  /// \param arc_lengths  approximate s at τ = 0, 1, …, n, n ≥ 4; exact at τ = 0 and n
+  explicit reference_parametrisation(const std::vector<double>& arc_lengths,
+                                     ends_at_rest rest = {});
+
+  /// Derivative ds/dτ at an end.
+  [[nodiscard]] double first_slope() const { return (c_[2] - c_[0]) / 2; }
+  [[nodiscard]] double last_slope() const { return (c_[c_.size() - 1] - c_[c_.size() - 3]) / 2; }
+
+  /// All segments, split at the ends of intervals and of edges.
+  ///
+  /// \param knots  arc lengths s at which edges begin and end
+  [[nodiscard]] std::vector<reference_piece> pieces(const std::vector<double>& knots) const;
+
+private:
+  /// Computes the last two coefficients c_1 and c_0 at an end in motion at p_0, from the next two
+  /// positions and the coefficient before them.
+  static void advance(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0);
+  /// Coefficients of s in [k, k + 1] by powers of τ − k.
+  [[nodiscard]] std::array<double, 4> powers(std::size_t k) const;
+
+  std::vector<double> c_;
+};
+
+/// Linear form of the three B-spline coefficients of the squared path velocity that
+/// are active in a segment.
+using linear_form = std::array<double, 3>;
+
+[[nodiscard]] inline double times(const linear_form& row, const double* c) {
+  return row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
+}
+
+/// Polynomial in τ − k, by its powers, of a squared path velocity in interval k. The latter is a
+/// quadratic B-spline whose outer coefficients are its values at the ends.
+[[nodiscard]] std::array<linear_form, 3> path_velocity_powers(std::size_t k, std::size_t intervals);
+
+/// Constraints |x c| ≤ limit of one joint, relative to its limits: accelerations, and jerks divided
+/// by τ̇, by their four Bernstein coefficients in a segment. `beyond` c bounds the error of the
+/// middle two; the outer ones are values at the ends.
+struct joint_bounds {
+  std::array<linear_form, 4> acceleration{}, jerk{};
+  linear_form beyond_acceleration{}, beyond_jerk{};
+};
+
+/// Bernstein coefficients in a segment of the squared path velocity, and of the square of the
+/// largest joint velocity relative to its limit.
+struct piece_bounds {
+  std::size_t first; ///< index of the coefficient that c[0] is
+  double length;     ///< length of the segment in τ
+  std::array<linear_form, 4> squared_velocity{};
+  std::array<linear_form, 10> square_rate{};
+};
+
+/// Constraints on a squared path velocity b = τ̇² that is a quadratic B-spline of τ
+/// with positive coefficients, one more than nodes of τ; the outer ones are its values at
+/// the ends. Joint velocities are q' s' √b with s' = ds/dτ; accelerations and jerks /
+/// √b are linear in it:
+///
+///     q̈     = q'' s'² b + q' change,               change = s̈ = s'' b + s' b' / 2
+///     q⃛ / τ̇ = q''' s'³ pace + 3 q'' s' change + q' third,
+///     third  = s''' b + 3/2 s'' b' + s' b'' / 2
+struct path_velocity_constraints {
+  std::vector<piece_bounds> pieces;
+  std::vector<joint_bounds> joints; ///< constraints of each segment, one per joint
+
+  /// Collects the constraints of all segments of a path.
+  ///
+  /// \param intervals  number of intervals of τ
+  path_velocity_constraints(const std::vector<joint_cubic>& curve,
+                            const std::vector<reference_piece>& path, std::size_t intervals,
+                            const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration,
+                            const Eigen::VectorXd& jerk);
+
+private:
+  void add(const joint_cubic& q, const reference_piece& piece, std::size_t intervals,
+           const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration,
+           const Eigen::VectorXd& jerk);
+};
+
+/// Squared path velocity within limits, by the coefficients of its B-spline.
+struct path_velocity_result {
+  std::vector<double> coefficients;
+  std::array<double, 2> reached{}; ///< fraction of the required value attained at each end
+  std::size_t nearest_joint = 0;   ///< joint whose acceleration and jerk limits are the nearest
+};
+
+/// Nearly minimum-time squared path velocity by a log-barrier interior-point method: the margins to
+/// the limits cost about 10 / accuracy of the time.
+///
+/// \param ends  squared path velocities required at the ends, where joint velocities satisfy their
+/// limits; 0: free
+[[nodiscard]] path_velocity_result
+minimum_time_path_velocity(const path_velocity_constraints& bounds,
+                           const std::array<double, 2>& ends, double accuracy);
+
+/// Timed segments of a path in order, and their total duration.
+struct timed_path {
+  std::vector<timed_piece> pieces;
+  double duration = 0;
+};
+
+/// Minimum-time motion along a curve with constant s̈ in each segment. If segments are
+/// so short that round-off takes accelerations beyond their limits, it is computed
+/// again with smaller limits.
+///
+/// \throws invalid_input for velocities at ends that are too fast
+[[nodiscard]] timed_path timed_by_accelerations(const time_parametrisation_input& problem,
+                                                const std::vector<joint_cubic>& curve);
+
+/// Motion with approximately the given velocities at its ends that needs the smallest fraction of
+/// the acceleration limits for them, as an initial guess for jerk limits. (Near the minimum-time
+/// motion, path velocities near the ends would have to change, and searches that start there stall
+/// in a corner of the feasible set.)
+[[nodiscard]] timed_path min_acceleration_motion(const time_parametrisation_input& problem,
+                                                 const std::vector<joint_cubic>& curve);
+
+/// Path arguments s of a motion at n + 1 equidistant times; the last one is the length of the path.
+[[nodiscard]] std::vector<double> arc_lengths_of(const timed_path& path, std::size_t n,
+                                                 double length);
+
+/// Trajectory along a curve with a squared path velocity τ̇²(τ) over n intervals of τ, given by its
+/// B-spline coefficients.
+[[nodiscard]] timed_path trajectory_from_path_velocity(const std::vector<joint_cubic>& curve,
+                                                       const std::vector<reference_piece>& path,
+                                                       std::size_t n,
+                                                       const std::vector<double>& squared_velocity);
+
+/// Near-minimum-time motion along a curve within velocity, acceleration and jerk limits.
+///
+/// \throws invalid_input for velocities at ends with which no motion is found
+[[nodiscard]] timed_path timed_within_jerks(const time_parametrisation_input& problem,
+                                            const std::vector<joint_cubic>& curve);
+
+/// Minimum-time motion along a curve, as `joint_trajectory`.
+[[nodiscard]] joint_trajectory timed(const time_parametrisation_input& problem,
+                                     const std::vector<joint_cubic>& curve);
+
+DUET_ABI_END
+} // namespace duet::detail
