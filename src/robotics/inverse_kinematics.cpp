@@ -1,24 +1,678 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "bounded_step.hpp"
+#include "constrained_step.hpp"
 #include "goal_equations.hpp"
-#include "inverse_kinematics_search.hpp"
+#include "nearest_pose.hpp"
 #include "planning_model.hpp"
-#include "solution_search.hpp"
+#include "small_vector.hpp"
 #include "solutions_within_limits.hpp"
+#include "splitmix64.hpp"
 
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>
+#include <duet/kinematics/motion_plan.hpp>
+#include <duet/kinematics/serial_chain.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <limits>
+#include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace duet::detail {
 namespace {
+
+/// \throws invalid_input
+void require_options(const inverse_kinematics_options& options) {
+  constexpr const char* caller = "inverse_kinematics";
+  require_positive(caller, "tolerance", options.tolerance);
+  require_positive(caller, "max_iterations", options.max_iterations);
+  require_option(caller, "max_restarts", options.max_restarts, options.max_restarts >= 0,
+                 "a non-negative number");
+  require_positive(caller, "candidates", options.candidates);
+}
+
+/// Comparison a < b with nan greater than any number.
+[[nodiscard]] bool is_less(double a, double b) {
+  return a < b || (std::isnan(b) && !std::isnan(a));
+}
+
+/// Common part of all searches for configurations of a chain.
+///
+/// \tparam Goal  a pose, or a type with its own `set_equations` and `is_beyond`
+template <int Capacity, class Goal = tip_pose>
+class inverse_kinematics_search {
+  using vector = small_vector<Capacity>;
+
+public:
+  struct attempt {
+    vector joints;
+    pose_error residual;
+    double error; ///< |e|²
+    int iterations = 0;
+    int restarts = 0;
+    stop_reason reason = stop_reason::no_progress;
+  };
+
+  inverse_kinematics_search(const planning_model<Capacity>& model, const vector& start,
+                            const inverse_kinematics_options& options)
+      : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
+        start_(start) {
+    require_options(options);
+    for (int i = 0; i < model.size; ++i) {
+      require(start[i] - start[i] == 0, "duet: inverse_kinematics: joint ", i, " of the start is ",
+              model.unit[i] * start[i], " (expected a finite number)");
+      const bool is_rotational = model.is_rotational[std::size_t(i)];
+      constexpr double full_turn = 2 * std::numbers::pi;
+      const bool has_full_turn = is_rotational && !model.is_translational[std::size_t(i)] &&
+                                 model.upper[i] - model.lower[i] >= full_turn;
+      period_[i] = has_full_turn ? full_turn : 0;
+      beyond_[i] = has_full_turn ? std::numeric_limits<double>::infinity() : 0;
+      spread_[i] = is_rotational ? std::numbers::pi : 1;
+    }
+    start_ = within_limits(start_);
+  }
+
+  [[nodiscard]] attempt operator()(const Goal& goal) const {
+    const bool is_out_of_reach = is_beyond(model_.reach, goal, tolerance_);
+    const auto search = [&](const vector& from) {
+      if constexpr (std::same_as<Goal, tip_pose>) {
+        if (is_out_of_reach) {
+          return nearest(from, goal);
+        }
+      }
+      return approach(from, goal);
+    };
+    attempt best = search(start_);
+    int iterations = best.iterations, restarts = 0;
+    splitmix64 random(options_.seed);
+    while (best.reason != stop_reason::reached && restarts < options_.max_restarts) {
+      const attempt next = search(configuration(random));
+      iterations += next.iterations;
+      ++restarts;
+      if (is_less(next.error, best.error)) {
+        best = next;
+      }
+    }
+    if (is_out_of_reach && best.reason != stop_reason::reached) {
+      best.reason = stop_reason::out_of_reach;
+    } else if (best.reason == stop_reason::no_progress) {
+      best.reason = obstacle(best.joints, goal);
+    }
+    best.iterations = iterations;
+    best.restarts = restarts;
+    return best;
+  }
+
+  /// Damped least squares from one initial guess, without random restarts.
+  [[nodiscard]] attempt approach(vector theta, const Goal& goal) const {
+    attempt best{theta, {}, std::numeric_limits<double>::infinity()};
+    double before = best.error;
+    int since = 0; // iterations since the error last fell by a tenth
+    for (int iteration = 0;; ++iteration) {
+      const equations current = equations_at(theta, goal);
+      const double error = dot(current.e, current.e);
+      const bool is_reached = tolerance_.ratio(current.residual) <= 1;
+      if (iteration == 0 || error < best.error || is_reached) {
+        best = {theta, current.residual, error};
+      }
+      if (error < .9 * before) {
+        before = error;
+        since = 0;
+      }
+      best.iterations = iteration;
+      if (is_reached || since == 4 || iteration == options_.max_iterations) {
+        best.reason = is_reached   ? stop_reason::reached
+                      : since == 4 ? stop_reason::no_progress
+                                   : stop_reason::iteration_limit;
+        return best;
+      }
+      ++since;
+      theta = within_limits(theta + step(current, damping(current)).step);
+    }
+  }
+
+  /// Reason why the search cannot continue from a configuration.
+  [[nodiscard]] stop_reason obstacle(const vector& theta, const Goal& goal) const {
+    const equations current = equations_at(theta, goal);
+    if (step(current, damping(current)).is_bounded) {
+      return stop_reason::joint_limit;
+    }
+    gram_matrix gram = gram_of(current.at.jacobian);
+    int count = 6;
+    for (std::ptrdiff_t i = 0; i < 6; ++i) {
+      if (current.is_free[std::size_t(i)]) {
+        gram(i, i) = 1;
+        --count;
+      }
+    }
+    const bool is_singular =
+        model_.size >= count && damped_gram(gram).smallest() < 10 * damping_threshold;
+    return is_singular ? stop_reason::singular : stop_reason::no_progress;
+  }
+
+  /// Random configuration, uniform within the limits; without them, about the start.
+  [[nodiscard]] vector configuration(splitmix64& random) const {
+    vector theta;
+    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+      double lower = model_.lower[i], upper = model_.upper[i];
+      if (!(upper - lower < std::numeric_limits<double>::infinity())) {
+        lower = std::max(lower, start_[i] - spread_[i]);
+        upper = std::min(upper, start_[i] + spread_[i]);
+      }
+      theta[i] = lower + (upper - lower) * random();
+    }
+    return theta;
+  }
+
+  [[nodiscard]] const vector& start() const { return start_; }
+  /// Changes of the coordinates that leave the pose unchanged: 0 or a full turn.
+  [[nodiscard]] const vector& period() const { return period_; }
+
+private:
+  using equations = goal_equations<Capacity>;
+  [[nodiscard]] equations equations_at(const vector& theta, const Goal& goal) const {
+    equations result{model_.at(theta), {}, {}};
+    set_equations(result, goal);
+    return result;
+  }
+
+  /// Levenberg–Marquardt (damped least squares) step.
+  [[nodiscard]] bounded_step_result<vector> step(const equations& x, double lambda) const {
+    return bounded_step(x.at.jacobian, x.e, model_.lower - x.at.theta - beyond_,
+                        model_.upper - x.at.theta + beyond_, {0, lambda});
+  }
+  /// Damping, which grows with the error.
+  [[nodiscard]] static double damping(const equations& x) {
+    return std::min(.02 * dot(x.e, x.e), .08) + 1e-9;
+  }
+
+  /// Nearest pose from a start on: minimum of the squared distance of the origins plus |ω|², by
+  /// Newton's method with a damping that lets no step increase it. Joints at limits that block them
+  /// are fixed there.
+  template <std::same_as<tip_pose> Pose>
+  [[nodiscard]] attempt nearest(const vector& start, const Pose& goal) const {
+    point current = point_at(start, goal);
+    double lambda = 0;
+    int iterations = 0;
+    for (bool is_lower = true; is_lower && iterations < options_.max_iterations &&
+                               current.max_gradient > 1e-12 * (1 + current.error);
+         ++iterations) {
+      is_lower = false;
+      for (; !is_lower && lambda < 1e6 * (1 + current.error); lambda = std::max(4 * lambda, 1e-3)) {
+        const auto step = newton_step(current.to_second_order, current.is_fixed, lambda);
+        if (!step) {
+          continue;
+        }
+        vector theta = current.theta;
+        for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+          theta[i] += (*step)[i];
+        }
+        const point next = point_at(within_limits(theta), goal);
+        // Near the minimum round-off hides a decrease of the error, but not of its gradient.
+        const bool is_even = next.error <= current.error * (1 + 1e-14);
+        is_lower = next.error < current.error * (1 - 1e-14) ||
+                   (is_even && next.max_gradient < current.max_gradient);
+        if (is_lower) {
+          current = next;
+        }
+      }
+      lambda = lambda < 1e-2 ? 0 : lambda / 16;
+    }
+    return {
+        current.theta, current.residual, current.error, iterations, 0, stop_reason::out_of_reach};
+  }
+
+  struct point {
+    vector theta;
+    pose_error residual;
+    double error; ///< squared distance of the origins plus |ω|²
+    squared_error<Capacity> to_second_order;
+    std::array<bool, std::size_t(Capacity)> is_fixed{}; ///< true if fixed at a limit that blocks it
+    double max_gradient = 0; ///< largest entry of the gradient of joints that are not fixed
+  };
+  template <std::same_as<tip_pose> Pose>
+  [[nodiscard]] point point_at(const vector& theta, const Pose& goal) const {
+    const equations x = equations_at(theta, goal);
+    const three_vector<double> displacement = goal.translation - x.at.tip.translation;
+    const small_twist e{{displacement.x, displacement.y, displacement.z, x.e[3], x.e[4], x.e[5]}};
+    point result{theta, x.residual, dot(e, e), squared_error_of(x.at.jacobian, e)};
+    for (std::ptrdiff_t i = 0; i < Capacity; ++i) {
+      const double gradient = result.to_second_order.gradient[i];
+      const bool is_at_limit = period_[i] == 0 && (gradient > 0 ? theta[i] <= model_.lower[i]
+                                                                : theta[i] >= model_.upper[i]);
+      bool& is_fixed = result.is_fixed[std::size_t(i)];
+      is_fixed = i >= model_.size || is_at_limit;
+      result.max_gradient = std::max(result.max_gradient, is_fixed ? 0 : std::abs(gradient));
+    }
+    return result;
+  }
+
+  /// Revolute joints whose range contains a full turn are wrapped into it, others stop at limits.
+  [[nodiscard]] vector within_limits(vector theta) const {
+    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+      const double lower = model_.lower[i], upper = model_.upper[i];
+      if (period_[i] > 0 && theta[i] > upper) {
+        theta[i] -= period_[i] * std::ceil((theta[i] - upper) / period_[i]);
+      } else if (period_[i] > 0 && theta[i] < lower) {
+        theta[i] += period_[i] * std::ceil((lower - theta[i]) / period_[i]);
+      }
+      theta[i] = std::clamp(theta[i], lower, upper);
+    }
+    return theta;
+  }
+
+  const planning_model<Capacity>& model_;
+  inverse_kinematics_options options_;
+  pose_tolerance tolerance_;
+  vector period_;
+  vector beyond_; ///< admissible excess of steps beyond limits: infinite if joints are wrapped
+  vector spread_; ///< distance from the start of random coordinates that have no limits
+  vector start_;
+};
+
+/// Equality and inequality constraints of a step.
+template <class V>
+struct step_conditions {
+  std::vector<inequality<V>> equations;    ///< normal·x = bound
+  std::vector<inequality<V>> inequalities; ///< normal·x ≥ bound
+};
+
+/// Orthonormal vectors (Gram–Schmidt), and the projection onto their orthogonal complement.
+template <class V>
+class orthonormal_rows {
+public:
+  /// Adds a vector, unless it is linearly dependent on those added before.
+  ///
+  /// \return length of its new component, 0 for none
+  double add(const V& row) {
+    const V rest = (*this)(row);
+    const double length = rest.norm();
+    const bool is_new = length > 1e-9 * row.norm();
+    if (is_new) {
+      rows_.push_back(rest / length);
+    }
+    return is_new ? length : 0;
+  }
+  [[nodiscard]] const V& back() const { return rows_.back(); }
+  /// Component of x that is orthogonal to all of them.
+  [[nodiscard]] V operator()(V x) const {
+    for (int twice = 0; twice < 2; ++twice) { // the second pass removes round-off
+      for (const V& row : rows_) {
+        x -= row.dot(x) * row;
+      }
+    }
+    return x;
+  }
+
+private:
+  std::vector<V> rows_;
+};
+
+/// Minimiser x of gradient·x + ½ xᵀ B x under the constraints, B = `curvature` positive definite;
+/// nothing if no x satisfies them. With B = L Lᵀ and y = Lᵀx + L⁻¹ gradient the objective is ½|y|²
+/// up to a constant: a least-norm problem for y.
+template <class V, class M>
+[[nodiscard]] std::optional<V> quadratic_step(const V& gradient, const M& curvature,
+                                              const step_conditions<V>& conditions) {
+  const cholesky<M> factors(curvature);
+  orthonormal_rows<V> equality_rows;
+  V aim = V::Zero(gradient.size()); // the least-norm y that satisfies the equations
+  for (const inequality<V>& each : conditions.equations) {
+    const V row = factors.forward(each.normal);
+    const double residual = each.bound - row.dot(aim), length = equality_rows.add(row);
+    if (length > 0) {
+      aim +=
+          residual * length / (length * length + 1e-14 * row.squaredNorm()) * equality_rows.back();
+    }
+  }
+  aim -= equality_rows(factors.forward(gradient));
+  std::vector<inequality<V>> reduced;
+  reduced.reserve(conditions.inequalities.size());
+  for (const inequality<V>& each : conditions.inequalities) {
+    const V row = factors.forward(each.normal);
+    reduced.push_back({equality_rows(row), each.bound - row.dot(aim)});
+  }
+  const std::optional<V> correction = least_distance(reduced, gradient.size());
+  return correction ? std::optional<V>(factors.backward(V(aim + *correction))) : std::nullopt;
+}
+
+/// Sequential quadratic programming within the solutions of a goal: each step keeps goal, limits
+/// and margins to first order, and Newton's method leads back to them. The curvature is that of the
+/// function on the set of solutions, after Broyden, Fletcher, Goldfarb and Shanno (BFGS) with
+/// Powell's damping, from the change of the projected gradient.
+template <int Capacity>
+class solution_refinement {
+public:
+  using joints = small_vector<Capacity>;
+  using vector = bounded_vector<Capacity>;
+  using matrix =
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Capacity, Capacity>;
+
+  struct point {
+    joints theta;
+    pose_error residual;
+    double error_ratio = 0; ///< largest deviation or margin violation, relative to the tolerance
+    step_conditions<vector> conditions;
+    double value = 0; ///< value of the objective
+    vector gradient;
+  };
+
+  solution_refinement(const planning_model<Capacity>& model, const scaled_goal& goal,
+                      const objective_view& objective, const pose_tolerance& tolerance)
+      : model_(model), goal_(goal), objective_(objective), tolerance_(tolerance) {}
+
+  /// Solution near a given configuration that keeps the margins too and, if there is an objective,
+  /// minimises it locally. Nothing if that fails.
+  [[nodiscard]] std::optional<point> operator()(const joints& theta, int iterations) const {
+    auto best = solution(theta);
+    if (!best || !objective_) {
+      return best;
+    }
+    matrix curvature;
+    bool is_first = true;
+    for (int iteration = 0; iteration < iterations; ++iteration) {
+      if (is_first) { // a first step of a fifth of a radian
+        const double steepness = projected_gradient(*best).gradient.norm();
+        if (!(steepness > 0)) {
+          break;
+        }
+        curvature = 5 * steepness * matrix::Identity(model_.size, model_.size);
+      }
+      const auto step = quadratic_step(best->gradient, curvature, best->conditions);
+      const double gain = step ? -best->gradient.dot(*step) : 0;
+      std::optional<point> next;
+      for (double part = 1; gain > 0 && part > 1e-4; part /= 3) {
+        next = solution(moved(best->theta, *step, part));
+        if (next && next->value < best->value - 1e-4 * part * gain) {
+          break;
+        }
+        next.reset();
+      }
+      if (next) {
+        curvature = learned(curvature, is_first, *best, *next);
+        const bool is_end = best->value - next->value <= 1e-14 * std::abs(best->value);
+        best = std::move(next);
+        if (is_end) {
+          break;
+        }
+      } else if (is_first) {
+        break;
+      }
+      is_first = !next; // restart if the learned curvature does not help
+    }
+    return best;
+  }
+
+private:
+  /// Maximum step in one direction, beyond which the first order is inaccurate.
+  static constexpr double trusted = .5;
+
+  [[nodiscard]] point at(const joints& theta) const {
+    point x;
+    x.theta = theta;
+    const auto state = model_.at(theta);
+    const twist_constraint constraint = goal_.constraint(state.tip);
+    x.residual = residual_twist(constraint).residual;
+    x.error_ratio = std::max(tolerance_.ratio(x.residual),
+                             model_.margin_violation(theta) / tolerance_.translation);
+    auto& more = x.conditions.inequalities;
+    for (std::ptrdiff_t i = 0; i < 6; ++i) {
+      if (constraint.matrix.row(i).isZero(0)) {
+        continue;
+      }
+      const joints row = goal_row(constraint, i, state.jacobian);
+      vector normal(model_.size);
+      std::copy_n(row.values.begin(), model_.size, normal.begin());
+      const double lower = constraint.lower[i], upper = constraint.upper[i];
+      if (lower == upper) {
+        x.conditions.equations.push_back({normal, lower});
+      } else {
+        add(more, normal, lower);
+        add(more, -normal, -upper);
+      }
+    }
+    for (int i = 0; i < model_.size; ++i) {
+      const vector normal = vector::Unit(model_.size, i);
+      add(more, normal, std::max(model_.lower[i] - theta[i], -trusted));
+      add(more, -normal, std::max(theta[i] - model_.upper[i], -trusted));
+    }
+    for (const auto& each : model_.margin_inequalities(theta)) {
+      add(more, each.normal, std::min(each.bound, .1));
+    }
+    return x;
+  }
+  static void add(std::vector<inequality<vector>>& to, const vector& normal, double bound) {
+    if (bound > -std::numeric_limits<double>::infinity()) {
+      to.push_back({normal, bound});
+    }
+  }
+  [[nodiscard]] joints moved(joints theta, const vector& step, double part) const {
+    for (int i = 0; i < model_.size; ++i) {
+      theta[i] = std::clamp(theta[i] + part * step[i], model_.lower[i], model_.upper[i]);
+    }
+    return theta;
+  }
+
+  /// Point at which all constraints hold again, by least-norm steps.
+  [[nodiscard]] std::optional<point> restored(joints theta) const {
+    constexpr double close = 1e-7; // well within the tolerance, so that objectives are comparable
+    const vector none = vector::Zero(model_.size);
+    const matrix one = matrix::Identity(model_.size, model_.size);
+    double before = std::numeric_limits<double>::infinity();
+    for (int k = 0;; ++k) {
+      point x = at(theta);
+      const bool is_end =
+          x.error_ratio <= close || k == 20 || (x.error_ratio <= 1 && x.error_ratio > before / 2);
+      const auto step = is_end ? std::nullopt : quadratic_step(none, one, x.conditions);
+      if (!step) {
+        return x.error_ratio <= 1 ? std::optional<point>(std::move(x)) : std::nullopt;
+      }
+      before = x.error_ratio;
+      theta = moved(theta, *step, 1);
+    }
+  }
+  [[nodiscard]] std::optional<point> solution(const joints& theta) const {
+    auto x = restored(theta);
+    if (x && objective_) {
+      const Eigen::VectorXd chain_joints = model_.chain_joints(x->theta);
+      x->value = objective_(chain_joints);
+      x->gradient = objective_.gradient(chain_joints);
+      for (int i = 0; i < model_.size; ++i) { // with respect to the planner's coordinates
+        x->gradient[i] *= model_.unit[i];
+      }
+    }
+    return x;
+  }
+
+  /// Projection of the gradient onto the directions that the active constraints leave free.
+  struct projected_gradient {
+    orthonormal_rows<vector> active_rows;
+    std::size_t count = 0;
+    vector gradient;
+
+    explicit projected_gradient(const point& x) {
+      for (const auto& each : x.conditions.equations) {
+        active_rows.add(each.normal);
+      }
+      for (const auto& each : x.conditions.inequalities) {
+        if (each.bound > -1e-7) {
+          active_rows.add(each.normal);
+          ++count;
+        }
+      }
+      gradient = active_rows(x.gradient);
+    }
+  };
+
+  /// Curvature after the update by a step (damped BFGS).
+  [[nodiscard]] matrix learned(matrix curvature, bool is_first, const point& before,
+                               const point& after) const {
+    const projected_gradient gradient_before(before), gradient_after(after);
+    vector s(model_.size);
+    for (int i = 0; i < model_.size; ++i) {
+      s[i] = after.theta[i] - before.theta[i];
+    }
+    s = gradient_after.active_rows(s);
+    vector y = gradient_after.gradient - gradient_before.gradient;
+    if (is_first && s.dot(y) > 0) {
+      curvature *= y.squaredNorm() / s.dot(y) / curvature(0, 0);
+    }
+    const vector bs = curvature * s;
+    const double sbs = s.dot(bs);
+    if (gradient_before.count != gradient_after.count || !(sbs > 0)) {
+      return curvature; // another active set
+    }
+    if (s.dot(y) < .2 * sbs) {
+      const double part = .8 * sbs / (sbs - s.dot(y));
+      y = part * y + (1 - part) * bs;
+    }
+    const double sy = s.dot(y);
+    curvature += y * y.transpose() / sy - bs * bs.transpose() / sbs;
+    return curvature;
+  }
+
+  const planning_model<Capacity>& model_;
+  const scaled_goal& goal_;
+  const objective_view& objective_;
+  pose_tolerance tolerance_;
+};
+
+/// Search for solutions from the start and from random configurations, of which each is refined by
+/// `solution_refinement`.
+template <int Capacity>
+class solution_search {
+  using search = inverse_kinematics_search<Capacity, scaled_goal>;
+
+public:
+  using attempt = typename search::attempt;
+
+  solution_search(const planning_model<Capacity>& model, const small_vector<Capacity>& start,
+                  const inverse_kinematics_options& options)
+      : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
+        search_(model, start, options) {}
+
+  /// Solutions within the limits, up to full turns, that are known before the search.
+  struct known_solutions {
+    std::vector<small_vector<Capacity>> joints;
+    bool is_complete = false; ///< true if there are no others
+  };
+
+  /// \param is_choosy  false if the first solution is as good as any
+  [[nodiscard]] attempt operator()(const scaled_goal& goal, const objective_view& objective,
+                                   bool is_choosy, const known_solutions& known = {}) const {
+    if (!is_choosy || is_beyond(model_.reach, goal, tolerance_)) {
+      return search_(goal);
+    }
+    const solution_refinement<Capacity> refine(model_, goal, objective, tolerance_);
+    attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
+    double min_value = std::numeric_limits<double>::infinity(); // of the objective
+    int iterations = 0, candidates = 0, restarts = 0;
+    const auto consider = [&](small_vector<Capacity> theta) {
+      constexpr int rounds = 4; // after self-motions other full turns may be better
+      std::optional<typename solution_refinement<Capacity>::point> refined;
+      for (int k = 0; k < rounds; ++k) {
+        const auto other = objective ? improved_by_full_turns(theta, objective) : theta;
+        if (refined && norm(other - theta) == 0) {
+          break;
+        }
+        refined = refine(other, options_.max_iterations);
+        if (!refined || !objective) {
+          break;
+        }
+        theta = refined->theta;
+      }
+      if (refined && (best.reason != stop_reason::reached || is_less(refined->value, min_value))) {
+        best = {refined->theta, refined->residual, 0, 0, 0, stop_reason::reached};
+        min_value = refined->value;
+      }
+      return refined.has_value();
+    };
+    for (const small_vector<Capacity>& theta : known.joints) {
+      consider(theta);
+    }
+    if (known.is_complete && best.reason == stop_reason::reached) {
+      return best;
+    }
+    splitmix64 random(options_.seed);
+    for (;; ++restarts) {
+      attempt next =
+          search_.approach(restarts == 0 ? search_.start() : search_.configuration(random), goal);
+      iterations += next.iterations;
+      if (next.reason == stop_reason::reached) {
+        candidates += consider(next.joints);
+        next.reason = stop_reason::obstacle;
+      }
+      if (best.reason != stop_reason::reached &&
+          (restarts == 0 || is_less(next.error, best.error))) {
+        best = next;
+      }
+      if (restarts == options_.max_restarts || candidates == options_.candidates ||
+          (candidates == 1 && !objective)) {
+        break;
+      }
+    }
+    if (best.reason == stop_reason::no_progress) {
+      best.reason = search_.obstacle(best.joints, goal);
+    }
+    best.iterations = iterations;
+    best.restarts = restarts;
+    return best;
+  }
+
+private:
+  /// Joints moved by full turns within the limits as long as that lowers the objective.
+  [[nodiscard]] small_vector<Capacity>
+  improved_by_full_turns(small_vector<Capacity> theta, const objective_view& objective) const {
+    constexpr double max_change = 0x1p20;
+    double min_value = objective(model_.chain_joints(theta));
+    const auto is_lower_by = [&](int i, double change) {
+      small_vector<Capacity> other = theta;
+      other[i] += change;
+      const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
+      const double value = is_within ? objective(model_.chain_joints(other)) : min_value;
+      const bool result = is_within && is_less(value, min_value);
+      if (result) {
+        theta = other;
+        min_value = value;
+      }
+      return result;
+    };
+    for (int i = 0; i < model_.size; ++i) {
+      const double period = search_.period()[i];
+      bool is_lower = period > 0;
+      while (is_lower) { // by 1, 2, 4 … full turns, and back
+        is_lower = false;
+        for (const double side : {-period, period}) {
+          for (double change = side; std::abs(change) < max_change && is_lower_by(i, change);
+               change *= 2) {
+            is_lower = true;
+          }
+        }
+      }
+    }
+    return theta;
+  }
+
+  const planning_model<Capacity>& model_;
+  inverse_kinematics_options options_;
+  pose_tolerance tolerance_;
+  search search_;
+};
 
 template <int Capacity, class Attempt>
 [[nodiscard]] inverse_kinematics_result result_of(const planning_model<Capacity>& model,
