@@ -51,13 +51,13 @@ cmp "here/build/release/$archive" "out/$archive"
 cmp "here/build/release/$archive.sha256" "out/$archive.sha256"
 (cd out && sha256sum --quiet -c "$archive.sha256")
 
-# It holds what was committed, and a project finds what it installs.
+# It holds what was committed, and a project finds the headers that it installs.
 tar xzf "out/$archive"
 (cd "duet-$version" && find . -type f | sort) >files
 (cd origin && git ls-files | sed 's,^,./,' | sort) >committed
 cmp files committed
 "$cmake" -S "duet-$version" -B build -D CMAKE_CXX_COMPILER="$compiler" -D DUET_BUILD_TESTS=OFF \
-  -D DUET_BUILD_EXAMPLES=OFF >/dev/null
+  -D DUET_BUILD_EXAMPLES=OFF -D DUET_BUILD_ROBOTICS=OFF -D DUET_BUILD_IO=OFF >/dev/null
 "$cmake" --install build --prefix "$folder/prefix" >/dev/null
 "$cmake" -S "$top/tests/consumer/find_package" -B consumer -D CMAKE_CXX_COMPILER="$compiler" \
   -D CMAKE_PREFIX_PATH="$folder/prefix" -D expected_prefix="$folder/prefix" >/dev/null
