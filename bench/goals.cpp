@@ -8,6 +8,7 @@
 #include <duet/core/random_source.hpp>
 #include <duet/kinematics/limits.hpp>
 #include <duet/kinematics/robots.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
 #include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/goals.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>

@@ -8,6 +8,8 @@
 /// number of problems of each of six families (100), the seed (1).
 /// build/bench/bench/duet_singular_paths_bench
 
+#include "../src/robotics/tip_pose.hpp"
+
 #include "robotics/singular_problems.hpp"
 
 #include <duet/kinematics/jacobian.hpp>

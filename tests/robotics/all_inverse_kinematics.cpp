@@ -104,8 +104,9 @@ double joint_distance(const chain& arm, const Eigen::VectorXd& a, const Eigen::V
 }
 
 bool contains(const chain& arm, const result& found, const vector& theta, double tolerance = 1e-7) {
-  return std::any_of(found.solutions.begin(), found.solutions.end(),
-                     [&](const auto& s) { return joint_distance(arm, s.joints, theta) < tolerance; });
+  return std::any_of(found.solutions.begin(), found.solutions.end(), [&](const auto& s) {
+    return joint_distance(arm, s.joints, theta) < tolerance;
+  });
 }
 
 double smallest_singular_value(const chain& arm, const vector& theta) {
