@@ -474,7 +474,7 @@ planned(const planning_model<Capacity>& model, const Eigen::VectorXd& start,
   if (objective) {
     objective_gradient = [&](const vector& x) {
       // Gradient with respect to coordinates in the planner's units.
-      const Eigen::VectorXd gradient = objective.gradient(model.chain_joints(x));
+      const auto gradient = objective.gradient(model.chain_joints(x));
       vector result;
       for (int i = 0; i < model.size; ++i) {
         result[i] = gradient[i] * model.unit[i];

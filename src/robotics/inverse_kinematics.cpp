@@ -489,7 +489,7 @@ private:
   [[nodiscard]] std::optional<point> solution(const joints& theta) const {
     auto x = restored(theta);
     if (x && objective_) {
-      const Eigen::VectorXd chain_joints = model_.chain_joints(x->theta);
+      const auto chain_joints = model_.chain_joints(x->theta);
       x->value = objective_(chain_joints);
       x->gradient = objective_.gradient(chain_joints);
       for (int i = 0; i < model_.size; ++i) { // with respect to the planner's coordinates

@@ -40,6 +40,7 @@ auto with_capacity(int joints, const F& f) {
           max_capacity, ")");
   return joints <= 8    ? f(std::integral_constant<int, 8>())
          : joints <= 16 ? f(std::integral_constant<int, 16>())
+         : joints <= 32 ? f(std::integral_constant<int, 32>())
                         : f(std::integral_constant<int, max_capacity>());
 }
 
@@ -213,7 +214,6 @@ public:
   double margin = 0; ///< minimum distance from obstacles
 
   [[nodiscard]] const chain_view& chain() const { return chain_; }
-  [[nodiscard]] bool is_among_obstacles() const { return around_ != nullptr; }
 
   void set(state& of, const vector& theta) const {
     of.theta = theta;

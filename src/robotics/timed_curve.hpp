@@ -217,7 +217,7 @@ struct piece_bounds {
 /// √b are linear in it:
 ///
 ///     q̈     = q'' s'² b + q' change,               change = s̈ = s'' b + s' b' / 2
-///     q⃛ / τ̇ = q''' s'³ pace + 3 q'' s' change + q' third,
+///     q⃛ / τ̇ = q''' s'³ b + 3 q'' s' change + q' third,
 ///     third  = s''' b + 3/2 s'' b' + s' b'' / 2
 struct path_velocity_constraints {
   std::vector<piece_bounds> pieces;

@@ -129,7 +129,7 @@ class Tree:
             else:
                 self.sources[name] = source = Source(text)
                 self.prose[name] = MENTION.sub(lambda m: blank(m[0]), source.comments)
-                if name.startswith("include/"):
+                if name.startswith(("include/", "src/")):
                     self.headers[name] = docstrings(text)
             self.prose[name] = self.prose[name].lower()
 

@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <ranges>
@@ -94,6 +95,11 @@ template <class C, class Objective, class Scene>
 [[nodiscard]] solution_preferences preferences_of(const C& chain, const Objective& objective,
                                                   const Scene& around) {
   static_assert(planning_types<Objective, Scene>::are_good);
+  static_assert(
+      std::same_as<Objective, no_objective> ||
+          requires(const joint_vector<double, C::joints>& x) { double(objective(x)); },
+      "duet: inverse_kinematics: the objective is not a function of the joint coordinates "
+      "that returns a number");
   require_objective(objective, chain.size());
   return {objective_view::of<C::joints>(objective), scene_of(around)};
 }

@@ -97,6 +97,8 @@ template <class X>
 /// View of an objective of any type, which it calls with vectors of the type that the chain has;
 /// or no objective.
 class objective_view {
+  using joints_view = Eigen::Ref<const Eigen::VectorXd>; // of vectors of any size, without a copy
+
 public:
   objective_view() = default;
   /// \tparam N  number of joints, as in `serial_chain`
@@ -107,12 +109,12 @@ public:
       using vector = joint_vector<double, N>;
       result.f_ = &f;
       if constexpr (requires(const vector& x) { double(f(x)); }) {
-        result.value_ = [](const void* g, const Eigen::VectorXd& x) {
+        result.value_ = [](const void* g, const joints_view& x) {
           return double((*static_cast<const F*>(g))(vector(x)));
         };
       } // an objective that only has a gradient is enough for `follow_path`
-      result.gradient_ = [](const void* g, const Eigen::VectorXd& x) {
-        return Eigen::VectorXd(gradient_of(*static_cast<const F*>(g), vector(x)));
+      result.gradient_ = [](const void* g, const joints_view& x, Eigen::Ref<Eigen::VectorXd> out) {
+        out = gradient_of(*static_cast<const F*>(g), vector(x));
       };
     }
     return result;
@@ -120,11 +122,15 @@ public:
 
   [[nodiscard]] explicit operator bool() const { return f_ != nullptr; }
   /// Value at joint coordinates; 0 if the objective has none.
-  [[nodiscard]] double operator()(const Eigen::VectorXd& joints) const {
+  [[nodiscard]] double operator()(const joints_view& joints) const {
     return value_ == nullptr ? 0 : value_(f_, joints);
   }
-  [[nodiscard]] Eigen::VectorXd gradient(const Eigen::VectorXd& joints) const {
-    return gradient_(f_, joints);
+  /// Gradient at joint coordinates, in a vector of the same type.
+  template <class V>
+  [[nodiscard]] V gradient(const V& joints) const {
+    V result(joints.size());
+    gradient_(f_, joints, result);
+    return result;
   }
 
 private:
@@ -139,8 +145,8 @@ private:
   }
 
   const void* f_ = nullptr;
-  double (*value_)(const void*, const Eigen::VectorXd&) = nullptr;
-  Eigen::VectorXd (*gradient_)(const void*, const Eigen::VectorXd&) = nullptr;
+  double (*value_)(const void*, const joints_view&) = nullptr;
+  void (*gradient_)(const void*, const joints_view&, Eigen::Ref<Eigen::VectorXd>) = nullptr;
 };
 
 /// The scene that is passed, or null.
