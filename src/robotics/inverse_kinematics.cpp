@@ -451,7 +451,7 @@ private:
       add(more, normal, std::max(model_.lower[i] - theta[i], -trusted));
       add(more, -normal, std::max(theta[i] - model_.upper[i], -trusted));
     }
-    for (const auto& each : model_.margin_inequalities(theta)) {
+    for (const auto& each : model_.template margin_inequalities<vector>(theta)) {
       add(more, each.normal, std::min(each.bound, .1));
     }
     return x;

@@ -145,16 +145,27 @@ struct chain_clearance {
 
 namespace detail {
 
-/// Calls `visit` with a `chain_clearance` for each body of a chain and each obstacle, and for each
-/// pair of bodies.
-template <class C, class X, class Visit>
-void for_each_proximity(const C& chain, const X& theta, const scene& s, const Visit& visit) {
-  using S = std::decay_t<decltype(translation(chain.pose(theta, 0))[0])>;
-  std::vector<capsule<S>> moved_capsules;
-  moved_capsules.reserve(s.bodies.size());
+/// Bodies of a scene in the frame of the base.
+///
+/// \param pose_of  pose of a link by its number
+template <class PoseOf>
+[[nodiscard]] auto moved_bodies(const scene& s, const PoseOf& pose_of) {
+  using S = std::decay_t<decltype(translation(pose_of(0))[0])>;
+  std::vector<capsule<S>> result;
+  result.reserve(s.bodies.size());
   for (const collision_body& each : s.bodies) {
-    moved_capsules.push_back(transformed(chain.pose(theta, each.link), each.shape));
+    result.push_back(transformed(pose_of(each.link), each.shape));
   }
+  return result;
+}
+
+/// Calls `visit` with a `chain_clearance` for each body and each obstacle, and for each pair of
+/// bodies.
+///
+/// \param moved_capsules  as returned by `moved_bodies`
+template <class S, class Visit>
+void for_each_proximity(const std::vector<capsule<S>>& moved_capsules, const scene& s,
+                        const Visit& visit) {
   const auto visit_pair = [&](std::size_t i, std::size_t k, bool is_self, const auto& other) {
     const proximity<S> points = closest_points(moved_capsules[i], other);
     visit(chain_clearance<S>{points.distance, i, k, is_self, points});
@@ -169,12 +180,12 @@ void for_each_proximity(const C& chain, const X& theta, const scene& s, const Vi
   }
 }
 
-/// `duet::clearance` of a validated scene.
-template <class C, class X>
-[[nodiscard]] auto min_clearance(const C& chain, const X& theta, const scene& s) {
-  using S = std::decay_t<decltype(translation(chain.pose(theta, 0))[0])>;
+/// Smallest clearance of the bodies of a validated scene.
+template <class S>
+[[nodiscard]] chain_clearance<S> min_clearance(const std::vector<capsule<S>>& moved_capsules,
+                                               const scene& s) {
   chain_clearance<S> result;
-  for_each_proximity(chain, theta, s, [&](const chain_clearance<S>& each) {
+  for_each_proximity(moved_capsules, s, [&](const chain_clearance<S>& each) {
     const auto smallest = innermost(result.distance);
     if (smallest == smallest &&
         !(innermost(each.distance) >= smallest)) { // a distance that is nan is kept
@@ -195,7 +206,8 @@ template <class C, class X>
 template <LinkedMechanism C, VectorLike X>
 [[nodiscard]] auto clearance(const C& chain, const X& theta, const scene& s) {
   require_scene(chain, s);
-  return detail::min_clearance(chain, theta, s);
+  const auto pose_of = [&](int link) { return chain.pose(theta, link); };
+  return detail::min_clearance(detail::moved_bodies(s, pose_of), s);
 }
 
 } // namespace duet
