@@ -17,6 +17,7 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace test_robotics_self_collision {
@@ -177,6 +178,15 @@ TEST_CASE("plan_screw_motion: the elbow avoids the base") {
   CHECK(plan.reason == stop_reason::reached);
   CHECK(plan.smallest_clearance < .0201); // it does come to the margin
   duet_test::check_clear_screw(arm, plan, goal, around);
+  // The order of the two bodies of a pair does not matter.
+  scene reversed = around;
+  for (collision_pair& each : reversed.pairs) {
+    std::swap(each.first, each.second);
+  }
+  const auto other = plan_screw_motion(arm, start, goal, {}, {}, reversed);
+  CHECK(other.reason == stop_reason::reached);
+  REQUIRE(other.joints.size() == plan.joints.size());
+  CHECK((other.joints.back() - plan.joints.back()).norm() < 1e-6);
 }
 
 TEST_CASE(
