@@ -438,6 +438,12 @@ window.duetLive = (() => {
     };
   };
 
+  /// The WebAssembly of a script, which holds it compressed (pack.py).
+  const unpacked = (packed) => {
+    const bytes = Uint8Array.from(atob(packed), (character) => character.charCodeAt(0));
+    return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  };
+
   /// Starts the page where there is <div class="live" data-live="<name>">: `build(host, call)` puts what is
   /// live into the host. Where that cannot be, what the page has in that place stays, and is told why.
   const start = (name, build) => {
@@ -445,7 +451,7 @@ window.duetLive = (() => {
       const stay = (why) => {
         place.prepend(element("p", { class: "live-missing" }, why + " This is a picture of what it computes."));
       };
-      if (typeof WebAssembly !== "object") {
+      if (typeof WebAssembly !== "object" || typeof DecompressionStream !== "function") {
         stay("This page computes in the browser by WebAssembly, which is missing or switched off here.");
         continue;
       }
@@ -454,7 +460,7 @@ window.duetLive = (() => {
         stay("What this page computes with was not loaded.");
         continue;
       }
-      factory().then((module) => {
+      unpacked(factory.packed).then((wasmBinary) => factory({ wasmBinary })).then((module) => {
         const page = { calls: {} };
         const host = element("div", { class: "live-host" });
         pages[name] = page;
