@@ -1,0 +1,109 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/scalar_traits.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+/// \file
+/// The iteration of Levenberg and Marquardt, for least-squares problems of any structure.
+
+namespace duet {
+
+/// Termination reason of an iteration of least squares.
+enum class least_squares_stop {
+  small_step,     ///< steps are down to the round-off of the estimate
+  small_decrease, ///< the cost is at a minimum to round-off
+  no_decrease,    ///< no step reduces the cost, however short
+  iteration_limit ///< the maximum number of iterations is used up
+};
+
+/// Name of a `least_squares_stop`.
+[[nodiscard]] inline const char* to_text(least_squares_stop reason) {
+  constexpr std::array names{"small_step", "small_decrease", "no_decrease", "iteration_limit"};
+  return names[std::size_t(reason)];
+}
+
+namespace detail {
+
+/// Options of `levenberg_marquardt`.
+template <Real R>
+struct descent_options {
+  int max_iterations;
+  R initial_damping;                                  ///< 0: a Gauss–Newton step first
+  R rounding;                                         ///< relative round-off of the cost
+  R min_decrease = std::numeric_limits<R>::epsilon(); ///< relative; smaller decreases end it
+  R tolerance = R(1e-11);                             ///< size of steps that are tiny
+  bool is_polished = true; ///< true to go on while tiny steps still shrink
+};
+
+/// Result of `levenberg_marquardt`.
+template <Real R>
+struct descent {
+  int iterations;            ///< number of steps
+  least_squares_stop reason; ///< why it ended
+  R step;                    ///< size of the last step
+};
+
+/// Minimises a sum of squares by damped Gauss–Newton steps (Levenberg, Marquardt). The damping λ
+/// follows the gain ratio, the decrease of the cost over that of the linearised problem.
+///
+/// \param problem  its functions: `linearise()` at the estimate, returns the cost; `solve(λ)`
+///   computes a step, or returns false; of that step `step_size()`,
+///   `predicted_decrease()` and `cost_after_step()`; `accept()` moves the estimate;
+///   `solve_better()` is called before the damping is increased, true if it changed the linear
+///   problem
+template <Real R, class Problem>
+[[nodiscard]] descent<R> levenberg_marquardt(Problem& problem, const descent_options<R>& options) {
+  R damping = options.initial_damping, step(0), before(std::numeric_limits<R>::max()), rate(1);
+  for (int iteration = 1; iteration <= options.max_iterations; ++iteration) {
+    const R cost = problem.linearise();
+    R next(0);
+    for (;;) {
+      const bool has_step = problem.solve(damping);
+      step = has_step ? problem.step_size() : R(0);
+      next = has_step ? problem.cost_after_step() : std::numeric_limits<R>::infinity();
+      const bool is_tiny = has_step && step <= options.tolerance;
+      if (next <= cost * (1 + options.rounding) || (is_tiny && damping == 0)) {
+        break;
+      }
+      if (is_tiny) {
+        return {iteration, least_squares_stop::small_decrease, step};
+      }
+      if (problem.solve_better()) {
+        continue;
+      }
+      damping = damping > 0 ? R(damping * 3) : R(1e-6);
+      if (!(damping < R(1e12))) {
+        return {iteration, least_squares_stop::no_decrease, step};
+      }
+    }
+    const R gain = (cost - next) / problem.predicted_decrease();
+    problem.accept();
+    damping *= gain > R(.75) ? R(.2) : R(1);
+    if (!(damping > R(1e-14))) {
+      damping = 0;
+    }
+    // An error e of the estimate adds e² to the cost, which therefore stops changing before the
+    // steps vanish. Steps shrink, at a rate given by the last two, down to round-off.
+    const bool is_tiny = step <= options.tolerance;
+    const bool is_shrinking = options.is_polished && 2 * step <= before;
+    const R last_rate = std::exchange(rate, damping > 0 ? R(1) : R(step / before));
+    before = step;
+    if ((is_tiny || cost - next <= options.min_decrease * next) &&
+        (!is_shrinking || iteration == options.max_iterations ||
+         step * std::max(rate, last_rate) <= std::numeric_limits<R>::epsilon())) {
+      return {iteration,
+              is_tiny ? least_squares_stop::small_step : least_squares_stop::small_decrease, step};
+    }
+  }
+  return {options.max_iterations, least_squares_stop::iteration_limit, step};
+}
+
+} // namespace detail
+} // namespace duet

@@ -1,0 +1,208 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/manifold.hpp>
+
+#include <Eigen/Core>
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Parameters of an estimation: scalars, vectors, rotations, poses and collections of them, as one
+/// vector of tangent coordinates.
+
+namespace duet::detail {
+
+/// Tangent coordinates of the parameters in an X, `dimension` of them, `Eigen::Dynamic` if known
+/// only at run time:
+///
+/// - `size(x)`: their number
+/// - `at(x, first, coordinate)`: x where coordinate k has the value coordinate(value, first + k),
+///   of any scalar; value is x's, for rotations and poses 0, which then move in body axes
+/// - `values(x, v, first)`: writes the values of scalars and components of vectors into v from
+///   `first` on; NaN for coordinates of rotations and poses
+/// - `name(x, k)`: the name of coordinate k, such as "[2] rotation about x"
+template <class X>
+struct parameters;
+
+template <class X>
+concept ParameterSet = requires {
+  parameters<X>::dimension;
+};
+
+template <std::floating_point X>
+struct parameters<X> {
+  static constexpr int dimension = 1;
+  static Eigen::Index size(const X&) { return 1; }
+  static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
+    return coordinate(double(x), first);
+  }
+  static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) { v[first] = double(x); }
+  static std::string name(const X&, Eigen::Index) { return ""; }
+};
+
+template <EigenMatrix X>
+struct parameters<X> {
+  static constexpr int dimension = X::SizeAtCompileTime;
+  static Eigen::Index size(const X& x) { return x.size(); }
+  static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
+    using D = std::decay_t<decltype(coordinate(0., first))>;
+    Eigen::Matrix<D, fixed_length<D>(X::RowsAtCompileTime), fixed_length<D>(X::ColsAtCompileTime)>
+        y(x.rows(), x.cols());
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      y(i) = coordinate(double(x(i)), first + i);
+    }
+    return y;
+  }
+  static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) {
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      v[first + i] = double(x(i));
+    }
+  }
+  static std::string name(const X&, Eigen::Index k) { return message("[", k, "]"); }
+};
+
+/// Rotations and poses.
+template <class X>
+  requires(!VectorLike<X> && requires { manifold<X>::takes_rates_of_any_scalar; })
+struct parameters<X> {
+  static constexpr int dimension = manifold<X>::dimension;
+  static Eigen::Index size(const X&) { return dimension; }
+  static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
+    Eigen::Matrix<std::decay_t<decltype(coordinate(0., first))>, dimension, 1> delta;
+    for (int k = 0; k < dimension; ++k) {
+      delta[k] = coordinate(0., first + k);
+    }
+    return manifold<X>::plus(x, delta, frame::body);
+  }
+  static void values(const X&, Eigen::VectorXd& v, Eigen::Index first) {
+    v.segment<dimension>(first).setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  static std::string name(const X&, Eigen::Index k) {
+    const bool is_translation = dimension == 6 && k < 3;
+    return message(is_translation ? " translation along " : " rotation about ",
+                   std::string(1, "xyz"[std::size_t(k % 3)]));
+  }
+};
+
+/// Functions that arrays and `std::vector`s share.
+template <class X>
+struct parameters_of_sequence {
+  using element = parameters<typename X::value_type>;
+  static Eigen::Index size(const X& x) {
+    Eigen::Index sum = 0;
+    for (const auto& each : x) {
+      sum += element::size(each);
+    }
+    return sum;
+  }
+  static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) {
+    for (const auto& each : x) {
+      element::values(each, v, first);
+      first += element::size(each);
+    }
+  }
+  static std::string name(const X& x, Eigen::Index k) {
+    std::size_t i = 0;
+    for (; k >= element::size(x[i]); ++i) {
+      k -= element::size(x[i]);
+    }
+    return message("[", i, "]", element::name(x[i], k));
+  }
+};
+
+template <ParameterSet X>
+struct parameters<std::vector<X>> : parameters_of_sequence<std::vector<X>> {
+  static constexpr int dimension = Eigen::Dynamic;
+  static auto at(const std::vector<X>& x, Eigen::Index first, const auto& coordinate) {
+    std::vector<decltype(parameters<X>::at(x[0], first, coordinate))> y;
+    y.reserve(x.size());
+    for (const X& each : x) {
+      y.push_back(parameters<X>::at(each, first, coordinate));
+      first += parameters<X>::size(each);
+    }
+    return y;
+  }
+};
+
+template <ParameterSet X, std::size_t N>
+struct parameters<std::array<X, N>> : parameters_of_sequence<std::array<X, N>> {
+  static constexpr int dimension =
+      parameters<X>::dimension < 0 ? Eigen::Dynamic : int(N) * parameters<X>::dimension;
+  static auto at(const std::array<X, N>& x, Eigen::Index first, const auto& coordinate) {
+    const auto next = [&](const X& each) {
+      return parameters<X>::at(each, std::exchange(first, first + parameters<X>::size(each)),
+                               coordinate);
+    };
+    return std::apply([&](const auto&... each) { return std::array{next(each)...}; }, x);
+  }
+};
+
+template <ParameterSet... X>
+  requires(sizeof...(X) > 0)
+struct parameters<std::tuple<X...>> {
+  static constexpr int dimension =
+      ((parameters<X>::dimension < 0) || ...) ? Eigen::Dynamic : (parameters<X>::dimension + ...);
+  static Eigen::Index size(const std::tuple<X...>& x) {
+    return std::apply([](const X&... each) { return (parameters<X>::size(each) + ...); }, x);
+  }
+  static auto at(const std::tuple<X...>& x, Eigen::Index first, const auto& coordinate) {
+    return std::apply(
+        [&](const X&... each) { // braces, so that elements are taken in order
+          return std::tuple<decltype(parameters<X>::at(each, first, coordinate))...>{
+              parameters<X>::at(each, std::exchange(first, first + parameters<X>::size(each)),
+                                coordinate)...};
+        },
+        x);
+  }
+  static void values(const std::tuple<X...>& x, Eigen::VectorXd& v, Eigen::Index first) {
+    std::apply(
+        [&](const X&... each) {
+          (parameters<X>::values(each, v, std::exchange(first, first + parameters<X>::size(each))),
+           ...);
+        },
+        x);
+  }
+  static std::string name(const std::tuple<X...>& x, Eigen::Index k) {
+    std::string result;
+    int argument = 0;
+    const auto visit = [&]<class Each>(const Each& each) {
+      const Eigen::Index count = parameters<Each>::size(each);
+      if (0 <= k && k < count) {
+        result = message("argument ", argument, parameters<Each>::name(each, k));
+      }
+      k -= count;
+      ++argument;
+    };
+    std::apply([&](const X&... each) { (visit(each), ...); }, x);
+    return result;
+  }
+};
+
+/// Replaces rotations and poses by units, from which steps deviate by round-off.
+template <class X>
+void normalise(X& x) {
+  if constexpr (requires { manifold<X>::takes_rates_of_any_scalar; } && !VectorLike<X>) {
+    x = normalized(x);
+  } else if constexpr (is_tuple<X>) {
+    std::apply([](auto&... each) { (normalise(each), ...); }, x);
+  } else if constexpr (!EigenMatrix<X> && requires { x.begin(); }) {
+    for (auto& each : x) {
+      normalise(each);
+    }
+  }
+}
+
+} // namespace duet::detail
