@@ -21,5 +21,4 @@
     "duet: -ffast-math drops NaN, infinities and signed zeros, on which structural zeros rely; compile without it, or define DUET_ALLOW_FAST_MATH to take that risk"
 #endif
 
-#include <duet/core/compiler/attributes.hpp>
 #include <duet/core/compiler/target.hpp>

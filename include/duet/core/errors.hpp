@@ -2,8 +2,10 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/error_handler.hpp>
 
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <initializer_list>
 #include <sstream>
 #include <stdexcept>
@@ -12,7 +14,81 @@
 #include <type_traits>
 
 /// \file
-/// Exceptions thrown by duet. Each message names the function, the problem and the value.
+/// Exceptions thrown by duet, each message with the function, the problem and the value; errors
+/// without exceptions. The only header with `throw`, `try` and `catch`. All files that are linked
+/// together are compiled with exceptions, or all without.
+
+namespace duet {
+
+/// Function called with the message of an error in programs without exceptions.
+using error_handler = void (*)(const char* message);
+
+namespace detail {
+inline std::atomic<error_handler> current_error_handler = nullptr;
+} // namespace detail
+
+/// Sets the handler called with the message of an error in programs that are compiled without
+/// exceptions (`-fno-exceptions`), in the thread of the error. The program does not continue: if
+/// the handler returns, or is null (the default), the message goes to the standard error stream,
+/// and `std::abort` is called. With exceptions they are thrown, and the handler is not called.
+///
+/// \return the previous handler
+inline error_handler set_error_handler(error_handler handler) noexcept {
+  return detail::current_error_handler.exchange(handler);
+}
+
+} // namespace duet
+
+namespace duet::detail {
+
+/// Throws the error; without exceptions, calls the handler set by `set_error_handler` and ends the
+/// program.
+template <class Error>
+[[noreturn]] DUET_COLD DUET_OUT_OF_LINE void raise(Error error) {
+#ifdef __cpp_exceptions
+  throw error;
+#else
+  if (const error_handler handler = current_error_handler) {
+    handler(error.what());
+  }
+  std::fprintf(stderr, "%s\n", error.what());
+  std::abort();
+#endif
+}
+
+/// Calls `body`, and `on_error` with an `Error` that is thrown in it; if `Error` is `void`, without
+/// argument for anything thrown. Without exceptions no error leaves the body.
+template <class Error, class Body, class Handler>
+DUET_ALWAYS_INLINE void catching(const Body& body, [[maybe_unused]] const Handler& on_error) {
+#ifdef __cpp_exceptions
+  if constexpr (std::is_void_v<Error>) {
+    try {
+      body();
+    } catch (...) {
+      on_error();
+    }
+  } else {
+    try {
+      body();
+    } catch (const Error& error) {
+      on_error(error);
+    }
+  }
+#else
+  body();
+#endif
+}
+
+/// Rethrows the exception being handled by a `catching`.
+[[noreturn]] inline void raise_again() {
+#ifdef __cpp_exceptions
+  throw;
+#else
+  std::abort();
+#endif
+}
+
+} // namespace duet::detail
 
 namespace duet {
 

@@ -117,3 +117,18 @@ template <class F, class X, class... Rest>
 }
 
 } // namespace duet
+
+namespace duet::detail {
+
+/// T(), or zeros if T is a matrix of fixed size, whose default constructor leaves its entries
+/// uninitialised.
+template <class T>
+[[nodiscard]] constexpr T zero_initialized() {
+  if constexpr (requires { requires(T::SizeAtCompileTime > 0); }) {
+    return T::Zero();
+  } else {
+    return T();
+  }
+}
+
+} // namespace duet::detail

@@ -1,16 +1,22 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/function.hpp>
-#include <duet/dual/eigen_structure.hpp>
+#include <duet/dual/eigen_traits.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/partials.hpp>
+#include <duet/dual/promotion.hpp>
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <tuple>
 #include <type_traits>
@@ -18,7 +24,86 @@
 #include <vector>
 
 /// \file
-/// Arguments of several components. For those who extend duet.
+/// Functions and arguments as the drivers take them: traits of functions, arguments of several
+/// components, and seeding, which makes components the variables of a differentiation. For those
+/// who extend duet.
+
+namespace duet::detail {
+
+/// X, or the vector or matrix that X evaluates to if it is an expression of Eigen.
+template <class X>
+struct own {
+  using type = X;
+};
+template <class X>
+  requires EigenMatrix<X>
+struct own<X> {
+  using type = typename X::PlainObject;
+};
+template <class X>
+using own_t = typename own<X>::type;
+
+/// The tag of a driver: the caller's, or the differentiated function.
+template <class Chosen, class F>
+using tag_for = std::conditional_t<std::is_void_v<Chosen>, derivative_tag<std::decay_t<F>>,
+                                   derivative_tag<Chosen>>;
+
+/// A parameter that holds real numbers alone.
+template <class A>
+concept RealParameter = Arithmetic<A> || Real<A> ||(Structured<A>&& requires {
+  requires Arithmetic<typename structure<A>::scalar> || Real<typename structure<A>::scalar>;
+});
+
+template <class R, class... A>
+std::bool_constant<(sizeof...(A) > 0 && (RealParameter<std::decay_t<A>> && ...))>
+    has_real_parameters(R (*)(A...));
+template <class R, class C, class... A>
+std::bool_constant<(sizeof...(A) > 0 && (RealParameter<std::decay_t<A>> && ...))>
+    has_real_parameters(R (C::*)(A...));
+template <class R, class C, class... A>
+std::bool_constant<(sizeof...(A) > 0 && (RealParameter<std::decay_t<A>> && ...))>
+has_real_parameters(R (C::*)(A...) const);
+
+/// A function, or an object with one `operator()`, of real numbers, which cannot be differentiated.
+template <class F>
+concept FunctionOfReals = requires(std::decay_t<F> f) {
+  requires decltype(has_real_parameters(f))::value;
+}
+|| requires { requires decltype(has_real_parameters(&std::decay_t<F>::operator()))::value; };
+
+/// Any other function: accepted by the drivers. (Formulas have separate drivers.)
+template <class F>
+concept FunctionOfAny = !FunctionOfReals<F> && !is_symbolic<std::remove_cvref_t<F>>;
+
+/// Result of a user's function, as an owning object. (Its type is deduced, so that compilers report
+/// the error first, even if only the type is needed.)
+template <class X>
+[[nodiscard]] constexpr auto result_of_call(X&& x) {
+  using result = std::remove_cvref_t<X>;
+  require_owning_result<result>();
+  static_assert(
+      refers_elsewhere<result> || requires { sizeof(structure<result>); },
+      "duet: a function must return a scalar, an Eigen vector or matrix, a rotation, a "
+      "pose, or an array, standard vector, tuple or pair of these");
+  return std::forward<X>(x);
+}
+
+} // namespace duet::detail
+
+namespace duet {
+
+/// Callable with a separate function `jacobian`, such as a mechanism, which is not differentiated
+/// as a callable. For those who extend duet.
+template <class F>
+concept HasOwnJacobian = requires {
+  typename std::remove_cvref_t<F>::own_jacobian;
+};
+
+} // namespace duet
+
+/// Message for a function of real numbers passed to `driver`.
+#define DUET_REFUSED_FUNCTION(driver)                                                              \
+  DUET_REFUSED(#driver ": the function must take any scalar: [](const auto& x) { ... }")
 
 namespace duet {
 namespace detail {
@@ -235,3 +320,106 @@ concept VectorLike = Variables<X> && !detail::is_tuple<X>;
   DUET_REFUSED("differentiate with respect to a vector, not to a matrix: " #driver                 \
                "(f, x.reshaped(), " rest ")")                                                      \
   __VA_ARGS__ driver(F&&, const X&, J&&);
+
+namespace duet {
+namespace detail {
+
+/// Maximum number of components differentiated in a single pass.
+inline constexpr int single_pass_limit = 32;
+/// Maximum number of components per pass if there are several passes, which are as few as possible.
+/// Measured: each pass computes all values again, but longer rows cost more per partial, the sooner
+/// the shorter vectors are.
+inline constexpr int pass_limit = DUET_BATCH_BYTES < 64 ? 50 : 64;
+/// Components per pass over a vector whose size is known only at run time: a short one pays for
+/// all.
+inline constexpr int chunk = 16;
+
+/// Partials per pass, for passes of equal size.
+[[nodiscard]] constexpr int balanced_chunk(int size) {
+  const int passes = std::max(1, (size + pass_limit - 1) / pass_limit);
+  return std::max(1, (size + passes - 1) / passes);
+}
+
+/// Partials per pass over the components of an X; `Chosen` by the caller, or 0 for the default.
+template <class X, int Chosen = 0>
+inline constexpr int
+    partials_per_pass = Chosen > 0 ? Chosen
+                        : vector_argument<X>::size_at_compile_time == Eigen::Dynamic
+                            ? chunk
+                            : balanced_chunk(vector_argument<X>::size_at_compile_time);
+
+/// x over D, every component a constant.
+template <class D, class X>
+[[nodiscard]] auto constants(const X& x) {
+  using argument = vector_argument<X>;
+  auto result = argument::template make<D>(x);
+  for (Eigen::Index i = 0; i < argument::size(x); ++i) {
+    component(result, i) = D(argument::get(x, i));
+  }
+  return result;
+}
+
+/// x, of a size known at compile time, over D, every component a variable.
+template <class D, class X>
+[[nodiscard]] auto seeded(const X& x) {
+  using argument = vector_argument<X>;
+  auto result = argument::template make<D>(x);
+  unrolled<argument::size_at_compile_time>([&](int i) DUET_INLINE_LAMBDA {
+    component(result, i) = D::variable(argument::get(x, i), i);
+  });
+  return result;
+}
+
+/// x + ε v over D.
+///
+/// \throws invalid_input if the sizes differ; the message names the driver and v
+template <class D, class X, class V>
+[[nodiscard]] auto moving(const char* driver, const X& x, const char* name, const V& v) {
+  using T = typename D::value_type;
+  using argument = vector_argument<X>;
+  using direction = vector_argument<V>;
+  require(argument::size(x) == direction::size(v), "duet: ", driver, ": the point has ",
+          argument::size(x), " components, the ", name, " ", direction::size(v));
+  auto result = argument::template make<D>(x);
+  for (Eigen::Index i = 0; i < argument::size(x); ++i) {
+    component(result, i) = D(T(argument::get(x, i)), T(direction::get(v, i)));
+  }
+  return result;
+}
+
+/// x over the duals of one pass over its components, every one a constant.
+template <class Tag, int Chosen, class X>
+[[nodiscard]] auto constants_of_pass(const X& x) {
+  return constants<dual<typename vector_argument<X>::scalar, partials_per_pass<X, Chosen>, Tag>>(x);
+}
+
+/// Calls visit(f(x seeded from `first`), first, count) for every pass over the components of x.
+/// Between passes only the nonzero partials change.
+template <class Tag, int Chosen = 0, class F, class X, class Visit>
+void for_each_pass(F&& f, const X& x, Visit&& visit) {
+  using argument = vector_argument<X>;
+  constexpr int n = partials_per_pass<X, Chosen>;
+  using T = typename argument::scalar;
+  using D = dual<T, n, Tag>;
+  const Eigen::Index size = argument::size(x);
+  if constexpr (0 < argument::size_at_compile_time && argument::size_at_compile_time <= n) {
+    const auto variables = seeded<D>(x);
+    visit(result_of_call(call(f, variables)), 0, size);
+  } else {
+    auto variables = constants<D>(x);
+    for (Eigen::Index first = 0; first < size; first += n) {
+      const Eigen::Index count = std::min<Eigen::Index>(n, size - first);
+      const auto set_diagonal = [&](const T& slope) {
+        for (Eigen::Index i = 0; i < count; ++i) {
+          component(variables, first + i).set_partial(int(i), slope);
+        }
+      };
+      set_diagonal(T(1));
+      visit(result_of_call(call(f, variables)), first, count);
+      set_diagonal(T(0));
+    }
+  }
+}
+
+} // namespace detail
+} // namespace duet

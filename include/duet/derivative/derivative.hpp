@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
-#include <duet/core/zero_initialized.hpp>
-#include <duet/derivative/function.hpp>
+#include <duet/core/config.hpp>
+#include <duet/core/structure.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/parts.hpp>
 

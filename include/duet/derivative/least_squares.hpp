@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/derivative/function.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>

@@ -7,7 +7,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/derivative/matrix_parts.hpp>
-#include <duet/dual/eigen_structure.hpp>
+#include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>

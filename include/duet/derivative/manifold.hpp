@@ -3,9 +3,8 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/function.hpp>
-#include <duet/dual/eigen_structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/promotion.hpp>
 

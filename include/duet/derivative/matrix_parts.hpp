@@ -3,10 +3,10 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
-#include <duet/derivative/function.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual/eigen_traits.hpp>
+#include <duet/dual/partials.hpp>
 #include <duet/dual/parts.hpp>
-#include <duet/dual/storage/structural_zero.hpp>
 
 #include <Eigen/Core>
 

@@ -4,10 +4,8 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
-#include <duet/derivative/seed.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/parts.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/zero_initialized.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/derivative/matrix_parts.hpp>
 
 #include <Eigen/Core>

@@ -1,18 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/derivative/seed.hpp>
+#include <duet/dual/partials.hpp>
 #include <duet/dual/parts.hpp>
-#include <duet/dual/storage/partials.hpp>
 
 #include <Eigen/Core>
 

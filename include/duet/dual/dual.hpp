@@ -3,11 +3,9 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/dual/algebra.hpp>
 #include <duet/dual/level.hpp>
+#include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual/storage/partials.hpp>
-#include <duet/dual/storage/structural_zero.hpp>
 
 #include <algorithm>
 #include <concepts>

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual/storage/partials.hpp>
+#include <duet/dual/partials.hpp>
 
 #include <algorithm>
 #include <array>

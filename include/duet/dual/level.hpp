@@ -1,16 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/promotion.hpp>
 
 #include <concepts>
+#include <type_traits>
 
 /// \file
-/// Interface of infinitesimal numbers. `dual`, `taylor` and `second_order_dual` implement it, in
-/// one header each; functions, rotations, matrices, lanes and drivers use nothing else. Another one
-/// is a class that fulfils `Level`, has the kernels that `detail::infinitesimal_operators` turns
-/// into operators, and specialises `scalar_traits`. For those who extend duet.
+/// Interface and operators of infinitesimal numbers. `dual`, `taylor` and
+/// `second_order_dual` implement the interface, in one header each; functions, rotations, matrices,
+/// lanes and drivers use nothing else. Another one is a class that fulfils `Level`, has the kernels
+/// that `detail::infinitesimal_operators` turns into operators, and specialises `scalar_traits`.
+/// For those who extend duet.
 
 namespace duet {
 namespace detail {
@@ -25,7 +28,7 @@ struct level_traits {
   static constexpr int order = scalar_traits<T>::order + Order;
 };
 
-/// Sine and cosine of one argument, see rules/lift.hpp.
+/// Sine and cosine of one argument, see rules/elementary.hpp.
 template <class T>
 struct sine_cosine;
 
@@ -74,3 +77,255 @@ concept Level = Infinitesimal<D> &&
 };
 
 } // namespace duet
+
+namespace duet::detail {
+
+/// Type of a constant operand of type U in the kernels, usually T. Arithmetic constants stay plain
+/// at any nesting depth of T, or their zero partials would meet infinite values; also if T is over
+/// another field than the reals, so that x · 2 is the product of that field: a complex 2 would cost
+/// digits and signs of zeros.
+template <class T, class U>
+using operand_t = std::conditional_t<Arithmetic<U>, constant_t<T>, T>;
+
+/// Base of an infinitesimal number D over T, which supplies the kernels: `sum`, `difference`,
+/// `product`, `quotient` of two D, `negated`, `plus`, `times`, `divided_by` with an operand_t, and
+/// `dividing` with a T.
+template <class D, class T>
+struct infinitesimal_operators {
+  /// Drops the derivatives; explicit for that reason.
+  template <Arithmetic U>
+    requires std::constructible_from<U, T>
+  [[nodiscard]] constexpr explicit operator U() const {
+    return static_cast<U>(static_cast<const D&>(*this).value());
+  }
+
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a) { return a; }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a) { return a.negated(); }
+
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a, const D& b) {
+    return D::sum(a, b);
+  }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a, const D& b) {
+    return D::difference(a, b);
+  }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const D& a, const D& b) {
+    return D::product(a, b);
+  }
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const D& a, const D& b) {
+    return D::quotient(a, b);
+  }
+
+  // A constant operand is not widened to a number, which would multiply by zeros.
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const D& a, const U& b) {
+    return a.plus(static_cast<operand_t<T, U>>(b));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator+(const U& a, const D& b) {
+    return b.plus(static_cast<operand_t<T, U>>(a));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const D& a, const U& b) {
+    using operand = operand_t<T, U>;
+    return a.plus(operand(-static_cast<operand>(b)));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator-(const U& a, const D& b) {
+    return b.negated().plus(static_cast<operand_t<T, U>>(a));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const D& a, const U& b) {
+    return a.times(static_cast<operand_t<T, U>>(b));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator*(const U& a, const D& b) {
+    return b.times(static_cast<operand_t<T, U>>(a));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const D& a, const U& b) {
+    return a.divided_by(static_cast<operand_t<T, U>>(b));
+  }
+  template <ConstantOf<D> U>
+  [[nodiscard]] friend DUET_ALWAYS_INLINE constexpr D operator/(const U& a, const D& b) {
+    return b.dividing(static_cast<T>(a));
+  }
+
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator+=(D& a, const U& b) {
+    return a = a + b;
+  }
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator-=(D& a, const U& b) {
+    return a = a - b;
+  }
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator*=(D& a, const U& b) {
+    return a = a * b;
+  }
+  template <std::convertible_to<D> U>
+  friend DUET_ALWAYS_INLINE constexpr D& operator/=(D& a, const U& b) {
+    return a = a / b;
+  }
+  friend DUET_ALWAYS_INLINE constexpr void swap(D& a, D& b) {
+    const D c = a;
+    a = b;
+    b = c;
+  }
+  friend constexpr D& operator++(D& a) { return a = a.plus(T(1)); }
+  friend constexpr D& operator--(D& a) { return a = a.plus(T(-1)); }
+  friend constexpr D operator++(D& a, int) {
+    const D before = a;
+    ++a;
+    return before;
+  }
+  friend constexpr D operator--(D& a, int) {
+    const D before = a;
+    --a;
+    return before;
+  }
+};
+
+#define DUET_REFUSES_ASSIGNMENT(op)                                                                \
+  template <Arithmetic A, Infinitesimal D>                                                         \
+  DUET_REFUSED("a sum or product of numbers with derivatives has their type: if x is one of "      \
+               "them, write decltype(x) s = 0 instead of double s = 0")                            \
+  A&                                                                                               \
+  operator op(A&, const D&);
+DUET_REFUSES_ASSIGNMENT(+=)
+DUET_REFUSES_ASSIGNMENT(-=)
+DUET_REFUSES_ASSIGNMENT(*=)
+DUET_REFUSES_ASSIGNMENT(/=)
+#undef DUET_REFUSES_ASSIGNMENT
+
+// Concepts of two types list the second type first, for `template <class A, …<A> B>`.
+
+/// At least one of the two is infinitesimal, and they can meet.
+template <class B, class A>
+concept MixedScalars = (Infinitesimal<A> || Infinitesimal<B>)&&(Scalar<A> || Arithmetic<A>)&&(
+    Scalar<B> || Arithmetic<B>)&&Promotable<B, A>;
+
+/// Their common numbers are ordered, which complex numbers are not.
+template <class B, class A>
+concept OrderedScalars = MixedScalars<B, A> && requires(const real_type_t<promote_t<A, B>>& x) {
+  x < x;
+};
+
+/// Numbers whose functions follow from those of their components: of the numbers below an
+/// infinitesimal one, of the lanes of a batch.
+template <class T>
+concept Lifted = Infinitesimal<T> || lane_traits<T>::is_batch;
+
+/// Over the reals, where functions need not be analytic.
+template <class T>
+concept LiftedReal = Lifted<T> && Real<real_type_t<T>>;
+
+/// Over the reals, or over complex numbers of built-in precision: for others `<complex>` provides
+/// only exponentials, logarithms, roots and functions made of these.
+template <class T>
+concept LiftedAnalytic = LiftedReal<T> ||(Lifted<T>&& std::floating_point<constant_t<T>>);
+
+/// At least one of the two is lifted, and they meet in numbers over the reals.
+template <class B, class A>
+concept MixedReals = (Lifted<A> || Lifted<B>)&&Promotable<B, A>&& LiftedReal<promote_t<A, B>>;
+
+/// Neither is a constant for the other: both must be brought to their common nesting first.
+template <class B, class A>
+concept DifferentNestings = (Infinitesimal<A> || Infinitesimal<B>)&&Scalar<A>&& Scalar<B> &&
+                            !std::is_same_v<A, B> && Promotable<B, A> && !ConstantOf<A, B> &&
+                            !ConstantOf<B, A>;
+
+/// Numbers of one differentiation, but with different numbers of partials or different orders.
+template <class B, class A>
+concept DifferentSizes = Infinitesimal<A> && Infinitesimal<B> && !Promotable<B, A> &&
+                         Promotable<real_type_t<A>, real_type_t<B>>;
+
+/// Appears in the declaration of deleted operators, for compilers to quote.
+struct different_numbers_of_partials_or_orders {};
+
+/// The value of x for a comparison of A and B. Fields other than the reals need not compare with
+/// every arithmetic type; to built-in reals an integer is converted here, as a literal would be,
+/// because of -Wconversion.
+template <class A, class B, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr decltype(auto) comparable(const X& x) {
+  using number = real_type_t<promote_t<A, B>>;
+  if constexpr (std::integral<X> && std::floating_point<number>) {
+    return static_cast<number>(x);
+  } else if constexpr (Real<number>) {
+    return innermost(x);
+  } else {
+    return number(innermost(x));
+  }
+}
+
+} // namespace duet::detail
+
+namespace duet {
+// Comparisons use values only, as an `if` in the differentiated function should.
+template <class A, detail::MixedScalars<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator==(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) == detail::comparable<A, B>(b);
+}
+template <class A, detail::MixedScalars<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator!=(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) != detail::comparable<A, B>(b);
+}
+template <class A, detail::OrderedScalars<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) < detail::comparable<A, B>(b);
+}
+template <class A, detail::OrderedScalars<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<=(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) <= detail::comparable<A, B>(b);
+}
+template <class A, detail::OrderedScalars<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) > detail::comparable<A, B>(b);
+}
+template <class A, detail::OrderedScalars<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>=(const A& a, const B& b) {
+  return detail::comparable<A, B>(a) >= detail::comparable<A, B>(b);
+}
+
+template <class A, detail::DifferentNestings<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) + static_cast<common>(b);
+}
+template <class A, detail::DifferentNestings<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) - static_cast<common>(b);
+}
+template <class A, detail::DifferentNestings<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) * static_cast<common>(b);
+}
+template <class A, detail::DifferentNestings<A> B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator/(const A& a, const B& b) {
+  using common = promote_t<A, B>;
+  return static_cast<common>(a) / static_cast<common>(b);
+}
+
+template <class A, detail::DifferentSizes<A> B>
+auto operator+(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, detail::DifferentSizes<A> B>
+auto operator-(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, detail::DifferentSizes<A> B>
+auto operator*(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+template <class A, detail::DifferentSizes<A> B>
+auto operator/(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+
+} // namespace duet
+
+namespace std {
+
+template <class A, duet::detail::MixedScalars<A> B>
+struct common_type<A, B> {
+  using type = duet::promote_t<A, B>;
+};
+
+} // namespace std

@@ -3,8 +3,8 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
+#include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual/storage/structural_zero.hpp>
 
 #include <type_traits>
 

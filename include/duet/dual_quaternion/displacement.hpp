@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/known_constant.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch/lanes.hpp>
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/batch/batch.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/distance.hpp>

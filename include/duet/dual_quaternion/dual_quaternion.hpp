@@ -5,7 +5,6 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 

@@ -3,14 +3,13 @@
 
 #include <duet/core/config.hpp>
 
-#include <duet/core/compiler/refused.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 // Included so that every user of poses can differentiate with respect to them.
 #include <duet/dual_quaternion/twist.hpp>
-#include <duet/quaternion/foreign.hpp>
+#include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/select.hpp>
-#include <duet/core/zero_initialized.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>

@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/foreign.hpp>
+#include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>

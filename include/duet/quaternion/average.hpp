@@ -1,12 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
-#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>

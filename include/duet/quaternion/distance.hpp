@@ -3,7 +3,6 @@
 
 #include <duet/dual/promotion.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 

@@ -1,22 +1,24 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/batch.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/constants.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
+#include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual/rules/universal_functions.hpp>
+#include <duet/dual/rules/elementary.hpp>
 #include <duet/dual/stumpff.hpp>
-#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
-#include <duet/quaternion/undetermined.hpp>
 
+#include <array>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 /// \file
@@ -25,6 +27,36 @@
 ///
 /// All are computed from s = v·v by functions that are regular at s = 0, so the identity, a pure
 /// translation and every order of derivative need no special case.
+
+namespace duet::detail {
+
+template <class R>
+struct undetermined_rule {
+  R chosen;
+
+  template <class T>
+  T value(const T&, const T&, const T&) const {
+    return T(chosen);
+  }
+  template <class T>
+  std::array<T, 3> slopes(const T&, const T&, const T&, const T&) const {
+    const T nan(std::numeric_limits<real_type_t<T>>::quiet_NaN());
+    return {nan, nan, nan};
+  }
+};
+
+/// `chosen`, to which the values at neighbouring x, y, z do not tend: its derivatives are NaN,
+/// except with respect to variables that x, y and z do not depend on.
+template <class T>
+[[nodiscard]] T undetermined(const real_type_t<T>& chosen, const T& x, const T& y, const T& z) {
+  if constexpr (Infinitesimal<T>) {
+    return lift(undetermined_rule<real_type_t<T>>{chosen}, x, y, z);
+  } else {
+    return chosen;
+  }
+}
+
+} // namespace duet::detail
 
 namespace duet {
 

@@ -1,12 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/batch.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/select.hpp>
-#include <duet/dual/storage/structural_zero.hpp>
-#include <duet/quaternion/foreign.hpp>
+#include <duet/dual/partials.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <algorithm>

@@ -1,10 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Core>

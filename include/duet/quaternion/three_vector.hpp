@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/known_constant.hpp>
+#include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
@@ -13,8 +13,96 @@
 /// Three components in registers, used for vectors inside duet; users pass and receive Eigen's
 /// vectors. Eigen's expressions are not `constexpr`, and would load two coefficients at once just
 /// after they were stored one by one, which stalls the processor.
+///
+/// Components that are 0 or ±1 may be types, so that products with them vanish at compile time. (A
+/// compiler may not drop 0·x by itself: x could be infinite.)
 
 namespace duet::detail {
+
+template <int N>
+struct static_number {
+  static_assert(-1 <= N && N <= 1);
+};
+using known_zero = static_number<0>;
+using known_one = static_number<1>;
+
+template <class X>
+concept Number = Scalar<X> || Arithmetic<X>;
+
+template <int N, int M>
+[[nodiscard]] constexpr auto operator*(static_number<N>, static_number<M>) {
+  return static_number<N * M>{};
+}
+template <int N, Number B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(static_number<N> zero, const B& b) {
+  if constexpr (N == 0) {
+    return zero;
+  } else if constexpr (N > 0) {
+    return b;
+  } else {
+    return B(-b);
+  }
+}
+template <Number A, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, static_number<N> n) {
+  return n * a;
+}
+
+template <int N>
+[[nodiscard]] constexpr auto operator-(static_number<N>) {
+  return static_number<-N>{};
+}
+
+template <int N, int M>
+[[nodiscard]] constexpr auto operator+(static_number<N>, static_number<M>) {
+  return static_number<N + M>{};
+}
+template <Number A, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, static_number<N>) {
+  if constexpr (N == 0) {
+    return a;
+  } else {
+    return A(a + N);
+  }
+}
+template <int N, Number B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(static_number<N> n, const B& b) {
+  return b + n;
+}
+
+template <class A, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, static_number<N> n) {
+  return a + -n;
+}
+template <int N, Number B>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(static_number<N>, const B& b) {
+  if constexpr (N == 0) {
+    return B(-b);
+  } else {
+    return B(N - b);
+  }
+}
+
+/// The constant returned by a stateless callable, as a type if it is 0 or ±1.
+template <class Get>
+[[nodiscard]] constexpr auto known(Get get) {
+  constexpr auto value = Get{}();
+  if constexpr (value == 0 || value == 1 || value == -1) {
+    return static_number<int(value)>{};
+  } else {
+    return get();
+  }
+}
+
+/// Conversion of any of them to a number.
+template <class S, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr S number(const X& x) {
+  return S(x);
+}
+template <class S, int N>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr S number(static_number<N>) {
+  return S(N);
+}
 
 /// (x, y, z): each a scalar or a constant known at compile time.
 template <class X, class Y = X, class Z = X>

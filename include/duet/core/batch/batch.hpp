@@ -1,13 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-// First, as it checks the C++ version.
 #include <duet/core/config.hpp>
 
-#include <duet/core/batch/packets.hpp>
+#include <duet/core/compiler/instructions.hpp>
+#include <duet/core/compiler/vector.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
+#include <duet/core/structure.hpp>
 
+#include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <limits>
@@ -18,6 +21,53 @@
 /// \file
 /// Several real numbers at once as one scalar (SIMD): every formula of the library over `batch` is
 /// its own vector version. Functions of batches are in batch/math.hpp.
+///
+/// Batches are split into lanes, and lanes joined to batches, for tables and for code with too many
+/// branches to take all lanes in one step. These functions reach the scalars inside any object by
+/// `structure`, and infinitesimal numbers by their parts.
+
+namespace duet::detail {
+
+template <class T>
+inline constexpr int native_lanes = 1;
+template <>
+inline constexpr int native_lanes<float> = DUET_BATCH_BYTES / int(sizeof(float));
+template <>
+inline constexpr int native_lanes<double> = DUET_BATCH_BYTES / int(sizeof(double));
+
+/// One packet of W lanes of T.
+template <class T, int W>
+struct packet_type {
+  using type = lane_array<T, W>;
+};
+template <class T, int W>
+  requires(W > 1 && (std::same_as<T, float> || std::same_as<T, double>))
+struct packet_type<T, W> {
+  using type = vector_of<T, W>;
+};
+
+/// Storage of W lanes of T: `count` packets of `width` lanes.
+template <class T, int W>
+struct packets {
+  static constexpr int width = native_lanes<T> > 1 && W > native_lanes<T> ? native_lanes<T> : W;
+  static constexpr int count = W / width;
+  using packet = typename packet_type<T, width>::type;
+  using mask = decltype(packet{} == packet{});
+
+  template <class F>
+  DUET_ALWAYS_INLINE static void for_each(F&& f) {
+    [&]<int... P>(std::integer_sequence<int, P...>) DUET_INLINE_LAMBDA { (f(P), ...); }
+    (std::make_integer_sequence<int, count>{});
+  }
+  [[nodiscard]] DUET_ALWAYS_INLINE static packet broadcast(T x) {
+    return [&]<int... I>(std::integer_sequence<int, I...>) DUET_INLINE_LAMBDA {
+      return packet{((void)I, x)...};
+    }
+    (std::make_integer_sequence<int, width>{});
+  }
+};
+
+} // namespace duet::detail
 
 namespace duet {
 DUET_ABI_BEGIN
@@ -263,3 +313,107 @@ template <class T, int W, std::invocable F, std::invocable G>
 
 template <class T, int W>
 class std::numeric_limits<duet::batch<T, W>> : public std::numeric_limits<T> {};
+
+namespace duet {
+
+/// x in lane i; an x without batches is the same in all lanes.
+template <class X>
+  requires(Structured<X> || std::is_enum_v<X>)
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto lane(const X& x, [[maybe_unused]] int i) {
+  const auto of_part = [i](const auto& part) DUET_INLINE_LAMBDA { return lane(part, i); };
+  if constexpr (lane_traits<X>::is_batch) {
+    return x[i];
+  } else if constexpr (Infinitesimal<X> && Batched<X>) {
+    return x.zip(of_part);
+  } else if constexpr (Scalar<X> || Arithmetic<X> || std::is_enum_v<X>) {
+    return x;
+  } else {
+    return map_scalars(of_part, x);
+  }
+}
+
+namespace detail {
+
+/// The object over batches that has x… in its lanes.
+template <class X, class... Rest>
+[[nodiscard]] DUET_ALWAYS_INLINE auto joined(const X& x, const Rest&... rest) {
+  const auto of_parts = [](const auto&... part) DUET_INLINE_LAMBDA { return joined(part...); };
+  if constexpr (Arithmetic<X>) {
+    const X lanes[] = {x, rest...};
+    return batch<X, 1 + int(sizeof...(Rest))>::from_lanes(
+        [&](int i) DUET_INLINE_LAMBDA { return lanes[i]; });
+  } else if constexpr (Infinitesimal<X>) {
+    return x.zip(of_parts, rest...);
+  } else {
+    return map_scalars(of_parts, x, rest...);
+  }
+}
+
+} // namespace detail
+
+/// The object over batches whose lane i of W is get(i).
+template <std::size_t W, class Get>
+[[nodiscard]] DUET_ALWAYS_INLINE auto from_lanes(const Get& get) {
+  return [&]<std::size_t... I>(std::index_sequence<I...>) DUET_INLINE_LAMBDA {
+    return detail::joined(get(I)...);
+  }
+  (std::make_index_sequence<W>{});
+}
+
+/// a in the lanes that are set in the mask, b in the others.
+template <class T, int W, class X>
+[[nodiscard]] DUET_ALWAYS_INLINE X blended(const lane_mask<T, W>& m, const X& a, const X& b) {
+  const auto of_parts = [&](const auto& p, const auto& q)
+                            DUET_INLINE_LAMBDA { return blended(m, p, q); };
+  if constexpr (Infinitesimal<X>) {
+    return a.zip(of_parts, b);
+  } else {
+    return map_scalars(of_parts, a, b);
+  }
+}
+
+/// Number of lanes of the scalars in an object.
+template <class X>
+inline constexpr int lane_count = lane_traits<real_type_t<typename structure<X>::scalar>>::lanes;
+
+namespace detail {
+
+/// The first `count` numbers in memory, then repeats the last of them: surplus lanes at the end of
+/// a range must not matter.
+template <class B>
+[[nodiscard]] DUET_ALWAYS_INLINE B load_some(const typename B::value_type* from,
+                                             std::size_t count) {
+  if (count == std::size_t(B::lanes)) [[likely]] {
+    return B::load(from);
+  }
+  return B::from_lanes([&](int i) { return from[std::min(std::size_t(i), count - 1)]; });
+}
+
+/// Elements of a row, one for each lane.
+template <std::size_t W, class Row>
+[[nodiscard]] DUET_ALWAYS_INLINE auto gathered(const std::array<std::size_t, W>& indices,
+                                               const Row& row) {
+  return from_lanes<W>([&](std::size_t k)
+                           DUET_INLINE_LAMBDA -> const auto& { return row[indices[k]]; });
+}
+
+/// f of the lanes of the arguments one after the other, the results joined again; each is that of
+/// plain numbers. For arguments without lanes it is f itself.
+template <class F, class... X>
+[[nodiscard]] auto by_lane(const F& f, const X&... x) {
+  constexpr int width = std::max({lane_count<X>...});
+  if constexpr (width == 1) {
+    return f(x...);
+  } else {
+    using result = std::decay_t<decltype(f(lane(x, 0)...))>;
+    std::array<result, std::size_t(width)> results;
+    for (int i = 0; i < width; ++i) {
+      results[std::size_t(i)] = f(lane(x, i)...);
+    }
+    return from_lanes<std::size_t(width)>(
+        [&](std::size_t i) DUET_INLINE_LAMBDA -> const result& { return results[i]; });
+  }
+}
+
+} // namespace detail
+} // namespace duet

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/batch/batch.hpp>
-#include <duet/core/batch/lanes.hpp>
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>

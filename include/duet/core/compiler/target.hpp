@@ -2,7 +2,8 @@
 #pragma once
 
 /// \file
-/// Detection of the compiler and the target.
+/// Detection of the compiler and the target; attributes and pragmas, all of them empty in plain
+/// C++20.
 ///
 /// This folder is the seam between duet and a compiler's extensions of C++20: nothing else in
 /// duet's headers names a compiler, a processor or an extension (house/tree). Every name here has a
@@ -60,3 +61,71 @@ inline constexpr bool masks_beat_branches = false;
 #endif
 
 } // namespace duet::detail
+
+/// The arithmetic of small numbers must be inlined whatever the compiler's size heuristics decide:
+/// a call spills every partial to memory. Without optimisation it would only slow down compilation
+/// and debugging.
+#if defined(__OPTIMIZE__) && !defined(DUET_PORTABLE)
+#define DUET_ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define DUET_ALWAYS_INLINE inline
+#endif
+
+/// Inlines a lambda as DUET_ALWAYS_INLINE does a function; placed between its parameters and its
+/// body.
+#if defined(__OPTIMIZE__) && !defined(DUET_PORTABLE)
+#define DUET_INLINE_LAMBDA __attribute__((always_inline))
+#else
+#define DUET_INLINE_LAMBDA
+#endif
+
+/// At the beginning of a body: allows its products and sums to be fused with those around them, if
+/// the target multiplies and adds in one step. g++ does so by itself; clang does it within one
+/// expression only, as if bodies were not inlined. If it is defined as nothing, -ffp-contract alone
+/// decides.
+#ifndef DUET_CONTRACTED
+#if defined(__clang__) && !defined(DUET_PORTABLE)
+#define DUET_CONTRACTED _Pragma("clang fp contract(fast)")
+#else
+#define DUET_CONTRACTED
+#endif
+#endif
+
+/// Attributes: a function that is never inlined, one that is rarely called, a variable that is kept
+/// although it is never read.
+#ifdef DUET_PORTABLE
+#define DUET_OUT_OF_LINE
+#define DUET_COLD
+#define DUET_KEPT
+#else
+#define DUET_OUT_OF_LINE [[gnu::noinline]]
+#define DUET_COLD [[gnu::cold]]
+#define DUET_KEPT [[gnu::used]]
+#endif
+
+/// Marks a member that takes no space if its type is empty. For compatibility with old layouts MSVC
+/// has another name for it and ignores the standard's.
+#ifdef _MSC_VER
+#define DUET_NO_UNIQUE_ADDRESS [[msvc::no_unique_address]]
+#else
+#define DUET_NO_UNIQUE_ADDRESS [[no_unique_address]]
+#endif
+
+/// Compiler barrier: memory may have changed, so that the compiler reads again what it would have
+/// copied to the stack.
+#ifdef DUET_PORTABLE
+#define DUET_REREAD_MEMORY()
+#else
+#define DUET_REREAD_MEMORY() __asm__ volatile("" ::: "memory")
+#endif
+
+/// Precedes a declaration whose use is a mistake. It has no body, and a result of the expected
+/// type, as far as it is known: otherwise compilers first report that the result cannot be used, as
+/// in `std::cout << f(x)` or `const auto [y, dy] = f(x)`.
+///
+/// Plain C++20 gives a warning, and the missing body does not link.
+#ifdef DUET_PORTABLE
+#define DUET_REFUSED(sentence) [[deprecated("duet: " sentence)]]
+#else
+#define DUET_REFUSED(sentence) __attribute__((unavailable("duet: " sentence)))
+#endif

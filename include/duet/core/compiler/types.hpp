@@ -3,11 +3,13 @@
 
 #include <duet/core/config.hpp>
 
+#include <bit>
 #include <string_view>
 #include <type_traits>
 
 /// \file
-/// Type information from compiler built-ins.
+/// Type information from compiler built-ins; `std::bit_cast`, also if the compiler supports it but
+/// the standard library does not, as libc++ 13.
 
 namespace duet::detail {
 
@@ -26,6 +28,16 @@ template <class T>
   return __FUNCSIG__;
 #else
   return __PRETTY_FUNCTION__;
+#endif
+}
+
+/// `std::bit_cast<To>(x)`.
+template <class To, class From>
+[[nodiscard]] constexpr To bit_cast(const From& x) noexcept {
+#ifdef __cpp_lib_bit_cast
+  return std::bit_cast<To>(x);
+#else
+  return __builtin_bit_cast(To, x);
 #endif
 }
 
