@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/error_handler.hpp>
+#include <duet/core/errors.hpp>
 
 #include <cmath>
 

@@ -6,7 +6,6 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
-#include <duet/derivative/second_order.hpp>
 
 #include <array>
 #include <cmath>

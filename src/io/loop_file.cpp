@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/text/closest_names.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/core/text/text_rows.hpp>
+#include <duet/core/text/printable.hpp>
 #include <duet/io/loop_file.hpp>
 #include <duet/kinematics/joint.hpp>
 

@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/compiler/bit_cast.hpp>
+#include <duet/core/compiler/types.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/core/text/text_rows.hpp>
 #include <duet/io/mesh_file.hpp>
 
 #include "xml.hpp"

@@ -2,9 +2,9 @@
 
 #include "table_rows.hpp"
 
+#include <duet/core/text/csv.hpp>
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/core/text/text_rows.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
 

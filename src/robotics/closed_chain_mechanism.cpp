@@ -4,8 +4,8 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
-#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
+#include <duet/core/text/printable.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>

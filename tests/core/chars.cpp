@@ -3,8 +3,7 @@
 // Substitutes for std::from_chars and std::to_chars of floating-point numbers, compared with the
 // standard library if it has them, and with known results.
 
-#include <duet/core/text/from_chars.hpp>
-#include <duet/core/text/to_chars.hpp>
+#include <duet/core/text/number_text.hpp>
 
 #include <doctest/doctest.h>
 

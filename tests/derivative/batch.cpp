@@ -4,7 +4,6 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/linear_solve.hpp>
-#include <duet/derivative/second_order.hpp>
 #include <duet/dual/taylor.hpp>
 
 #include "support/lanes.hpp"

@@ -2,7 +2,7 @@
 
 #include "support/random.hpp"
 
-#include <duet/derivative/equilibrated_matrix.hpp>
+#include <duet/derivative/implicit_function.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>

@@ -3,7 +3,6 @@
 #include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
-#include <duet/derivative/second_order.hpp>
 
 #include <Eigen/Core>
 #include <doctest/doctest.h>

@@ -4,7 +4,6 @@
 #include "support/random.hpp"
 
 #include <duet/core/batch/batch.hpp>
-#include <duet/core/batch/lanes.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual/complex.hpp>
 #include <duet/dual/eigen_traits.hpp>

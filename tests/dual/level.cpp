@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/batch.hpp>
 #include <duet/derivative/linear_solve.hpp>
 #include <duet/dual/dynamic_dual.hpp>
 #include <duet/dual/eigen_traits.hpp>

@@ -3,7 +3,6 @@
 #include "dual_quaternion/cases.hpp"
 
 #include <duet/core/errors.hpp>
-#include <duet/core/known_constant.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/norm.hpp>

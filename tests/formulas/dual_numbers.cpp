@@ -47,7 +47,7 @@ formula dual_product() {
 
 formula dual_inverse() {
   return make_formula(
-      "N11", R"(D^{-1} = \tfrac1a(1 - \varepsilon\tfrac ba))", "operator/", "dual/algebra.hpp",
+      "N11", R"(D^{-1} = \tfrac1a(1 - \varepsilon\tfrac ba))", "operator/", "dual/level.hpp",
       {number, number},
       []<class T>(const numbers<T>& x) { return all<T>(duet::screw_dual<T>(T(1) / d_of(x, 0))); },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {

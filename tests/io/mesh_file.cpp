@@ -2,7 +2,7 @@
 
 #include "support/message.hpp"
 
-#include <duet/core/compiler/bit_cast.hpp>
+#include <duet/core/compiler/types.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/io/mesh_file.hpp>
 

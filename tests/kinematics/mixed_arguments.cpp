@@ -1,9 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
-#include <duet/derivative/second_order.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
 #include <duet/kinematics/joint_efforts.hpp>
 #include <duet/kinematics/robots.hpp>

@@ -3,7 +3,7 @@
 #include <duet/comparison/numeric_derivative.hpp>
 #include <duet/core/progress.hpp>
 #include <duet/core/text/csv.hpp>
-#include <duet/derivative/second_order.hpp>
+#include <duet/derivative/gradient.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/dual_quaternion/nearest.hpp>
 #include <duet/duet.hpp>

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/rounding.hpp>
+#include <duet/core/select.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/rounding.hpp>
+#include <duet/core/select.hpp>
 
 #include <Eigen/Core>
 

@@ -3,7 +3,7 @@
 
 #include "support/random.hpp"
 
-#include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/batch.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/parts.hpp>
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <duet/core/structure.hpp>
-#include <duet/dual/eigen_structure.hpp>
+#include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual_quaternion/pose.hpp>

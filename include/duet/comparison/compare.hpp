@@ -7,9 +7,9 @@
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/comparison/simplified.hpp>
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/progress.hpp>
-#include <duet/derivative/function.hpp>
+#include <duet/derivative/argument.hpp>
 
 #include <algorithm>
 #include <array>

@@ -5,8 +5,8 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/derivative/function.hpp>
-#include <duet/dual/eigen_structure.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/Core>
 

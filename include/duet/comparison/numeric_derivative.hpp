@@ -4,8 +4,7 @@
 #include <duet/comparison/measure.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/core/zero_initialized.hpp>
-#include <duet/derivative/function.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/dual/complex.hpp>
 
 #include <algorithm>

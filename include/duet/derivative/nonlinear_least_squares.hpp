@@ -4,15 +4,12 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/core/zero_initialized.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/function.hpp>
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/levenberg_marquardt.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/parameters.hpp>
-#include <duet/derivative/seed.hpp>
 #include <duet/dual/parts.hpp>
 #include <duet/dual/taylor.hpp>
 
@@ -37,8 +34,8 @@ namespace duet {
 /// Loss ρ(r) of the size r of a residual: r²/2 near zero, less for outliers.
 struct loss_function {
   enum class kind { squares, huber, cauchy, tukey }; ///< forms of losses
-  kind form = kind::squares; ///< form of the loss
-  double scale = 1;          ///< size k of a residual from which it counts less, in its unit
+  kind form = kind::squares;                         ///< form of the loss
+  double scale = 1; ///< size k of a residual from which it counts less, in its unit
 
   /// ρ(r) = r²/2
   [[nodiscard]] static constexpr loss_function squares() { return {}; }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/dual/rules/special.hpp>
+#include <duet/dual/rules/elementary.hpp>
 #include <duet/expression/algebra/power.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/tree/formula.hpp>

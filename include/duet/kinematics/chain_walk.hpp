@@ -5,13 +5,12 @@
 #include <duet/core/compiler/vector.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/known_constant.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/dual/partials.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/dual/rules/lift.hpp>
-#include <duet/dual/storage/partials.hpp>
+#include <duet/dual/rules/elementary.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/joint_step.hpp>

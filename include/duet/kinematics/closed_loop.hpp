@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/derivative/function.hpp>
+#include <duet/derivative/argument.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual/dual.hpp>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
-#include <duet/core/zero_initialized.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/kinematics/box_distance.hpp>

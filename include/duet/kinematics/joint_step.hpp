@@ -2,9 +2,8 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/known_constant.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/rules/lift.hpp>
+#include <duet/dual/rules/elementary.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/rounding.hpp>
+#include <duet/core/select.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/core/zero_initialized.hpp>
 
 #include <Eigen/Core>
 

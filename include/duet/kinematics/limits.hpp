@@ -1,9 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/kinematics/chain_walk.hpp>

@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/batch.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/derivative/gradient.hpp>
-#include <duet/dual/eigen_structure.hpp>
+#include <duet/dual/eigen_traits.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
 

@@ -3,7 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/core/zero_initialized.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/quaternion.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/batch/lanes.hpp>
+#include <duet/core/batch/batch.hpp>
 #include <duet/core/batch/math.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/parallel_for.hpp>

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/number_text.hpp>
+#include <duet/core/text/printable.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/joint_checks.hpp>
 #include <duet/kinematics/robot_description.hpp>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/closest_names.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/robot_contents.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/parallel_for.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>

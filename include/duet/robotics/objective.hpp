@@ -2,9 +2,8 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/zero_initialized.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/derivative/function.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 

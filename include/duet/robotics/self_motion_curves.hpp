@@ -3,7 +3,6 @@
 
 #include <duet/core/config.hpp>
 
-#include <duet/core/compiler/refused.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/serial_chain.hpp>

@@ -1,11 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/core/zero_initialized.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/quaternion.hpp>
 

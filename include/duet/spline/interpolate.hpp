@@ -1,10 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/refused.hpp>
+#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
-#include <duet/quaternion/foreign.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/blocks.hpp>
 #include <duet/spline/cumulative_bspline.hpp>

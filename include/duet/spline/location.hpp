@@ -3,8 +3,8 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/core/text/number_text.hpp>
 
 #include <algorithm>

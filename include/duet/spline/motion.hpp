@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/zero_initialized.hpp>
+#include <duet/core/structure.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual/promotion.hpp>

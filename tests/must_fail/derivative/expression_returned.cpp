@@ -4,8 +4,8 @@
 // Every driver rejects functions that return expressions: they refer to variables that are gone.
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/derivative/gradient.hpp>
 #include <duet/derivative/implicit_function.hpp>
-#include <duet/derivative/second_order.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/quaternion/rotation.hpp>
 

@@ -5,7 +5,6 @@
 
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
-#include <duet/derivative/second_order.hpp>
 #include <duet/derivative/sparse.hpp>
 
 #include <Eigen/Core>

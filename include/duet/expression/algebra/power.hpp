@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/dual/math.hpp>
-#include <duet/dual/rules/powers.hpp>
+#include <duet/dual/rules/of_many.hpp>
 #include <duet/expression/algebra/product.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>

@@ -3,7 +3,7 @@
 
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
-#include <duet/dual/rules/lift.hpp>
+#include <duet/dual/rules/elementary.hpp>
 #include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/node_list.hpp>

@@ -4,7 +4,6 @@
 #include <duet/core/constants.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/rules/elementary.hpp>
-#include <duet/dual/rules/special.hpp>
 #include <duet/expression/evaluate/given.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/bit_cast.hpp>
+#include <duet/core/compiler/types.hpp>
 
 #include <cstdint>
 #include <type_traits>

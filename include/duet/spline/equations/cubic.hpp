@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/quaternion.hpp>

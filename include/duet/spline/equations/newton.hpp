@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/blocks.hpp>

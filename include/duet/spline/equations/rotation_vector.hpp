@@ -1,8 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/rounding.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>

@@ -1,4 +1,0 @@
-// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-#pragma once
-
-#include <duet/dual/rules/elementary.hpp>
