@@ -127,19 +127,6 @@ void require_regular(const LU& lu) {
 template <class M>
 using lu_of = std::conditional_t<Batched<typename M::Scalar>, lane_lu<M>, Eigen::PartialPivLU<M>>;
 
-/// \throws invalid_input if A x = b is not a valid system of equations.
-template <class A, class B>
-void require_square(const A& a, const B& b) {
-  static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
-                "duet: solve: A must be square");
-  static_assert(can_be_same(A::RowsAtCompileTime, B::RowsAtCompileTime),
-                "duet: solve: b must have as many rows as A");
-  require(a.rows() == a.cols(), "duet: solve: A is ", a.rows(), " x ", a.cols(),
-          ", but must be square");
-  require(a.rows() > 0, "duet: solve: A is empty");
-  require(a.rows() == b.rows(), "duet: solve: A has ", a.rows(), " rows, but b ", b.rows());
-}
-
 } // namespace detail
 
 /// The x with A x = b, over the scalars that those of A and b promote to.
@@ -166,7 +153,10 @@ template <class A, class B>
   static_assert(!std::is_same_v<S, detail::no_promotion>,
                 "duet: solve: the scalars of A and b have no common type");
   using R = real_type_t<S>;
-  detail::require_square(a, b);
+  detail::require_square("solve", a);
+  static_assert(detail::can_be_same(A::RowsAtCompileTime, B::RowsAtCompileTime),
+                "duet: solve: b must have as many rows as A");
+  detail::require(a.rows() == b.rows(), "duet: solve: A has ", a.rows(), " rows, but b ", b.rows());
   const auto matrix = detail::real_values<R>(a);
   detail::require_finite("solve", matrix);
   const detail::lu_of<std::remove_const_t<decltype(matrix)>> lu(matrix);

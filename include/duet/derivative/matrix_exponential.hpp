@@ -113,11 +113,7 @@ template <class S, class A>
 template <class A>
 [[nodiscard]] auto matrix_exponential(const Eigen::MatrixBase<A>& a) {
   using S = detail::common_scalar_t<A, A>;
-  static_assert(detail::can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
-                "duet: matrix_exponential: A must be square");
-  detail::require(a.rows() == a.cols(), "duet: matrix_exponential: A is ", a.rows(), " x ",
-                  a.cols(), ", but must be square");
-  detail::require(a.rows() > 0, "duet: matrix_exponential: A is empty");
+  detail::require_square("matrix_exponential", a);
   constexpr int n =
       A::RowsAtCompileTime == Eigen::Dynamic ? A::ColsAtCompileTime : A::RowsAtCompileTime;
   return detail::by_lane(

@@ -48,6 +48,16 @@ using common_scalar_t =
   return a == b || a == Eigen::Dynamic || b == Eigen::Dynamic;
 }
 
+/// \throws invalid_input unless A is square and not empty
+template <class A>
+void require_square(const char* function, const A& a) {
+  static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
+                "duet: the matrix A must be square");
+  require(a.rows() == a.cols(), "duet: ", function, ": A is ", a.rows(), " x ", a.cols(),
+          ", but must be square");
+  require(a.rows() > 0, "duet: ", function, ": A is empty");
+}
+
 /// Every entry converted to T; the layout is kept.
 template <class T, class Derived>
 [[nodiscard]] auto converted(const Eigen::MatrixBase<Derived>& a) {

@@ -122,10 +122,7 @@ template <class A>
 [[nodiscard]] auto nearest_rotation(const Eigen::MatrixBase<A>& a) {
   using S = detail::common_scalar_t<A, A>;
   using R = real_type_t<S>;
-  static_assert(detail::can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
-                "duet: nearest_rotation: A must be square");
-  detail::require(a.rows() == a.cols(), "duet: nearest_rotation: A is ", a.rows(), " x ", a.cols(),
-                  ", but must be square");
+  detail::require_square("nearest_rotation", a);
   constexpr int n = detail::min_size(A::RowsAtCompileTime, A::ColsAtCompileTime);
   const Eigen::Matrix<typename A::Scalar, n, n> matrix = a;
   const detail::polar_decomposition<R, n> polar("nearest_rotation", detail::real_values<R>(matrix));

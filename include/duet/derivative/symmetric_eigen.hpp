@@ -36,16 +36,6 @@ symmetric_eigen_result(Values, Vectors) -> symmetric_eigen_result<Values, Vector
 
 namespace detail {
 
-/// \throws invalid_input if A is not a square matrix.
-template <class A>
-void require_symmetric(const A& a) {
-  static_assert(can_be_same(A::RowsAtCompileTime, A::ColsAtCompileTime),
-                "duet: symmetric_eigen: A must be square");
-  require(a.rows() == a.cols(), "duet: symmetric_eigen: A is ", a.rows(), " x ", a.cols(),
-          ", but must be square");
-  require(a.rows() > 0, "duet: symmetric_eigen: A is empty");
-}
-
 /// \throws invalid_input if two of the ascending eigenvalues are equal to round-off.
 template <class Values>
 void require_distinct(const Values& values) {
@@ -130,7 +120,7 @@ template <class A>
 [[nodiscard]] auto symmetric_eigen(const Eigen::MatrixBase<A>& a) {
   using S = detail::common_scalar_t<A, A>;
   using R = real_type_t<S>;
-  detail::require_symmetric(a);
+  detail::require_square("symmetric_eigen", a);
   const auto& matrix = a.eval();
   const auto lower =
       detail::real_values<R>(a.template triangularView<Eigen::Lower>().toDenseMatrix());

@@ -1,5 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
-// expect: duet: solve: A must be square
+// expect: duet: the matrix A must be square
 
 #include <duet/derivative/linear_solve.hpp>
 
