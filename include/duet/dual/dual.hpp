@@ -66,13 +66,7 @@ public:
   /// The i-th variable of a function of N: value + εᵢ.
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr dual variable(const T& value,
                                                                   int i = 0) requires(N > 0) {
-    if constexpr (requires { partials_type::unit(i); }) {
-      return dual(value, partials_type::unit(i));
-    } else {
-      dual result(value);
-      result.partials_.set(i, T(1));
-      return result;
-    }
+    return dual(value, partials_type::unit(i));
   }
 
   /// The i-th variable of a function of n, if N is a capacity.
@@ -83,13 +77,7 @@ public:
   }
 
   /// Number of partials.
-  [[nodiscard]] constexpr int size() const {
-    if constexpr (N > 0) {
-      return N;
-    } else {
-      return partials_.size();
-    }
-  }
+  [[nodiscard]] constexpr int size() const { return partials_.size(); }
   /// The part without ε.
   [[nodiscard]] constexpr const T& value() const { return value_; }
   /// Coefficient of εᵢ, i from 0: the i-th partial derivative.

@@ -88,9 +88,17 @@ class array_partials {
 public:
   constexpr array_partials() : elements_{} {}
 
+  [[nodiscard]] static constexpr int size() { return N; }
   [[nodiscard]] constexpr const T& get(int i) const { return elements_[std::size_t(i)]; }
   constexpr void set(int i, const T& x) { elements_[std::size_t(i)] = x; }
   [[nodiscard]] constexpr const T& packet_at(int p) const { return elements_[std::size_t(p)]; }
+
+  /// Partials of the i-th variable: 1 at i, else 0.
+  [[nodiscard]] static constexpr array_partials unit(int i) {
+    array_partials result;
+    result.set(i, T(1));
+    return result;
+  }
 
   /// result[i] = f(rows[i]...)
   template <class F, class... Rows>
@@ -119,7 +127,7 @@ template <std::floating_point T, int N>
 class packed_partials {
   static constexpr int width = packing<T, N>::width;
   static constexpr int count = (N + width - 1) / width;
-  static constexpr int size = width * count;
+  static constexpr int padded_size = width * count;
   using packet = typename packing<T, N>::packet;
 
 public:
@@ -140,6 +148,7 @@ public:
     return *this;
   }
 
+  [[nodiscard]] static constexpr int size() { return N; }
   [[nodiscard]] constexpr T get(int i) const {
     if (std::is_constant_evaluated()) {
       return elements_[std::size_t(i)];
@@ -207,7 +216,7 @@ private:
 
   template <class F>
   constexpr void fill_elements(F&& f) {
-    T filled[std::size_t(size)] = {};
+    T filled[std::size_t(padded_size)] = {};
     for (int i = 0; i < N; ++i) {
       filled[i] = f(i);
     }
@@ -223,7 +232,7 @@ private:
 
   union {
     packet packets_[std::size_t(count)];
-    std::array<T, std::size_t(size)> elements_;
+    std::array<T, std::size_t(padded_size)> elements_;
   };
 };
 
