@@ -59,7 +59,7 @@ template <class Error>
 /// Calls `body`, and `on_error` with an `Error` that is thrown in it; if `Error` is `void`, without
 /// argument for anything thrown. Without exceptions no error leaves the body.
 template <class Error, class Body, class Handler>
-DUET_ALWAYS_INLINE void catching(const Body& body, [[maybe_unused]] const Handler& on_error) {
+void catching(const Body& body, [[maybe_unused]] const Handler& on_error) {
 #ifdef __cpp_exceptions
   if constexpr (std::is_void_v<Error>) {
     try {

@@ -91,16 +91,13 @@ inline constexpr bool masks_beat_branches = false;
 #endif
 #endif
 
-/// Attributes: a function that is never inlined, one that is rarely called, a variable that is kept
-/// although it is never read.
+/// Attributes: a function that is never inlined, one that is rarely called.
 #ifdef DUET_PORTABLE
 #define DUET_OUT_OF_LINE
 #define DUET_COLD
-#define DUET_KEPT
 #else
 #define DUET_OUT_OF_LINE [[gnu::noinline]]
 #define DUET_COLD [[gnu::cold]]
-#define DUET_KEPT [[gnu::used]]
 #endif
 
 /// Marks a member that takes no space if its type is empty. For compatibility with old layouts MSVC
