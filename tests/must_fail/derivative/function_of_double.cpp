@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 // expect: duet: [a-z_]*: the function must take any scalar
 // within: 5
-// forms: 11
+// forms: 12
 
+#include <duet/derivative/nonlinear_least_squares.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/quaternion/exponential.hpp>
 
@@ -42,6 +43,8 @@ int main() {
 #elif DUET_MUST_FAIL == 11
   const Eigen::Vector3d slopes =
       duet::jacobian([](const Eigen::Vector3d& a) { return a; }, x).jacobian.col(0);
+#elif DUET_MUST_FAIL == 12
+  std::cout << duet::nonlinear_least_squares([](double a) { return a - 1; }, 2.0).estimate;
 #else
   const auto square = [](auto a) { return a * a; };
   const auto scaled = [](const auto& a) { return (2 * a).eval(); };
