@@ -138,6 +138,17 @@ nonlinear_least_squares(const F& f, const X& start,
   return problem.minimised();
 }
 
+template <detail::FunctionOfAny F, class X, class... Options>
+  requires(!detail::ParameterSet<detail::own_t<X>>)
+DUET_REFUSED("nonlinear_least_squares: the start must be a double, an Eigen vector of double, a "
+             "rotation, a pose, or an array, std::vector or tuple of these")
+nonlinear_least_squares_result<Eigen::VectorXd> nonlinear_least_squares(const F&, const X&,
+                                                                        const Options&...);
+template <detail::FunctionOfAny F, class A, class B, class... More>
+  requires(detail::ParameterSet<detail::own_t<A>>&& detail::ParameterSet<detail::own_t<B>>)
+DUET_REFUSED("pass several parameters as a tuple: nonlinear_least_squares(f, std::tuple(a, b))")
+nonlinear_least_squares_result<Eigen::VectorXd> nonlinear_least_squares(const F&, const A&,
+                                                                        const B&, const More&...);
 template <detail::FunctionOfReals F, class... X>
 DUET_REFUSED_FUNCTION(nonlinear_least_squares)
 nonlinear_least_squares_result<Eigen::VectorXd> nonlinear_least_squares(const F&, const X&...);
@@ -178,6 +189,12 @@ template <class Y>
 struct residual_blocks {
   static_assert(VectorLike<Y>, "duet: nonlinear_least_squares: the function must return a scalar, "
                                "a vector of residuals, or a vector of fixed-size vectors");
+  static constexpr int block_size = 1;
+  static Eigen::Index count(const Y&);
+  static double component(const Y&, Eigen::Index);
+};
+template <VectorLike Y>
+struct residual_blocks<Y> {
   static constexpr int block_size = 1;
   static Eigen::Index count(const Y& y) { return vector_argument<Y>::size(y); }
   static const auto& component(const Y& y, Eigen::Index i) { return detail::component(y, i); }

@@ -42,18 +42,19 @@ concept ParameterSet = requires {
   parameters<X>::dimension;
 };
 
-template <std::floating_point X>
+template <std::same_as<double> X>
 struct parameters<X> {
   static constexpr int dimension = 1;
   static Eigen::Index size(const X&) { return 1; }
   static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
-    return coordinate(double(x), first);
+    return coordinate(x, first);
   }
-  static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) { v[first] = double(x); }
+  static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) { v[first] = x; }
   static std::string name(const X&, Eigen::Index) { return ""; }
 };
 
 template <EigenMatrix X>
+  requires std::same_as<typename X::Scalar, double>
 struct parameters<X> {
   static constexpr int dimension = X::SizeAtCompileTime;
   static Eigen::Index size(const X& x) { return x.size(); }
@@ -62,13 +63,13 @@ struct parameters<X> {
     Eigen::Matrix<D, fixed_length<D>(X::RowsAtCompileTime), fixed_length<D>(X::ColsAtCompileTime)>
         y(x.rows(), x.cols());
     for (Eigen::Index i = 0; i < x.size(); ++i) {
-      y(i) = coordinate(double(x(i)), first + i);
+      y(i) = coordinate(x(i), first + i);
     }
     return y;
   }
   static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) {
     for (Eigen::Index i = 0; i < x.size(); ++i) {
-      v[first + i] = double(x(i));
+      v[first + i] = x(i);
     }
   }
   static std::string name(const X&, Eigen::Index k) { return message("[", k, "]"); }
@@ -76,7 +77,8 @@ struct parameters<X> {
 
 /// Rotations and poses.
 template <class X>
-  requires(!VectorLike<X> && requires { manifold<X>::takes_rates_of_any_scalar; })
+  requires(!VectorLike<X> && std::same_as<typename manifold<X>::scalar, double> &&
+           requires { manifold<X>::takes_rates_of_any_scalar; })
 struct parameters<X> {
   static constexpr int dimension = manifold<X>::dimension;
   static Eigen::Index size(const X&) { return dimension; }
