@@ -3,7 +3,6 @@
 #include <duet/core/random_source.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loop_positions.hpp>
 
 #include <Eigen/Core>
 

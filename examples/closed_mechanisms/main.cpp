@@ -15,9 +15,8 @@
 #include <duet/core/text/file.hpp>
 #include <duet/io/loop_file.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/loop_trace.hpp>
-#include <duet/robotics/mobility.hpp>
+#include <duet/robotics/closed_tree.hpp>
+#include <duet/robotics/loop_motion.hpp>
 
 #include <algorithm>
 #include <array>

@@ -11,9 +11,6 @@
 #include <duet/robotics/goals.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/robotics/loop_motion.hpp>
-#include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/loop_trace.hpp>
-#include <duet/robotics/mobility.hpp>
 #include <duet/robotics/objective.hpp>
 #include <duet/robotics/pairs_apart.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>

@@ -17,8 +17,6 @@
 #include <duet/kinematics/tree_table.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/mobility.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/QR>

@@ -9,7 +9,6 @@
 #include <duet/kinematics/closed_loop.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
-#include <duet/robotics/loop_trace.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>

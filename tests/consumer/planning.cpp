@@ -5,9 +5,8 @@
 
 #include <duet/kinematics/cannot_close.hpp>
 #include <duet/kinematics/robots.hpp>
+#include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
-#include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/mobility.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
 
 #include <cmath>

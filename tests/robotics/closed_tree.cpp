@@ -11,7 +11,6 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loop_positions.hpp>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>

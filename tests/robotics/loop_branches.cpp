@@ -6,9 +6,8 @@
 
 #include <duet/core/random_source.hpp>
 #include <duet/derivative/derivative.hpp>
+#include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
-#include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/loop_trace.hpp>
 
 #include <algorithm>
 #include <array>

@@ -9,9 +9,8 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
-#include <duet/robotics/loop_trace.hpp>
-#include <duet/robotics/mobility.hpp>
 
 #include <array>
 #include <cmath>

@@ -4,8 +4,6 @@
 
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
-#include <duet/robotics/loop_positions.hpp>
-#include <duet/robotics/mobility.hpp>
 
 #include <cmath>
 #include <numbers>

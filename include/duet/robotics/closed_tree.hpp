@@ -14,14 +14,17 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 /// \file
 /// Closed-chain mechanisms: a kinematic tree and loop-closure constraints between frames
-/// on its links.
+/// on its links. Their assembly configurations and their mobility.
 
 namespace duet::detail {
 DUET_ABI_BEGIN
@@ -231,6 +234,105 @@ private:
   double length_ = 0;
   Eigen::VectorXd units_;
 };
+
+/// One of the configurations in which the loops close (an assembly mode if the driven coordinates
+/// are fixed).
+struct assembly_configuration {
+  Eigen::VectorXd coordinates; ///< coordinates of the tree, angles within (−π, π]
+  /// Smallest singular value of ∂F/∂q with respect to the free coordinates; 0 at a branch point.
+  double smallest_singular_value = 0;
+  int hits = 0;              ///< number of random starts that led to it
+  bool within_limits = true; ///< true if all coordinates are within the limits of their joints
+};
+
+/// Result of a search for assembly configurations.
+struct assembly_search_result {
+  std::vector<assembly_configuration>
+      positions;     ///< assembly configurations, ordered by their first coordinates that differ
+  int starts = 0;    ///< number of initial guesses
+  int converged = 0; ///< number of guesses that converged to closed loops
+
+  /// Good–Turing estimate of the probability that one more converged start finds a new
+  /// configuration: the fraction of converged starts whose configuration no other start found. No
+  /// proof that none is missing.
+  [[nodiscard]] double missing_probability() const {
+    const auto once =
+        std::count_if(positions.begin(), positions.end(),
+                      [](const assembly_configuration& each) { return each.hits == 1; });
+    return converged > 0 ? double(once) / converged : 1;
+  }
+};
+
+/// Options of the search for assembly configurations.
+struct assembly_search_options {
+  int random_starts = 200; ///< minimum number of random initial guesses
+  std::uint64_t seed = 1;  ///< seed of the random numbers
+  /// Upper bound on the Good–Turing estimate `assembly_search_result::missing_probability()`, also
+  /// if one more configuration had been found once, as fewer guesses than 1 / bound cannot show it.
+  /// The search continues beyond `starts` until the bound is met; the default is always met.
+  double missing_probability = 2;
+  int max_starts = 20000; ///< maximum number of guesses
+};
+
+/// Assembly configurations of a closed-chain mechanism with some coordinates fixed, from random
+/// initial guesses: within the limits of joints whose limits are finite, otherwise angles within
+/// (−π, π) and lengths within ±π `length()`. Each is accurate to round-off. The search cannot prove
+/// that it is complete, but estimates the probability that one more guess finds another
+/// configuration: `assembly_search_options::missing_probability`.
+///
+/// \param fixed  numbers of coordinates, as many as the mechanism has degrees of freedom, so that
+///              configurations are isolated
+/// \param at    values of the fixed coordinates, in the order of `fixed`
+/// \throws invalid_input for coordinates that do not exist, and if `fixed` and `at` differ in size
+[[nodiscard]] assembly_search_result
+find_assembly_configurations(const closed_chain_mechanism& mechanism, const std::vector<int>& fixed,
+                             const Eigen::VectorXd& at,
+                             const assembly_search_options& options = {});
+
+/// Evidence for a mobility.
+enum class mobility_evidence {
+  full_rank,          ///< the equations are independent here: certain
+  first_order_rigid,  ///< no rates fulfil the equations: rigid, certain
+  second_order_rigid, ///< no rates that fulfil the equations have an acceleration: rigid, certain
+  sampled             ///< configurations nearby were searched for
+};
+
+/// Mobility of a mechanism, and the results of simpler counts.
+struct mobility_result {
+  int mobility = 0;      ///< degrees of freedom: local dimension of the configuration space
+  int kutzbach = 0;      ///< coordinates − equations, the Grübler–Kutzbach count
+  int instantaneous = 0; ///< coordinates − rank of ∂F/∂q here: number of independent rates
+  int local = 0;         ///< coordinates − rank of ∂F/∂q at configurations nearby
+  mobility_evidence evidence = mobility_evidence::full_rank; ///< evidence for `mobility`
+
+  /// True if the count of coordinates and equations differs from the mobility.
+  [[nodiscard]] bool count_is_wrong() const { return kutzbach != mobility; }
+  /// True if some rates do not move the mechanism: it is first-order flexible ("shaky"), or several
+  /// motions meet here.
+  [[nodiscard]] bool is_singular() const { return instantaneous != mobility; }
+};
+
+/// `mobility 1: counted -2, first order 1 here, 1 nearby`
+[[nodiscard]] inline std::string to_text(const mobility_result& m) {
+  return "mobility " + std::to_string(m.mobility) + ": counted " + std::to_string(m.kutzbach) +
+         ", first order " + std::to_string(m.instantaneous) + " here, " + std::to_string(m.local) +
+         " nearby";
+}
+
+/// Mobility of a mechanism at a configuration, its number of degrees of freedom.
+///
+/// If equations are redundant, neither their number nor the rank of ∂F/∂q determines the mobility:
+/// planar mechanisms and those of Bennett and Goldberg have more equations than they need, a
+/// first-order flexible ("shaky") frame has rates and does not move, and at a branch point there
+/// are more rates than branches. Second derivatives then decide whether any of the rates has an
+/// acceleration. If so, configurations are searched for 0.05 radians (or lengths relative to
+/// `length()`) away along random rates, and around those that are found; the largest dimension that
+/// they span is the mobility.
+///
+/// \param q  a configuration
+/// \throws invalid_input if the loops are not closed at q
+[[nodiscard]] mobility_result mobility(const closed_chain_mechanism& mechanism,
+                                       const Eigen::VectorXd& q);
 
 DUET_ABI_END
 } // namespace duet
