@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "branches/general_loop.hpp"
+#include "branches/branch_search.hpp"
 #include "branches/elimination.hpp"
 #include "branches/orthonormalise.hpp"
 #include "branches/singular_value.hpp"

@@ -2,8 +2,8 @@
 
 #include "support/random.hpp"
 
+#include "../../src/robotics/branches/branch_search.hpp"
 #include "../../src/robotics/branches/chain_loop.hpp"
-#include "../../src/robotics/branches/general_loop.hpp"
 #include "../../src/robotics/branches/loop_equation.hpp"
 
 #include <duet/kinematics/denavit_hartenberg.hpp>

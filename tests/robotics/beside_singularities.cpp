@@ -4,8 +4,8 @@
 #include "support/random.hpp"
 
 #include "../../src/robotics/branches/chain_loop.hpp"
-#include "../../src/robotics/branches/folded_elbow.hpp"
 #include "../../src/robotics/branches/singular_value.hpp"
+#include "../../src/robotics/branches/subproblems.hpp"
 
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/denavit_hartenberg.hpp>

@@ -5,8 +5,11 @@
 
 #include <duet/robotics/all_inverse_kinematics.hpp>
 
+#include <cstdint>
+
 /// \file
-/// Selection of the method that finds all solutions of a loop of six joints.
+/// All solutions of a loop of six joints: selection of the method, and the methods for loops
+/// without a closed form.
 
 namespace duet::detail {
 DUET_ABI_BEGIN
@@ -33,6 +36,22 @@ private:
   loop_solution_set answer_;
   solution_method method_ = solution_method::elimination;
 };
+
+/// Loop with a goal close to the given one.
+[[nodiscard]] loop_equation with_disturbed_goal(loop_equation loop, double by, std::uint64_t seed);
+
+/// True if the goal is farther away than the joints can reach.
+[[nodiscard]] bool is_beyond_reach(const loop_equation& loop);
+
+/// True if no solution is regular, whatever the goal, as if two neighbouring joints rotate about
+/// one axis.
+[[nodiscard]] bool is_always_singular(const loop_equation& loop);
+
+/// All solutions of a loop by Raghavan–Roth elimination, for arms without special geometry.
+[[nodiscard]] loop_solution_set eliminated(const loop_equation& loop);
+
+/// All solutions of a loop with two prismatic joints, by the zeros of a polynomial.
+[[nodiscard]] loop_solution_set solve_two_prismatic(const loop_equation& loop);
 
 DUET_ABI_END
 } // namespace duet::detail

@@ -601,6 +601,30 @@ private:
   double nearest_ = 0;
 };
 
+/// Angle that satisfies an equation, with its multiplicity.
+struct angle_solution {
+  double theta = 0;
+  int multiplicity = 1;
+};
+
+/// Angles θ with |v(θ)| = length (Paden–Kahan subproblem 3), for a length less than half of the
+/// maximum. At x from the known angle of the minimum, |v|² = minimum² + 4 r sin²(x/2).
+[[nodiscard]] inline std::vector<angle_solution> subproblem3(const rotating_vector& v,
+                                                             double length) {
+  constexpr double rounding = 1e-14;
+  const double b = dot(v.along, v.across), c = dot(v.along, v.normal), r = std::hypot(b, c);
+  const double at_minimum = std::atan2(-c, -b), minimum = length_of(v.at(at_minimum));
+  const double square = (length - minimum) * (length + minimum) / (4 * r);
+  if (std::abs(length - minimum) <= rounding) {
+    return {{at_minimum, 2}};
+  }
+  if (square > 0 && square <= 1) {
+    const double x = 2 * std::asin(std::sqrt(square));
+    return {{at_minimum - x, 1}, {at_minimum + x, 1}};
+  }
+  return {};
+}
+
 /// Calls visit(α, β, γ, multiplicity) for each decomposition of a rotation into successive
 /// rotations by α, β and γ about the axes of three joints.
 ///
