@@ -21,6 +21,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace duet::detail {
@@ -57,27 +58,31 @@ void chain_screws::normalise() {
   }
 }
 
-branch
+inverse_kinematics_solution
 branches_of_chain::operator()(const loop_solution& x,
                               const std::optional<coupled_prismatic_pair>& coupled_pair) const {
   constexpr double rounding = 2e-13; // closed forms have larger errors near singularities
-  branch result = described(x, coupled_pair);
+  inverse_kinematics_solution result = described(x, coupled_pair);
   if (!coupled_pair && result.residual * max_prismatic_travel(result.joints) > rounding) {
     loop_solution refined = x;
     static_cast<void>(close_loop(loop_, refined.theta, 1));
-    const branch other = described(refined, coupled_pair);
-    result = other.residual < result.residual ? other : result; // the refinement may diverge
+    const inverse_kinematics_solution other = described(refined, coupled_pair);
+    if (other.residual < result.residual) { // the refinement may diverge
+      result = other;
+    }
   }
   return result;
 }
 
-bool branches_of_chain::is_new(const branch& solution, const std::vector<branch>& others) const {
+bool branches_of_chain::is_new(const inverse_kinematics_solution& solution,
+                               const std::vector<inverse_kinematics_solution>& others) const {
   return solution.residual < max_residual &&
          std::none_of(others.begin(), others.end(),
-                      [&](const branch& other) { return is_same(solution, other); });
+                      [&](const auto& other) { return is_same(solution, other); });
 }
 
-double branches_of_chain::max_prismatic_travel(const six_coordinates& theta) const {
+double
+branches_of_chain::max_prismatic_travel(const Eigen::Ref<const six_coordinates>& theta) const {
   double result = 1;
   for (int i = 0; i < 6; ++i) {
     if (!loop_.joints[std::size_t(i)].is_revolute) {
@@ -105,7 +110,8 @@ void branches_of_chain::move_within_limits(six_coordinates& theta,
   }
 }
 
-bool branches_of_chain::is_same(const branch& a, const branch& b) const {
+bool branches_of_chain::is_same(const inverse_kinematics_solution& a,
+                                const inverse_kinematics_solution& b) const {
   bool result = true;
   for (int i = 0; i < 6 && result; ++i) {
     const double d = a.joints[i] - b.joints[i];
@@ -115,29 +121,29 @@ bool branches_of_chain::is_same(const branch& a, const branch& b) const {
   return result;
 }
 
-branch
+inverse_kinematics_solution
 branches_of_chain::described(const loop_solution& x,
                              const std::optional<coupled_prismatic_pair>& coupled_pair) const {
-  branch result;
-  result.multiplicity = x.multiplicity;
+  six_coordinates theta;
   for (int i = 0; i < 6; ++i) {
     const bool is_revolute = loop_.joints[std::size_t(i)].is_revolute;
-    result.joints[i] = is_revolute ? wrap_into_limits(wrap_angle(x.theta[i]), chain_.limits(i))
-                                   : axes_.size * x.theta[i];
+    theta[i] = is_revolute ? wrap_into_limits(wrap_angle(x.theta[i]), chain_.limits(i))
+                           : axes_.size * x.theta[i];
   }
   if (coupled_pair) {
-    move_within_limits(result.joints, *coupled_pair);
+    move_within_limits(theta, *coupled_pair);
   }
+  inverse_kinematics_solution result{theta, 0, 0, x.multiplicity};
   for (int i = 0; i < 6; ++i) {
     const auto limits = chain_.limits(i);
-    const double theta = result.joints[i];
-    result.within_limits = result.within_limits && theta >= limits.lower && theta <= limits.upper;
+    result.within_limits =
+        result.within_limits && theta[i] >= limits.lower && theta[i] <= limits.upper;
   }
   const tip_pose tip =
-      attached(walk<true, double>(chain_, result.joints, 6, visit_nothing), chain_.tip().offset);
+      attached(walk<true, double>(chain_, theta, 6, visit_nothing), chain_.tip().offset);
   const pose_error error = deviation_of(error_twist(tip, goal_));
-  result.residual = std::max(error.translation / (axes_.size * max_prismatic_travel(result.joints)),
-                             error.rotation);
+  result.residual =
+      std::max(error.translation / (axes_.size * max_prismatic_travel(theta)), error.rotation);
   return result;
 }
 
@@ -240,18 +246,14 @@ all_inverse_kinematics_result all_inverse_kinematics(const chain_view& chain,
   result.complex_solutions = search.answer().complex_solutions;
   result.method = search.method();
   result.is_complete = search.answer().is_complete;
-  std::vector<detail::branch> all;
-  all.reserve(search.answer().solutions.size());
+  result.solutions.reserve(search.answer().solutions.size());
   for (const detail::loop_solution& x : search.answer().solutions) {
-    const detail::branch solution = branches(x, search.answer().coupled_pair);
-    if (branches.is_new(solution, all)) {
-      all.push_back(solution);
+    auto solution = branches(x, search.answer().coupled_pair);
+    if (branches.is_new(solution, result.solutions)) {
+      result.solutions.push_back(std::move(solution));
     } else {
       result.complex_solutions += x.multiplicity; // two that nearly coincide, complex by round-off
     }
-  }
-  for (const detail::branch& x : all) {
-    result.solutions.push_back({x.joints, x.residual, 0, x.multiplicity, x.within_limits});
   }
   detail::fill_singular_values(detail::known_size_view<6>(chain), result.solutions);
   std::sort(result.solutions.begin(), result.solutions.end(), [](const auto& a, const auto& b) {

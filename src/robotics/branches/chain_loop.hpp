@@ -10,6 +10,7 @@
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/joint_step.hpp>
 #include <duet/quaternion/three_vector.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
 
 #include <Eigen/Core>
 
@@ -86,14 +87,6 @@ private:
   void normalise();
 };
 
-/// Configuration in which a chain of six joints reaches a goal, as `inverse_kinematics_solution`.
-struct branch {
-  six_coordinates joints = six_coordinates::Zero();
-  double residual = 0;
-  int multiplicity = 1;
-  bool within_limits = true;
-};
-
 /// Solutions of the loop equation of a chain with its tip at a goal, in the coordinates of the
 /// chain.
 class branches_of_chain {
@@ -105,28 +98,31 @@ public:
   [[nodiscard]] const loop_equation& loop() const { return loop_; }
 
   /// Solution in the coordinates of the chain, without its singular value.
-  [[nodiscard]] branch
+  [[nodiscard]] inverse_kinematics_solution
   operator()(const loop_solution& x,
              const std::optional<coupled_prismatic_pair>& coupled_pair = {}) const;
 
   /// True if the candidate is a solution and not among `others`.
-  [[nodiscard]] bool is_new(const branch& solution, const std::vector<branch>& others) const;
+  [[nodiscard]] bool is_new(const inverse_kinematics_solution& solution,
+                            const std::vector<inverse_kinematics_solution>& others) const;
 
 private:
   static constexpr double max_residual = 1e-8;
 
   /// Largest prismatic displacement relative to the arm's size; at least 1.
-  [[nodiscard]] double max_prismatic_travel(const six_coordinates& theta) const;
+  [[nodiscard]] double max_prismatic_travel(const Eigen::Ref<const six_coordinates>& theta) const;
 
   /// Moves two coupled prismatic joints to the centre of the range that the limits of both admit,
   /// or by the smallest displacement into an unbounded one.
   void move_within_limits(six_coordinates& theta, const coupled_prismatic_pair& pair) const;
 
   /// True if equal except for full turns.
-  [[nodiscard]] bool is_same(const branch& a, const branch& b) const;
+  [[nodiscard]] bool is_same(const inverse_kinematics_solution& a,
+                             const inverse_kinematics_solution& b) const;
 
-  [[nodiscard]] branch described(const loop_solution& x,
-                                 const std::optional<coupled_prismatic_pair>& coupled_pair) const;
+  [[nodiscard]] inverse_kinematics_solution
+  described(const loop_solution& x,
+            const std::optional<coupled_prismatic_pair>& coupled_pair) const;
 
   known_size_view<6> chain_;
   tip_pose goal_;
