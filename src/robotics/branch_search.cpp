@@ -1,16 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "branches/branch_search.hpp"
-#include "branches/orthonormalise.hpp"
 #include "branches/subproblems.hpp"
 
 #include "tip_pose.hpp"
 #include <duet/core/config.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <array>
@@ -43,16 +44,25 @@ bool close_loop(const loop_equation& loop, six_coordinates& theta, double size_o
     }
     before = residual;
     measured = theta;
-    six_coordinates step = least_solution(closure.jacobian, closure.twist);
+    six_coordinates step = closure.jacobian.partialPivLu().solve(closure.twist);
     if (residual <= good && !(step.norm() < singular)) {
       return true; // the residual is round-off, which a step would amplify
     }
     // Steps of this length close an error of fourth order.
     const double max_step = std::min(.5, 2 * closure.size * std::sqrt(std::sqrt(residual)));
     if (!(step.norm() < max_step)) { // damped least squares: min |J x − e|² + |e|² |x|²
-      Eigen::Matrix<double, 6, 12> damped;
-      damped << closure.jacobian, residual * six_columns::Identity();
-      step = least_solution(damped, closure.twist).head<6>();
+      if (residual > 1e-7) {         // beyond the round-off of normal equations
+        six_columns gram = closure.jacobian * closure.jacobian.transpose();
+        gram.diagonal().array() += residual * residual;
+        step = closure.jacobian.transpose() * gram.llt().solve(closure.twist);
+      } else {
+        Eigen::Matrix<double, 12, 7> equations; // with their right side as last column
+        equations << closure.jacobian, closure.twist, residual * six_columns::Identity(),
+            six_coordinates::Zero();
+        const Eigen::HouseholderQR<Eigen::Matrix<double, 12, 7>> factors(equations);
+        const auto r = factors.matrixQR().topRows<6>();
+        step = r.leftCols<6>().triangularView<Eigen::Upper>().solve(r.col(6));
+      }
       step *= std::min(1.0, max_step / step.norm());
       if (!step.allFinite()) {
         return false;
@@ -421,9 +431,7 @@ struct parallel_prismatic {
     const closure_error closure(loop, theta);
     Eigen::Matrix<double, 6, 5> moving;
     moving << closure.jacobian.leftCols(fixed), closure.jacobian.rightCols(5 - fixed);
-    Eigen::Matrix<double, 5, 5> inverse = Eigen::Matrix<double, 5, 5>::Identity(); // R⁻¹ of Q R
-    orthonormalise(moving, inverse);
-    const Eigen::Matrix<double, 5, 1> step = inverse * (moving.transpose() * closure.twist);
+    const Eigen::Matrix<double, 5, 1> step = moving.householderQr().solve(closure.twist);
     theta.head(fixed) += step.head(fixed);
     theta.tail(5 - fixed) += step.tail(5 - fixed);
   }

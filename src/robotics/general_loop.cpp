@@ -2,7 +2,6 @@
 
 #include "branches/branch_search.hpp"
 #include "branches/elimination.hpp"
-#include "branches/orthonormalise.hpp"
 #include "branches/singular_value.hpp"
 #include "branches/subproblems.hpp"
 
@@ -131,20 +130,20 @@ private:
   ///
   /// \return the index of the solution; `not_found` for most points of curves
   std::size_t find_neighbour(std::size_t at) {
-    constexpr double close_by = .05, closer = 1e-2, h = 1e-3, fold = 1e-4,
-                     nudge = 1e-9;     // displacement of pivots from zero
+    constexpr double close_by = .05, closer = 1e-2, h = 1e-3, fold = 1e-4;
     constexpr std::size_t enough = 24; // number of singular solutions: others are on curves
     const six_coordinates theta = all_[at].theta;
-    const six_coordinates nearby = theta + six_coordinates::Constant(nudge);
-    six_columns rows = closure_error(loop_, nearby).jacobian.transpose(); // J = L Q, then Qᵀ
-    six_columns inverse = six_columns::Identity();                        // then L⁻ᵀ
-    orthonormalise(rows, inverse);
+    six_columns jacobian = closure_error(loop_, theta).jacobian;
+    for (int k = 0; k < 36; ++k) {
+      jacobian(k) += 1e-13 * double(k * k % 41); // no pivot is zero
+    }
+    const Eigen::PartialPivLU<six_columns> lu(jacobian);
     six_coordinates v, u;
     v << 1, .7, -.4, .9, -.6, .5;
     double sigma = 0;
-    for (int k = 0; k < 3; ++k) {
-      u = (inverse * (rows.transpose() * v)).normalized();
-      v = rows * (inverse.transpose() * u);
+    for (int k = 0; k < 3; ++k) { // inverse iteration
+      u = lu.transpose().solve(v).normalized();
+      v = lu.solve(u);
       sigma = 1 / v.norm();
       v *= sigma;
     }
