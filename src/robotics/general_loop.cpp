@@ -457,15 +457,14 @@ struct loop_order {
 };
 
 /// Quality of an order for the elimination of the first two joints: |(p₁ − p₂)·(n₁ × n₂)|, which is
-/// 0 if their axes meet or are parallel; |n₁ × n₂| if both are prismatic, a quarter of it if one
-/// is. The third and the sixth joint must be revolute.
+/// 0 if their axes meet or are parallel; a quarter of |n₁ × n₂| if one is prismatic. The third and
+/// the sixth joint must be revolute.
 [[nodiscard]] double quality_of(const loop_equation& loop, const elimination*) {
   const loop_joint &a = loop.joints[0], &b = loop.joints[1];
   const auto across = cross(a.axis, b.axis);
   return !loop.joints[2].is_revolute || !loop.joints[5].is_revolute ? 0
          : a.is_revolute && b.is_revolute ? std::abs(dot(a.point - b.point, across))
-         : a.is_revolute || b.is_revolute ? length_of(across) / 4
-                                          : length_of(across);
+                                          : length_of(across) / 4;
 }
 /// Quality of an order for two prismatic joints: the first joint must be revolute, and no axis of
 /// the other three revolute joints parallel to the next.
@@ -573,7 +572,7 @@ zeros_on_circle(std::span<const std::complex<double>> roots) {
 template <class System>
 class general_solver {
 public:
-  explicit general_solver(const loop_equation& loop) : solutions_(loop) {}
+  explicit general_solver(const loop_equation& loop) : loop_(loop), solutions_(loop) {}
 
   [[nodiscard]] const loop_solutions& solutions() const { return solutions_; }
   /// True if there may be solutions on curves of which no point was found.
@@ -611,7 +610,9 @@ public:
     const auto roots = system.roots();
     if (!is_doubtful_ && !(roots.regularity > singular)) {
       is_doubtful_ = true;
-      add_from_random_guesses();
+      if (!is_always_singular(loop_)) { // otherwise one loop suffices
+        add_from_random_guesses();
+      }
     }
     std::vector<std::size_t> hits;
     bool is_clear = roots.regularity * squared_travel(order.loop) > vanishing;
@@ -656,6 +657,7 @@ private:
     return result;
   }
 
+  const loop_equation& loop_;
   loop_solutions solutions_;
   bool is_doubtful_ = false, is_certain_ = false, has_close_pair_ = false;
 };
@@ -669,7 +671,8 @@ private:
 /// itself. These are complete if successive displaced loops have as many real zeros as solutions
 /// were found: one loop if it is well conditioned, two otherwise, three close to singularities,
 /// five if there are no solutions; or if three loops add no others. They are not if some are on a
-/// curve, or near what is nearly a curve.
+/// curve, or near what is nearly a curve. Five loops are solved then, or a single one if no
+/// solution can be regular.
 template <class System>
 [[nodiscard]] loop_solution_set solve_general_loop(const loop_equation& loop) {
   constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-5};
@@ -686,7 +689,8 @@ template <class System>
   int agreeing = 0, quiet = 0;
   const auto is_even = [&] { return !solutions.is_count_certain() || solutions.count() % 2 == 0; };
   const auto is_enough = [&](std::size_t loops) {
-    return agreeing >= needed() || (solutions.on_curves() > 0 && loops == 5);
+    return agreeing >= needed() ||
+           (solutions.on_curves() > 0 && (loops == 5 || is_always_singular(loop)));
   };
   for (std::size_t k = 0; k < by.size() && !is_enough(k); ++k) {
     const auto before = solutions.all().size();
