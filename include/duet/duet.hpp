@@ -58,15 +58,12 @@
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>
 #include <duet/kinematics/adapted.hpp>
-#include <duet/kinematics/analytic_jacobian.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/closed_loop.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
-#include <duet/kinematics/joint_efforts.hpp>
-#include <duet/kinematics/limits.hpp>
 #include <duet/kinematics/manipulability.hpp>
 #include <duet/kinematics/robots.hpp>
-#include <duet/kinematics/screw_axes.hpp>
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/distance.hpp>

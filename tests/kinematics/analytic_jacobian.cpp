@@ -4,7 +4,7 @@
 #include "support/shared_tag.hpp"
 
 #include <duet/derivative/jacobian.hpp>
-#include <duet/kinematics/analytic_jacobian.hpp>
+#include <duet/kinematics/jacobian.hpp>
 
 #include <algorithm>
 

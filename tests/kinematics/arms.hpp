@@ -5,7 +5,7 @@
 #include "support/random.hpp"
 
 #include <duet/derivative/frame.hpp>
-#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 

@@ -1,9 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/kinematics/analytic_jacobian.hpp>
+#include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
-#include <duet/kinematics/joint_efforts.hpp>
 
 /// \file
 /// Sum of all functions of a chain, as one number.

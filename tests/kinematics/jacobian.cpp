@@ -5,7 +5,6 @@
 
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/joint_efforts.hpp>
 
 #include <span>
 #include <vector>

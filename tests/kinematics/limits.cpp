@@ -4,7 +4,7 @@
 #include "support/message.hpp"
 
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 

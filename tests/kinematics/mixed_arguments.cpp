@@ -4,8 +4,8 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
+#include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
-#include <duet/kinematics/joint_efforts.hpp>
 #include <duet/kinematics/robots.hpp>
 
 #include <doctest/doctest.h>

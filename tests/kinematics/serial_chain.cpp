@@ -8,7 +8,7 @@
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/kinematics/screw_axes.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 
 #include <Eigen/Geometry>
 

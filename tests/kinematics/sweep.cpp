@@ -4,9 +4,8 @@
 #include "support/lanes.hpp"
 #include "support/message.hpp"
 
-#include <duet/kinematics/analytic_jacobian.hpp>
+#include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
-#include <duet/kinematics/joint_efforts.hpp>
 #include <duet/kinematics/manipulability.hpp>
 #include <duet/kinematics/sweep.hpp>
 

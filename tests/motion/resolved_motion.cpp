@@ -3,7 +3,7 @@
 #include "kinematics/arms.hpp"
 #include "support/lanes.hpp"
 
-#include <duet/kinematics/analytic_jacobian.hpp>
+#include <duet/kinematics/jacobian.hpp>
 #include <duet/motion/resolved_motion.hpp>
 
 #include <Eigen/LU>

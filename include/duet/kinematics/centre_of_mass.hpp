@@ -6,10 +6,7 @@
 #include <duet/dual/promotion.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
-#include <duet/kinematics/tree_motion.hpp>
-#include <duet/kinematics/tree_rates.hpp>
 #include <duet/kinematics/tree_table.hpp>
-#include <duet/kinematics/tree_walk.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 

@@ -3,9 +3,9 @@
 
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/twist.hpp>
+#include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/joint_step.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 
 #include <concepts>

@@ -10,7 +10,7 @@
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/kinematics/cannot_close.hpp>
+#include <duet/kinematics/tree_loop.hpp>
 
 #include <Eigen/Core>
 

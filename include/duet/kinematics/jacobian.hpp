@@ -4,8 +4,10 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/kinematics/serial_chain.hpp>
+#include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -17,7 +19,9 @@
 #include <type_traits>
 
 /// \file
-/// Geometric Jacobians of a chain (spatial, body and hybrid), in closed form.
+/// Geometric Jacobians of a chain (spatial, body and hybrid), in closed form; analytical Jacobians
+/// with respect to pose coordinates (translation and quaternion or Euler angles); and the joint
+/// efforts that correspond to a wrench on a link.
 
 namespace duet {
 
@@ -150,5 +154,68 @@ detail::chain_jacobian<std::remove_cvref_t<C>, X> jacobian(C&&, const X&);
 DUET_ASKS_FOR_ONE_CONFIGURATION(jacobian, Eigen::MatrixXd)
 DUET_ASKS_FOR_ONE_CONFIGURATION(pose_and_jacobian,
                                 value_and_jacobian<dual_quaternion<double>, Eigen::MatrixXd>)
+
+/// Analytical Jacobian ∂γ/∂θ, 7 rows, of γ = [t; α] (N20, N21): J2 times it is the spatial
+/// Jacobian. α is the quaternion of `chain.pose(theta)`, with the sign that it has there. Arguments
+/// as `jacobian`.
+///
+/// \return a matrix of 7 rows and a column for each joint
+template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto pose_coordinates_jacobian(const C& chain, const X& theta, const At& at = {}) {
+  using S = detail::chain_scalar<C, X>;
+  const auto [a, m] = pose_and_jacobian(chain, theta, frame::spatial, at);
+  detail::joint_columns<S, 7, C::joints> result(7, m.cols());
+  for (Eigen::Index i = 0; i < m.cols(); ++i) {
+    result.col(i) = pose_coordinates_rate(a, vector6<S>(m.col(i)));
+  }
+  return result;
+}
+
+/// Analytical Jacobian ∂[t; a, b, c]/∂θ, 6 rows, for the intrinsic Euler angles of a sequence:
+/// `euler_jacobian<zyx>(chain, θ)`. Unbounded near gimbal lock, where the rates of the angles do
+/// not exist. Arguments as `jacobian`.
+///
+/// \return a matrix of 6 rows and a column for each joint
+template <euler_sequence Sequence, SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto euler_jacobian(const C& chain, const X& theta, const At& at = {}) {
+  using S = detail::chain_scalar<C, X>;
+  auto [a, m] = pose_and_jacobian(chain, theta, frame::hybrid, at);
+  const auto angles = euler<Sequence>(rotation(a));
+  const matrix3<S> axes = euler_rate_matrix<Sequence>(angles[0], angles[1]);
+  const vector3<S> x = axes.col(0), y = axes.col(1), z = axes.col(2);
+  const vector3<S> yz = y.cross(z), zx = z.cross(x), xy = x.cross(y);
+  const S volume = x.dot(yz);
+  for (Eigen::Index i = 0; i < m.cols(); ++i) {
+    const vector3<S> omega(m(3, i), m(4, i), m(5, i));
+    m(3, i) = yz.dot(omega) / volume;
+    m(4, i) = zx.dot(omega) / volume;
+    m(5, i) = xy.dot(omega) / volume;
+  }
+  return m;
+}
+
+/// τ = Jᵀ F: the joint torques (forces for prismatic joints) of a wrench F = [f; m] that the chain
+/// exerts at a frame, with the same power: τ·θ̇ = F·V. Other arguments as `jacobian`.
+///
+/// \param frame_of_wrench  `frame::spatial`: fixed axes, m about the fixed origin; `frame::body`:
+///                         axes and origin of the frame; `frame::hybrid`: fixed axes, m about the
+///                         frame's origin
+/// \return a column of one effort for each joint
+template <SerialChain C, VectorLike X, class W, FrameConstant Frame,
+          FrameOnChain<C> At = tip_of_chain>
+[[nodiscard]] auto joint_efforts(const C& chain, const X& theta, const vector6<W>& wrench,
+                                 Frame frame_of_wrench, const At& at = {}) {
+  using S = promote_t<detail::chain_scalar<C, X>, W>;
+  const auto m = jacobian(chain, theta, frame_of_wrench, at);
+  detail::joint_vector<S, C::joints> result(m.cols());
+  for (Eigen::Index i = 0; i < m.cols(); ++i) {
+    S sum(0);
+    for (Eigen::Index k = 0; k < 6; ++k) {
+      sum += m(k, i) * wrench[k];
+    }
+    result[i] = sum;
+  }
+  return result;
+}
 
 } // namespace duet

@@ -10,6 +10,7 @@
 #include <duet/quaternion/three_vector.hpp>
 
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <limits>
 #include <numbers>
@@ -121,6 +122,15 @@ template <class T>
   // A rotation whose norm is 1 to within round-off is kept to the last bit.
   const T rounding = 8 * std::numeric_limits<T>::epsilon();
   return square - 1 <= rounding && 1 - square <= rounding ? q : q * inverse_root_near_one(square);
+}
+
+/// The shortest rotation that takes z to the unit vector n: (1 + n·z, z × n), normalised; for −z
+/// the half turn about x.
+[[nodiscard]] inline quaternion<double> rotation_from_z(const three_vector<double>& n) {
+  const double w = n.z > 0 ? 1 + n.z : (n.x * n.x + n.y * n.y) / (1 - n.z); // both are 1 + n·z
+  const double length = std::sqrt(2 * w);
+  return w > 0 ? quaternion<double>(w / length, -n.y / length, n.x / length, 0)
+               : quaternion<double>(0, 1, 0, 0);
 }
 
 } // namespace detail

@@ -7,14 +7,10 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/joint_checks.hpp>
-#include <duet/kinematics/robot_contents.hpp>
 #include <duet/kinematics/robot_description.hpp>
-#include <duet/kinematics/tree_builder.hpp>
-#include <duet/kinematics/tree_chain.hpp>
 #include <duet/kinematics/tree_table.hpp>
-#include <duet/kinematics/tree_walk.hpp>
 #include <duet/kinematics/urdf_chain.hpp>
 
 #include <Eigen/Core>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 
 #include <array>

@@ -7,8 +7,6 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/joint_checks.hpp>
-#include <duet/kinematics/joint_step.hpp>
 
 #include <Eigen/Core>
 

@@ -3,8 +3,8 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
+#include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/joint_checks.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 
 #include <concepts>

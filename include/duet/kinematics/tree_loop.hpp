@@ -5,7 +5,6 @@
 #include <duet/core/text/file.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/tree_table.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
@@ -14,10 +13,12 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// \file
-/// Loop-closure constraints of a closed-chain mechanism whose cut joints leave a tree.
+/// Loop-closure constraints of a closed-chain mechanism whose cut joints leave a tree, and the
+/// error of closed-chain mechanisms.
 
 namespace duet {
 
@@ -91,4 +92,18 @@ namespace detail {
 }
 
 } // namespace detail
+
+/// Loop-closure failure: a closed chain has no configuration at the requested parameters.
+class loop_closure_failure : public no_convergence {
+public:
+  loop_closure_failure(const std::string& message, std::vector<double> parameter)
+      : no_convergence(message), parameter_(std::move(parameter)) {}
+
+  /// The driving parameters at which the loops closed last, or were to close first.
+  [[nodiscard]] const std::vector<double>& parameter() const { return parameter_; }
+
+private:
+  std::vector<double> parameter_;
+};
+
 } // namespace duet

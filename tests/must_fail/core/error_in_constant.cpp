@@ -4,7 +4,7 @@
 
 // An error that throws at run time does not compile in a constant expression.
 
-#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 
 #include <array>
 
