@@ -12,7 +12,7 @@
 #include "../src/robotics/branches/singular_value.hpp"
 
 #include <duet/core/random_source.hpp>
-#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
 

@@ -6,7 +6,7 @@
 /// kind (1000), the seed (1).
 
 #include <duet/core/random_source.hpp>
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
 #include <duet/robotics/choose_start.hpp>

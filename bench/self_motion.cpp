@@ -8,8 +8,8 @@
 /// build/bench/bench/duet_self_motion_bench
 
 #include <duet/core/random_source.hpp>
-#include <duet/kinematics/denavit_hartenberg.hpp>
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/robotics/self_motion_curves.hpp>

@@ -5,11 +5,9 @@
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/collision_shape.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/robot_contents.hpp>
 #include <duet/kinematics/robot_description.hpp>
-#include <duet/kinematics/tree_chain.hpp>
+#include <duet/kinematics/urdf_chain.hpp>
 
 #include "xml.hpp"
 

@@ -5,7 +5,7 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/kinematics/segment_distance.hpp>
+#include <duet/kinematics/closest_points.hpp>
 #include <duet/robotics/bounding_capsules.hpp>
 
 #include <Eigen/Core>

@@ -5,7 +5,7 @@
 #include "splitmix64.hpp"
 
 #include <duet/core/errors.hpp>
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
 #include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>

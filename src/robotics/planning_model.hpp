@@ -9,7 +9,6 @@
 #include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/joint_step.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/robotics/clearance.hpp>
 

@@ -3,8 +3,8 @@
 // A program that links duet::robotics: it plans, assembles a mechanism, and catches errors by their
 // types.
 
-#include <duet/kinematics/cannot_close.hpp>
 #include <duet/kinematics/robots.hpp>
+#include <duet/kinematics/tree_loop.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>

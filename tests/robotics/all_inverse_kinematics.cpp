@@ -6,7 +6,7 @@
 #include "../../src/robotics/branches/chain_loop.hpp"
 #include "../../src/robotics/branches/loop_equation.hpp"
 
-#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>

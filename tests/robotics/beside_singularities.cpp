@@ -8,7 +8,7 @@
 #include "../../src/robotics/branches/subproblems.hpp"
 
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>

@@ -3,7 +3,7 @@
 #include "robotics/chains.hpp"
 #include "support/message.hpp"
 
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
 #include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>

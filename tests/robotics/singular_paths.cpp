@@ -7,8 +7,8 @@
 #include "robotics/complete_search.hpp"
 #include "robotics/paths.hpp"
 
-#include <duet/kinematics/denavit_hartenberg.hpp>
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>
-#include <duet/kinematics/denavit_hartenberg.hpp>
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 

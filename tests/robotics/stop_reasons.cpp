@@ -5,7 +5,7 @@
 #include "robotics/paths.hpp"
 #include "robotics/singular_problems.hpp"
 
-#include <duet/kinematics/limits.hpp>
+#include <duet/kinematics/adapted.hpp>
 #include <duet/robotics/follow_path.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/robotics/self_motion_curves.hpp>

@@ -5,9 +5,9 @@
 #include "support/multiprecision.hpp"
 
 #include <duet/derivative/gradient.hpp>
-#include <duet/kinematics/denavit_hartenberg.hpp>
+#include <duet/kinematics/adapted.hpp>
+#include <duet/kinematics/chain_parameters.hpp>
 #include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/limits.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
 #include <duet/robotics/goals.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>

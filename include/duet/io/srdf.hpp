@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/text/file.hpp>
-#include <duet/kinematics/robot_contents.hpp>
+#include <duet/kinematics/robot_description.hpp>
 
 #include <string>
 #include <vector>

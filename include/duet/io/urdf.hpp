@@ -3,7 +3,7 @@
 
 #include <duet/core/text/file.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
-#include <duet/kinematics/robot_contents.hpp>
+#include <duet/kinematics/robot_description.hpp>
 #include <duet/kinematics/urdf_chain.hpp>
 
 #include <cstddef>

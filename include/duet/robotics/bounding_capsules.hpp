@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/io/mesh_file.hpp>
-#include <duet/kinematics/collision_shape.hpp>
+#include <duet/kinematics/robot_description.hpp>
 #include <duet/kinematics/shapes.hpp>
 #include <duet/robotics/clearance.hpp>
 

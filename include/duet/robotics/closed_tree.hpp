@@ -5,11 +5,10 @@
 
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/kinematics/cannot_close.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 #include <duet/kinematics/tree_loop.hpp>
-#include <duet/kinematics/tree_walk.hpp>
+#include <duet/kinematics/tree_table.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
 #include <Eigen/Core>

@@ -3,7 +3,7 @@
 
 #include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/robot_contents.hpp>
+#include <duet/kinematics/robot_description.hpp>
 #include <duet/robotics/clearance.hpp>
 
 #include <algorithm>

@@ -8,7 +8,6 @@
 #include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/joint_step.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
 
