@@ -16,8 +16,8 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <algorithm>
 #include <array>

@@ -9,8 +9,8 @@
 #include "../../examples/wheel_carrier/comparison.hpp"
 #include "../../examples/wheel_carrier/equal_arcs.hpp"
 
-#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <algorithm>
 #include <cstddef>

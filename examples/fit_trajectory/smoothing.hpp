@@ -12,9 +12,9 @@
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit.hpp>
-#include <duet/spline/knots.hpp>
 
 #include <algorithm>
 #include <cmath>

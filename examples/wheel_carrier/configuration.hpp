@@ -3,7 +3,7 @@
 
 #include "comparison.hpp"
 
-#include <duet/spline/knots.hpp>
+#include <duet/spline/basis.hpp>
 
 #include <array>
 #include <cstddef>

@@ -6,7 +6,7 @@
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/spline/hermite.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <memory>
 #include <vector>

@@ -77,8 +77,7 @@
 #include <duet/spline/adaptive_table.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/evaluate.hpp>
-#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/lookup_table.hpp>
+#include <duet/spline/orientations.hpp>
 #include <duet/spline/printed.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>

@@ -5,8 +5,8 @@
 #include "../../examples/wheel_carrier/carrier.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
 
-#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 #include "support/message.hpp"
 
 #include <duet/quaternion/rotation.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/knots.hpp>
 
 #include <doctest/doctest.h>
 

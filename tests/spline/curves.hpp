@@ -8,7 +8,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/knots.hpp>
+#include <duet/spline/basis.hpp>
 
 #include <algorithm>
 #include <cmath>

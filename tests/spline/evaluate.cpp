@@ -8,9 +8,9 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/evaluate.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/location.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>

@@ -7,8 +7,8 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/rotation.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/fit.hpp>
-#include <duet/spline/knots.hpp>
 
 #include <doctest/doctest.h>
 

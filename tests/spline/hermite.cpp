@@ -8,7 +8,7 @@
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/hermite.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,7 +3,7 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/adaptive_table.hpp>
-#include <duet/spline/lookup_table.hpp>
+#include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <doctest/doctest.h>

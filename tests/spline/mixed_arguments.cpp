@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/hermite.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>

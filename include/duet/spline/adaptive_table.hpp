@@ -8,7 +8,7 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/lookup_table.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -7,7 +7,7 @@
 #include <duet/core/parallel_for.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/location.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/orientations.hpp>
 

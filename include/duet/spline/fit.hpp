@@ -18,7 +18,6 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit_start.hpp>
 #include <duet/spline/interpolate.hpp>
-#include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
 
 #include <Eigen/Cholesky>

@@ -11,7 +11,6 @@
 #include <duet/spline/equations/cubic.hpp>
 #include <duet/spline/equations/newton.hpp>
 #include <duet/spline/equations/rotation_vector.hpp>
-#include <duet/spline/hermite.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 

@@ -18,9 +18,24 @@
 #include <vector>
 
 /// \file
-/// Validation and sign alignment of sampled orientations and poses.
+/// Sampled orientations and poses: lookup tables, validation and sign alignment. Tables as files:
+/// io/table_file.hpp.
 
 namespace duet {
+
+/// Lookup table of rotations (T = double) or poses (T = dual<double, 1, screw_tag>) at increasing
+/// parameters.
+template <class T>
+struct lookup_table {
+  std::vector<real_type_t<T>> parameters; ///< increasing parameters u_0 < u_1 < …
+  std::vector<quaternion<T>> elements;    ///< as many unit quaternions or poses
+
+  /// For those who extend duet: for `to_text`.
+  void for_each_field(const auto& f) const {
+    f("parameters", parameters);
+    f("elements", elements);
+  }
+};
 
 /// Sample that no curve can pass through.
 class invalid_sample : public invalid_input {

@@ -7,7 +7,7 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
-#include <duet/spline/location.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/motion.hpp>
 
 #include <array>

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/knots.hpp>
 
 #include <cstddef>
 

@@ -3,7 +3,7 @@
 // within: 5
 // forms: 2
 
-#include <duet/spline/hermite.hpp>
+#include <duet/spline/rotation_vector_spline.hpp>
 
 #include <iostream>
 #include <vector>

@@ -13,7 +13,6 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/end_conditions.hpp>
 #include <duet/spline/equations/newton.hpp>
-#include <duet/spline/knots.hpp>
 #include <duet/spline/orientations.hpp>
 
 #include <Eigen/Core>
