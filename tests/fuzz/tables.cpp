@@ -5,7 +5,7 @@
 #include <duet/core/text/file.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/io/table_file.hpp>
-#include <duet/spline/lookup_table.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <doctest/doctest.h>
 

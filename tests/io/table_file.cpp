@@ -9,7 +9,7 @@
 #include <duet/io/table_file.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/rotation.hpp>
-#include <duet/spline/lookup_table.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <doctest/doctest.h>
 

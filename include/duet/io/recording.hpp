@@ -3,7 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/io/table_file.hpp>
-#include <duet/spline/lookup_table.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <cstddef>
 #include <string>

@@ -6,7 +6,7 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/lookup_table.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <array>
 #include <string>
