@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/comparison/compare.hpp>
-#include <duet/comparison/comparison.hpp>
 
 #include <doctest/doctest.h>
 

@@ -1,31 +1,34 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/comparison/comparison.hpp>
 #include <duet/comparison/domain.hpp>
-#include <duet/comparison/judgement.hpp>
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
-#include <duet/comparison/simplified.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/progress.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/derivative/argument.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 /// \file
-/// Checks a closed-form formula against its automatic derivative.
+/// Checks a closed-form formula against its automatic derivative: verdict, worst errors and the
+/// simplest input at which both differ, and their text forms.
 
 namespace duet {
 
@@ -39,7 +42,410 @@ struct comparison_options {
   progress_callback report = {}; ///< callback after every input; may end the run
 };
 
+/// Verdict of `compare` on two formulas, from best to worst.
+enum class verdict {
+  agrees,          ///< everywhere, within the tolerance
+  loses_precision, ///< the same formula, but spoilt by round-off (or a constant of few digits)
+  not_finite,      ///< somewhere one of them is infinite or NaN and the other is not
+  disagrees        ///< the formulas differ
+};
+
+/// A verdict in words, as in reports.
+[[nodiscard]] inline std::string_view to_text(verdict v) {
+  constexpr std::array words = {"agrees", "loses digits", "not finite", "disagrees"};
+  return words[std::size_t(v)];
+}
+
+/// Largest differences of two results in one precision. The norm is the largest component; `ulps`
+/// counts units of the last place, |difference| / (ε/2 · (‖f‖ + ‖f′‖‖x‖)), where the second term is
+/// computed only if the first does not suffice.
+struct worst_errors {
+  int digits = 0;      ///< decimal digits of the scalar
+  double absolute = 0; ///< largest |difference|
+  double relative = 0; ///< largest |difference| / ‖f‖
+  double ulps = 0;     ///< largest difference in units of the last place
+  std::string input{}; ///< input with the largest `ulps`
+  /// number of digits compared if a function returned fewer digits than the scalar has and these
+  /// were decisive: the last place is then that of the function. Otherwise 0.
+  int compared_digits = 0;
+};
+
+/// An input at which two formulas differ, and their results there in double precision.
+struct counterexample {
+  std::string input;               ///< the arguments, as text
+  std::vector<double> automatic;   ///< components of the result of the automatic derivative
+  std::vector<double> closed_form; ///< components of the result of the closed form
+  double difference = 0; ///< largest |difference| there, in the precision that shows most of it
+};
+
+/// Result of `compare`.
+struct comparison {
+  std::string label;                      ///< label passed to `compare`
+  verdict outcome = verdict::agrees;      ///< worst verdict of all samples
+  std::size_t samples = 0;                ///< number of inputs tried
+  std::array<std::size_t, 4> counts{};    ///< number of samples of every verdict
+  double tolerance = 0;                   ///< allowed error, in units of the last place
+  std::vector<worst_errors> errors;       ///< one for every scalar type
+  std::optional<counterexample> simplest; ///< simplest input with the worst verdict
+  /// names the function that returned fewer digits than its arguments have, so that fewer were
+  /// compared; empty if that changed nothing
+  std::string note{};
+
+  /// True if the formulas agree.
+  [[nodiscard]] explicit operator bool() const { return outcome == verdict::agrees; }
+};
+
 namespace detail {
+
+/// A separate stream, independent of the locale and the caller's format.
+[[nodiscard]] inline std::ostringstream plain_stream(int digits) {
+  std::ostringstream stream;
+  stream.imbue(std::locale::classic()); // declared by <ios>
+  stream.precision(digits);
+  return stream;
+}
+
+/// Text of the components; those negligible beside the largest component are printed as 0.
+[[nodiscard]] inline std::string components_text(std::span<const double> numbers, int digits) {
+  double largest = 0;
+  for (const double x : numbers) {
+    largest = std::max(largest, std::isfinite(x) ? std::abs(x) : 0.0);
+  }
+  auto out = plain_stream(digits);
+  const double nothing = largest * std::pow(10.0, -digits - 2);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const double x = numbers[i];
+    out << (i > 0 ? ", " : "");
+    if (std::isnan(x)) {
+      out << "nan"; // whatever its sign
+    } else {
+      out << (std::abs(x) < nothing ? 0.0 : x);
+    }
+  }
+  return numbers.size() == 1 ? out.str() : "(" + out.str() + ")";
+}
+
+/// Results of both sides: ten digits, or as many as show the difference.
+[[nodiscard]] inline std::array<std::string, 2> sides_text(const counterexample& c) {
+  for (int digits = 10;; ++digits) {
+    std::array sides = {components_text(c.automatic, digits),
+                        components_text(c.closed_form, digits)};
+    if (sides[0] != sides[1] || digits == std::numeric_limits<double>::max_digits10) {
+      return sides;
+    }
+  }
+}
+
+/// A field of a CSV file, quoted if necessary.
+[[nodiscard]] inline std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) {
+    return text;
+  }
+  std::string quoted = "\"";
+  for (const char c : text) {
+    quoted += c == '"' ? "\"\"" : std::string(1, c);
+  }
+  return quoted + "\"";
+}
+
+} // namespace detail
+
+/// A paragraph for people.
+[[nodiscard]] inline std::string to_text(const comparison& c) {
+  auto out = detail::plain_stream(3);
+  out << c.label << ": ";
+  for (const verdict v : {verdict::disagrees, verdict::not_finite, verdict::loses_precision}) {
+    if (const std::size_t count = c.counts[std::size_t(v)]; count > 0) {
+      out << to_text(v) << " at " << count << ", ";
+    }
+  }
+  out << "agrees at " << c.counts[0] << " of " << c.samples << " inputs\n";
+  for (const worst_errors& e : c.errors) {
+    out << "  " << e.digits << " digits";
+    if (e.compared_digits > 0) {
+      out << ", compared to " << e.compared_digits;
+    }
+    out << ": worst error " << e.ulps << " ulp, relative " << e.relative << ", absolute "
+        << e.absolute;
+    if (!e.input.empty()) {
+      out << ", at " << e.input;
+    }
+    out << "\n";
+  }
+  if (!c.note.empty()) {
+    out << "  note: " << c.note << "\n";
+  }
+  if (c.simplest) {
+    const auto [automatic, closed_form] = detail::sides_text(*c.simplest);
+    out << "  simplest input: " << c.simplest->input << "\n    automatic:   " << automatic
+        << "\n    closed form: " << closed_form << "\n";
+    if (automatic == closed_form) { // more digits than `double` has would show it
+      out << "    difference:  " << c.simplest->difference << "\n";
+    }
+  }
+  return out.str();
+}
+
+/// A table for documents, one row per comparison.
+[[nodiscard]] inline std::string to_markdown(std::span<const comparison> comparisons) {
+  std::string text = "| formula | verdict | simplest input | automatic | closed form |\n"
+                     "|---|---|---|---|---|\n";
+  for (const comparison& c : comparisons) {
+    text += "| " + c.label + " | " + std::string(to_text(c.outcome)) +
+            (c.note.empty() ? "" : " (" + c.note + ")");
+    if (c.simplest) {
+      const auto [automatic, closed_form] = detail::sides_text(*c.simplest);
+      text += " | " + c.simplest->input + " | " + automatic + " | " + closed_form + " |\n";
+    } else {
+      text += " | | | |\n";
+    }
+  }
+  return text;
+}
+
+/// A table for programs, one line per comparison and scalar.
+[[nodiscard]] inline std::string to_csv(std::span<const comparison> comparisons) {
+  auto out = detail::plain_stream(17);
+  out << "label,verdict,samples,agreeing,tolerance_ulp,digits,worst_ulp,worst_relative,"
+         "worst_absolute,worst_input,simplest_input,compared_digits\n";
+  for (const comparison& c : comparisons) {
+    for (const worst_errors& e : c.errors) {
+      out << detail::csv_field(c.label) << "," << to_text(c.outcome) << "," << c.samples << ","
+          << c.counts[0] << "," << c.tolerance << "," << e.digits << "," << e.ulps << ","
+          << e.relative << "," << e.absolute << "," << detail::csv_field(e.input) << ","
+          << detail::csv_field(c.simplest ? c.simplest->input : "") << ","
+          << (e.compared_digits > 0 ? e.compared_digits : e.digits) << "\n";
+    }
+  }
+  return out.str();
+}
+
+namespace detail {
+
+/// Length of numbers as text: their digits, points and signs, without the zero before a point and
+/// without zeros. Among those of equal length the simplest are nearest to 1 in size, as a ratio,
+/// and then positive: 0, 1, 2, 3 … 9, −1, ½, −2, …
+struct complexity {
+  std::size_t characters = 0;
+  double ratios = 0;
+  std::size_t negative = 0;
+
+  void add(double x) {
+    if (x != 0) {
+      const std::size_t all = to_text(x).size();
+      characters += std::abs(x) < 1 && std::abs(x) >= 1e-3 ? all - 1 : all;
+      ratios += std::abs(std::log(std::abs(x)));
+      negative += x < 0 ? 1U : 0U;
+    }
+  }
+
+  [[nodiscard]] bool operator<(const complexity& other) const {
+    return std::tie(characters, ratios, negative) <
+           std::tie(other.characters, other.ratios, other.negative);
+  }
+};
+
+[[nodiscard]] inline complexity complexity_of(const coordinates& point) {
+  complexity sum;
+  for (const double x : point) {
+    sum.add(x);
+  }
+  return sum;
+}
+
+/// x rounded to a number of significant decimal digits.
+///
+/// \param round  to an integer: to the nearest one, or towards zero
+[[nodiscard]] inline double rounded_to_digits(double x, int digits,
+                                              double (*round)(double) = std::round) {
+  if (x == 0 || !std::isfinite(x)) {
+    return x;
+  }
+  // Uses an exact power of ten, on either side of 1.
+  const int shift = digits - 1 - int(std::floor(std::log10(std::abs(x))));
+  const double power = std::pow(10.0, std::abs(shift));
+  return shift >= 0 ? round(x * power) / power : round(x / power) * power;
+}
+
+/// Replaces coordinates by simpler numbers while `fails(point)` stays true: one after the other, or
+/// all that are equal, or all that are nearly equal, which keep their differences.
+///
+/// Every replacement shortens the text, so this ends; points are tried in a fixed order, so it ends
+/// at the same one every time.
+template <class Contains, class Fails>
+[[nodiscard]] coordinates simplified(coordinates point, const Contains& contains,
+                                     const Fails& fails) {
+  const auto is_simpler = [&](const coordinates& other) {
+    return complexity_of(other) < complexity_of(point) && contains(other) && fails(other);
+  };
+  const auto simplify_from = [&](std::size_t i) {
+    const double old = point[i];
+    const double shorter = rounded_to_digits(old, 1, std::trunc);
+    for (const double candidate :
+         {0.0, 1.0, 2.0, 3.0, -1.0, 0.5, -0.5, std::round(old), std::abs(rounded_to_digits(old, 1)),
+          rounded_to_digits(old, 1), std::abs(shorter), shorter, rounded_to_digits(old, 2),
+          rounded_to_digits(old, 2, std::trunc), rounded_to_digits(old, 4)}) {
+      for (const double nearness : {-1.0, 0.0, 1e-2}) {
+        coordinates other = point;
+        std::size_t changed = 0;
+        for (std::size_t j = 0; j < point.size(); ++j) {
+          if (j == i || std::abs(point[j] - old) <= nearness * std::abs(old)) {
+            other[j] = j == i || point[j] == old ? candidate : candidate + (point[j] - old);
+            ++changed;
+          }
+        }
+        if ((nearness < 0 || changed > 1) && is_simpler(other)) {
+          point = other;
+          return true;
+        }
+      }
+    }
+    return false;
+  };
+  bool changed = true;
+  while (changed) {
+    changed = false;
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      changed = simplify_from(i) || changed;
+    }
+  }
+  return point;
+}
+
+/// The error of a component that may be a slip.
+struct suspect {
+  std::size_t component = 0;
+  double error = 0;             ///< error in the last precision
+  double allowed = 0;           ///< allowed error there
+  bool is_short = false;        ///< a function has fewer digits than that: round-off stays, too
+  bool may_be_rounding = false; ///< the error leaves half of those digits
+};
+
+/// The component, if any, that is wrong in every precision, by an error that is the same in the
+/// first and the last of them; the one with the largest error if there are several.
+[[nodiscard]] inline std::optional<suspect> suspected(std::span<const difference> differences) {
+  const difference& last = differences.back();
+  std::optional<suspect> result;
+  for (std::size_t i = 0; i < last.errors.size(); ++i) {
+    const double error = last.errors[i];
+    const bool fails =
+        std::all_of(differences.begin(), differences.end(), [&](const difference& d) {
+          return i < d.errors.size() && d.errors[i] > d.allowed;
+        });
+    if (fails && error >= differences.front().errors[i] / 2 && (!result || error > result->error)) {
+      result = {i, error, last.allowed, differences.size() > 1 && last.ulps_in_shorter > 1};
+    }
+  }
+  if (result && result->is_short) {
+    result->may_be_rounding =
+        last.common_ulps() < std::pow(10.0, std::min(last.digits[0], last.digits[1]) / 2.0);
+  }
+  return result;
+}
+
+/// True if all components are finite in both results or in neither, in every precision.
+[[nodiscard]] inline bool all_finite(std::span<const difference> differences) {
+  return std::all_of(differences.begin(), differences.end(),
+                     [](const difference& d) { return d.is_finite; });
+}
+
+/// Verdict on the finite components, from the differences in several precisions, the least precise
+/// first.
+///
+/// Round-off shrinks with ε. A slip is visible in every scalar, and stays constant.
+[[nodiscard]] inline verdict judged(std::span<const difference> differences, double tolerance) {
+  return suspected(differences) ? verdict::disagrees
+         : std::any_of(differences.begin(), differences.end(),
+                       [&](const difference& d) { return d.common_ulps() > tolerance; })
+             ? verdict::loses_precision
+             : verdict::agrees;
+}
+
+/// True if the error of a component at a point is a slip. It may be round-off that leaves no digit
+/// in any precision, as that of 1 − cos x at 1e-12, or that is by chance the same in two.
+///
+/// Towards another point, at distances that grow from 2e-16 on, errors are the same in the first
+/// and the last precision for a while. If the error is round-off, the last precision then begins to
+/// have digits, and its error shrinks gradually. That of a slip vanishes at once, or stays to the
+/// end.
+///
+/// \param pair  a formula_pair of several precisions
+template <class Pair>
+[[nodiscard]] bool is_slip(const Pair& pair, const coordinates& point, const suspect& at_point,
+                           const coordinates& other) {
+  double error = at_point.error, inside = 0, outside = 0x1p-52;
+  const auto at = [&](double s) {
+    coordinates between = point;
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      between[i] += s * (other[i] - point[i]);
+    }
+    // Excluded points carry no information.
+    return pair.contains(between) ? pair.errors_at(between, at_point.component)
+                                  : std::array{error, error};
+  };
+  const auto stays = [&](double s) {
+    const auto [first, last] = at(s);
+    const bool same = first > 0 && last >= first / 2;
+    error = same ? last : error;
+    return same;
+  };
+  for (; outside < 1 && stays(outside); outside *= 8) {
+    inside = outside;
+  }
+  if (outside >= 1) {
+    return !at_point.may_be_rounding;
+  }
+  for (int i = 0; i < 5 && inside > 0; ++i) {
+    const double middle = std::sqrt(inside * outside);
+    (stays(middle) ? inside : outside) = middle;
+  }
+  double beyond = 0;
+  for (int i = 0; i < 12; ++i) {
+    beyond = std::max(beyond, at(std::min(1.0, outside * (1 + i / 11.0)))[1]);
+    if (at_point.is_short) { // its round-off does not shrink, but occasionally vanishes
+      beyond = std::max(beyond, at(std::min(1.0, outside * std::exp2(i / 2.0)))[1]);
+    }
+  }
+  // An error at one point alone may be chance, unless the formula is right near it.
+  return beyond < error / 8 && (inside > 0 || beyond <= 8 * at_point.allowed);
+}
+
+[[nodiscard]] inline std::string scalar_name(int digits) {
+  return digits == std::numeric_limits<float>::digits10    ? "float"
+         : digits == std::numeric_limits<double>::digits10 ? "double"
+         : digits == std::numeric_limits<long double>::digits10
+             ? "long double"
+             : "numbers of " + std::to_string(digits) + " digits";
+}
+
+/// Names the function that returned fewer digits than its arguments have, and the remedy.
+[[nodiscard]] inline std::string precision_note(int digits, const difference& d) {
+  const bool first = d.digits[0] < digits, second = d.digits[1] < digits;
+  return std::string(first && second ? "both functions"
+                     : first         ? "the first function"
+                                     : "the second function") +
+         " returned " + scalar_name(std::min(d.digits[0], d.digits[1])) + " where " +
+         (first && second ? "their" : "its") + " arguments were " + scalar_name(digits) +
+         ": a constant made it so, as the 0.0 of derivative(f, 0.0): write T(0)";
+}
+
+/// Records in c that fewer digits were decisive, and counts errors in those.
+///
+/// \param shorter  for every precision, as measured for the points at which it was decisive;
+///   unchanged if there are none
+inline void count_in_shorter(comparison& c, std::span<const difference> shorter) {
+  for (std::size_t k = 0; k < shorter.size(); ++k) {
+    if (shorter[k].ulps_in_shorter > 1) {
+      c.errors[k].ulps /= shorter[k].ulps_in_shorter;
+      c.errors[k].compared_digits = std::min(shorter[k].digits[0], shorter[k].digits[1]);
+      c.note = precision_note(c.errors[k].digits, shorter[k]);
+    }
+  }
+}
+
+[[nodiscard]] inline bool by_common_ulps(const difference& a, const difference& b) {
+  return a.common_ulps() < b.common_ulps();
+}
 
 /// Result type of a function of the inputs.
 template <class T, class F, class Inputs>

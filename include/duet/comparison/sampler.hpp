@@ -2,13 +2,12 @@
 #pragma once
 
 #include <duet/comparison/domain.hpp>
-#include <duet/comparison/restricted.hpp>
-#include <duet/comparison/structured_points.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -21,9 +20,284 @@
 #include <vector>
 
 /// \file
-/// Sampler of the points at which formulas are compared.
+/// Sampler of the points at which formulas are compared. Many of these are inputs at which formulas
+/// tend to fail that are right elsewhere: near special ones, equal and nearly equal arguments,
+/// components that are zero or equal.
 
 namespace duet {
+
+namespace detail {
+
+/// An argument and the index of its first coordinate among those of all; an array counts as many as
+/// it has elements. The code common to all samplers does not depend on the domain's type, so it is
+/// compiled once.
+struct sampled_argument {
+  const void* kind;                 ///< the same for two that may be equal
+  std::size_t first, size;          ///< its coordinates
+  std::vector<coordinates> special; ///< special points; inputs are most often near the first
+  /// largest absolute value of a coordinate, as far as it is known
+  double extent;
+  std::function<coordinates(random_source&)> random_point;
+  std::function<std::vector<coordinates>(std::span<const double>, random_source&)> related_points;
+  std::function<bool(std::span<const double>)> contains;
+};
+
+template <class Domain>
+inline constexpr char kind_of = 0;
+
+/// Appends the arguments that represent one of this domain.
+///
+/// \param first  index of its first coordinate
+template <class Domain>
+void append_arguments(std::vector<sampled_argument>& arguments, const Domain& domain,
+                      std::size_t first, random_source& random) {
+  sampled_argument made{
+      &kind_of<Domain>, first, domain.size(), domain.special_points(), 0, {}, {}, {}};
+  made.random_point = [&domain](random_source& r) { return domain.random_point(r); };
+  made.contains = [&domain](std::span<const double> point) { return domain.contains(point); };
+  if constexpr (requires(const coordinates& c) { domain.related_points(c, random); }) {
+    made.related_points = [&domain](std::span<const double> point, random_source& r) {
+      return domain.related_points(point, r);
+    };
+  }
+  for (const coordinates& point : made.special) {
+    for (const double x : point) {
+      made.extent = std::max(made.extent, std::abs(x));
+    }
+  }
+  arguments.push_back(std::move(made));
+}
+template <std::size_t N, class Domain>
+void append_arguments(std::vector<sampled_argument>& arguments, const arrays<N, Domain>& domain,
+                      std::size_t first, random_source& random) {
+  for (std::size_t i = 0; i < N; ++i) {
+    append_arguments(arguments, domain.element, first + i * domain.element.size(), random);
+  }
+}
+/// The sampler stores the excluded points and checks for every point whether it is contained.
+template <class Domain>
+void append_arguments(std::vector<sampled_argument>& arguments, const restricted<Domain>& domain,
+                      std::size_t first, random_source& random) {
+  append_arguments(arguments, domain.domain(), first, random);
+}
+
+/// Makes structured inputs out of random ones.
+class structured_points {
+public:
+  structured_points(std::vector<sampled_argument> arguments, random_source& random)
+      : arguments_(std::move(arguments)), random_(random) {
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      add({&structured_points::put_near_special, {i}});
+      add({&structured_points::put_near_special, {i}});
+      if (arguments_[i].size > 1) {
+        add({&structured_points::put_pattern, {i}});
+      }
+    }
+    std::vector<std::size_t> all, alike;
+    for (std::size_t i = 0; i < arguments_.size(); ++i) {
+      all.push_back(i);
+      alike.clear();
+      bool is_first = true;
+      for (std::size_t j = 0; j < arguments_.size(); ++j) {
+        if (arguments_[j].kind == arguments_[i].kind) {
+          alike.push_back(j);
+          is_first = is_first && j >= i;
+          if (j > i) {
+            add({&structured_points::put_related, {i, j}});
+          }
+        }
+      }
+      if (is_first && alike.size() > 2) {
+        add({&structured_points::put_alike, alike});
+      }
+    }
+    if (all.size() > 1) {
+      add({&structured_points::put_near_special, all});
+    }
+  }
+
+  /// Minimum number of structured points: four of each kind.
+  [[nodiscard]] std::size_t min_count() const {
+    return std::min<std::size_t>(4 * recipes_.size(), 256);
+  }
+
+  /// Changes a random point into the next structured point.
+  ///
+  /// \param point  the coordinates of all arguments in a row
+  void put_into(coordinates& point) {
+    recipe& next = recipes_[count_++ % recipes_.size()];
+    (this->*next.put)(point, next);
+    ++next.used;
+  }
+
+private:
+  struct recipe {
+    void (structured_points::*put)(coordinates&, const recipe&);
+    std::vector<std::size_t> of; ///< indices of the arguments
+    std::size_t used = 0;
+    double phase = 0;
+  };
+
+  void add(recipe r) {
+    r.phase = random_.unit();
+    recipes_.push_back(std::move(r));
+  }
+
+  /// Log-uniform up to `largest`, down to 1e-12 times the smaller of `largest` and 1.
+  ///
+  /// \param u  in [0, 1)
+  [[nodiscard]] static double distance(double u, double largest) {
+    const double smallest = 1e-12 * std::min(largest, 1.0);
+    return smallest * std::pow(largest / smallest, u);
+  }
+  /// Spread evenly over [0, 1), for the first few k as for many, and each i.
+  [[nodiscard]] static double even(const recipe& r, std::size_t k, std::size_t i = 0) {
+    const double u = r.phase + double(k) * 0.6180339887498949 + double(i) * 0.7548776662466927;
+    return u - std::floor(u);
+  }
+
+  /// A direction of n coordinates: any, along an axis, or of components that are zero or equal.
+  [[nodiscard]] coordinates direction(std::size_t n) {
+    coordinates result(n, 0.0);
+    const int kind = random_.integer(0, 3);
+    if (n == 1 || kind == 0) {
+      result[std::size_t(random_.integer(0, int(n) - 1))] = random_.sign();
+      return result;
+    }
+    double square = 0;
+    for (double& x : result) {
+      x = random_.normal();
+    }
+    if (kind == 1) {
+      shape(result);
+    }
+    for (const double x : result) {
+      square += x * x;
+    }
+    for (double& x : result) {
+      x /= std::sqrt(square > 0 ? square : 1);
+    }
+    return result;
+  }
+
+  /// Makes a coordinate zero, or two, or all, the same or opposite.
+  void shape(std::span<double> x) {
+    const auto any = [&] { return std::size_t(random_.integer(0, int(x.size()) - 1)); };
+    const std::size_t from = any(), to = any();
+    switch (random_.integer(0, 3)) {
+    case 0:
+      x[to] = 0;
+      break;
+    case 1:
+      x[to] = x[from];
+      break;
+    case 2:
+      x[to] = to == from ? x[to] : -x[from];
+      break;
+    default:
+      std::fill(x.begin(), x.end(), x[from]);
+    }
+  }
+
+  [[nodiscard]] static std::span<double> part(coordinates& point, const sampled_argument& a) {
+    return std::span(point).subspan(a.first, a.size);
+  }
+
+  /// \return true if it is in the domain; only then it is written
+  static bool put(coordinates& point, const sampled_argument& a, std::span<const double> values) {
+    const bool contained = a.contains(values);
+    if (contained) {
+      std::copy(values.begin(), values.end(), part(point, a).begin());
+    }
+    return contained;
+  }
+
+  /// Writes a point at that distance from `centre`, or nearer if that is out of the domain.
+  bool put_near(coordinates& point, const sampled_argument& a, std::span<const double> centre,
+                double distance) {
+    const coordinates towards = direction(a.size);
+    for (int i = 0; i < 40; ++i, distance *= i % 2 == 0 ? -0.25 : -1) {
+      coordinates values(centre.begin(), centre.end());
+      for (std::size_t k = 0; k < a.size; ++k) {
+        values[k] += distance * towards[k];
+      }
+      if (put(point, a, values)) {
+        return true;
+      }
+    }
+    return put(point, a, centre);
+  }
+
+  /// Every other time near the first special point, else near the others in turn.
+  void put_near_special(coordinates& point, const recipe& r) {
+    for (const std::size_t i : r.of) {
+      const sampled_argument& a = arguments_[i];
+      if (!a.special.empty()) {
+        const std::size_t k = r.used / 2, n = a.special.size();
+        const bool first = r.used % 2 == 0;
+        put_near(point, a, a.special[first ? 0 : k % n],
+                 distance(first ? even(r, k) : even(r, k / n, k % n), a.extent > 0 ? a.extent : 1));
+      }
+    }
+  }
+
+  void put_pattern(coordinates& point, const recipe& r) {
+    const sampled_argument& a = arguments_[r.of[0]];
+    const auto old = part(point, a);
+    coordinates values(old.begin(), old.end());
+    shape(values);
+    put(point, a, values);
+  }
+
+  /// A value of both: a random one of either, or a special one.
+  [[nodiscard]] coordinates common_value(const sampled_argument& a, const sampled_argument& b) {
+    for (int i = 0; i < 20; ++i) {
+      const sampled_argument& of = i % 2 == 0 ? a : b;
+      const coordinates value =
+          random_.integer(0, 3) == 0 && !of.special.empty()
+              ? of.special[std::size_t(random_.integer(0, int(of.special.size()) - 1))]
+              : of.random_point(random_);
+      if (a.contains(value) && b.contains(value)) {
+        return value;
+      }
+    }
+    return {};
+  }
+
+  /// Equal or, every other time, in another special relation; exactly, or nearly.
+  void put_related(coordinates& point, const recipe& r) {
+    const sampled_argument &a = arguments_[r.of[0]], &b = arguments_[r.of[1]];
+    const coordinates value = common_value(a, b);
+    if (value.empty()) {
+      return;
+    }
+    put(point, a, value);
+    const std::size_t k = r.used / 2;
+    if (r.used % 2 == 0 || !b.related_points) {
+      put_near(point, b, value, k % 3 == 0 ? 0 : distance(even(r, k), 1));
+      return;
+    }
+    const std::vector<coordinates> related = b.related_points(value, random_);
+    const std::size_t n = related.size();
+    put_near(point, b, related[k % n], k / n % 3 == 0 ? 0 : distance(even(r, k / n, k % n), 1));
+  }
+
+  /// All equal, exactly or, two of three times, nearly.
+  void put_alike(coordinates& point, const recipe& r) {
+    const coordinates value = common_value(arguments_[r.of[0]], arguments_[r.of[1]]);
+    for (std::size_t k = 0; k < r.of.size() && !value.empty(); ++k) {
+      put_near(point, arguments_[r.of[k]], value,
+               k == 0 || r.used % 3 == 0 ? 0 : distance(even(r, r.used), 1));
+    }
+  }
+
+  std::vector<sampled_argument> arguments_;
+  random_source& random_;
+  std::vector<recipe> recipes_;
+  std::size_t count_ = 0;
+};
+
+} // namespace detail
 
 /// Sampler of the arguments of a function, each from a separate domain. Points are those of the
 /// caller, special ones in all combinations (or, if those are too many, each with random others,
