@@ -17,7 +17,7 @@
 #include <string_view>
 
 /// \file
-/// Modified serial chains: with other joint limits, with a tool, on a base, with a locked joint.
+/// Chains and trees with other limits; chains with a tool, on a base, with a locked joint.
 
 namespace duet {
 
@@ -25,21 +25,21 @@ namespace detail {
 
 /// A copy of a chain in memory, with its names if it has some; for a chain known to the compiler
 /// its table.
-template <SerialChain C>
+template <HasLimits C>
 [[nodiscard]] constexpr auto copy_of_chain(const C& chain) {
-  if constexpr (requires { chain.table(); }) {
+  if constexpr (requires { typename C::arm; }) {
     return chain.table();
   } else {
     return chain;
   }
 }
 
-/// A joint argument: the number of a joint or, if the chain has names, its name.
+/// A joint argument: the number of a joint or, if the chain has names, its name; of a tree the
+/// number or the name of a coordinate.
 template <class Which, class C>
 concept JointOf = std::integral<Which> ||
-    (std::convertible_to<const Which&, std::string_view>&& requires(const C& chain) {
-      chain.joint_names();
-    });
+    (std::convertible_to<const Which&, std::string_view> &&
+     (!SerialChain<C> || requires(const C& chain) { chain.joint_names(); }));
 
 /// A joint name given for a chain without names.
 template <class Which, class C>
@@ -51,6 +51,8 @@ template <class C>
                                                     [[maybe_unused]] int i) {
   if constexpr (requires { chain.joint_names(); }) {
     return chain.joint_names()[std::size_t(i)];
+  } else if constexpr (!SerialChain<C>) {
+    return chain.coordinate_names()[std::size_t(i)];
   } else {
     return {};
   }
@@ -63,11 +65,14 @@ template <class C, JointOf<C> Which>
 [[nodiscard]] constexpr int joint_number(const C& chain, const Which& which, const char* function) {
   if constexpr (std::integral<Which>) {
     if (which < 0 || which >= chain.size()) {
-      raise(invalid_input(message("duet: ", function, ": joint ", which,
-                                  " does not exist, the chain has ", chain.size(),
-                                  " moving joints")));
+      constexpr bool is_tree = !SerialChain<C>;
+      raise(invalid_input(message("duet: ", function, is_tree ? ": coordinate " : ": joint ", which,
+                                  " does not exist, the ", is_tree ? "tree has " : "chain has ",
+                                  chain.size(), is_tree ? "" : " moving joints")));
     }
     return int(which);
+  } else if constexpr (!SerialChain<C>) {
+    return chain.coordinate(which);
   } else {
     const auto& names = chain.joint_names();
     const auto found = std::find(names.begin(), names.end(), std::string_view(which));
@@ -83,15 +88,20 @@ template <class C, JointOf<C> Which>
 } // namespace detail
 
 /// The chain with other limits of a joint, given by its number or, if the chain is from a file, by
-/// its name. All three limits are replaced, so the velocity is not limited if `limits.velocity` is
-/// the default. A `continuous` joint that gets a lower or an upper limit becomes `revolute`.
+/// its name; or the tree with other limits of a coordinate, given by its number or name. All three
+/// limits are replaced, so the velocity is not limited if `limits.velocity` is the default. A
+/// `continuous` joint that gets a lower or an upper limit becomes `revolute`.
+///
+/// Joints of a tree that mimic the coordinate no longer narrow its limits. Chains of the tree have
+/// the new limits, too.
 ///
 /// Example: `auto limits = arm.limits(3); limits.upper = -0.5; arm = with_limits(arm, 3, limits);`
 ///
-/// \return a chain of the same type, with the same names; for a `static_chain` a `serial_chain`
+/// \return a chain of the same type, with the same names, for a `static_chain` a `serial_chain`; or
+/// a `kinematic_tree`
 /// \throws invalid_input for a joint that does not exist, and for limits that allow no motion: a
 /// lower limit above the upper one, NaN, a negative velocity
-template <SerialChain C, detail::JointOf<C> Which>
+template <HasLimits C, detail::JointOf<C> Which>
 [[nodiscard]] constexpr auto with_limits(const C& chain, const Which& which,
                                          const joint_limits<typename C::scalar_type>& limits) {
   auto result = detail::copy_of_chain(chain);
@@ -101,21 +111,23 @@ template <SerialChain C, detail::JointOf<C> Which>
   return result;
 }
 
-/// The chain with other lower and upper limits of all moving joints, in radians or units of length;
-/// velocity limits are kept. Limits are any vectors: Eigen's, `std::array`, `std::vector`.
+/// The chain or tree with other lower and upper limits of all moving joints or coordinates, in
+/// radians or units of length; velocity limits are kept. Limits are any vectors: Eigen's,
+/// `std::array`, `std::vector`.
 ///
 /// Example: `with_limits(arm, (0.9 * lower_limits(arm)).eval(), (0.9 * upper_limits(arm)).eval())`
 ///
 /// \return as for one joint
 /// \throws invalid_input if the number of limits differs from that of joints, and as for one joint
-template <SerialChain C, VectorLike Lower, VectorLike Upper>
+template <HasLimits C, VectorLike Lower, VectorLike Upper>
 [[nodiscard]] auto with_limits(const C& chain, const Lower& lower, const Upper& upper) {
   using T = typename C::scalar_type;
   using below = detail::vector_argument<Lower>;
   using above = detail::vector_argument<Upper>;
   detail::require(below::size(lower) == chain.size() && above::size(upper) == chain.size(),
                   "duet: with_limits: ", below::size(lower), " lower and ", above::size(upper),
-                  " upper limits for ", chain.size(), " moving joints");
+                  " upper limits for ", chain.size(),
+                  SerialChain<C> ? " moving joints" : " coordinates");
   auto result = detail::copy_of_chain(chain);
   for (int i = 0; i < chain.size(); ++i) {
     const joint_limits<T> limits{T(below::get(lower, i)), T(above::get(upper, i)),

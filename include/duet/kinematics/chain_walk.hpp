@@ -231,6 +231,13 @@ concept SerialChain = requires(const C& chain) {
   chain.steps();
 };
 
+/// A serial chain or a kinematic tree, whose coordinates have limits.
+template <class C>
+concept HasLimits = requires(const C& chain) {
+  typename C::scalar_type;
+  chain.limits(chain.size()).velocity;
+};
+
 namespace detail {
 
 /// The scalar of a chain's results at a configuration of type X.

@@ -251,21 +251,4 @@ private:
   detail::tree_table table_;
 };
 
-/// Lower limits of all coordinates of a tree.
-[[nodiscard]] inline Eigen::VectorXd lower_limits(const kinematic_tree& tree) {
-  Eigen::VectorXd result(tree.size());
-  for (int i = 0; i < tree.size(); ++i) {
-    result[i] = tree.limits(i).lower;
-  }
-  return result;
-}
-/// Upper limits of all coordinates of a tree.
-[[nodiscard]] inline Eigen::VectorXd upper_limits(const kinematic_tree& tree) {
-  Eigen::VectorXd result(tree.size());
-  for (int i = 0; i < tree.size(); ++i) {
-    result[i] = tree.limits(i).upper;
-  }
-  return result;
-}
-
 } // namespace duet

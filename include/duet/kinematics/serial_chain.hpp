@@ -264,24 +264,37 @@ public:
   [[nodiscard]] static constexpr const auto& steps() { return Arm::chain.steps(); }
 };
 
-/// Lower and upper limits of all joint coordinates.
-///
-/// \return a column with one number for each joint
-template <SerialChain C>
-[[nodiscard]] auto lower_limits(const C& chain) {
-  detail::joint_vector<typename C::scalar_type, C::joints> result(chain.size());
+namespace detail {
+
+/// Column of `get(limits)` for each coordinate.
+template <HasLimits C, class Get>
+[[nodiscard]] auto column_of_limits(const C& chain, const Get& get) {
+  constexpr int joints = [] {
+    if constexpr (SerialChain<C>) {
+      return C::joints;
+    } else {
+      return 0;
+    }
+  }();
+  joint_vector<typename C::scalar_type, joints> result(chain.size());
   for (int i = 0; i < chain.size(); ++i) {
-    result[i] = chain.limits(i).lower;
+    result[i] = get(chain.limits(i));
   }
   return result;
 }
-template <SerialChain C>
+
+} // namespace detail
+
+/// Lower and upper limits of all coordinates of a chain or a tree.
+///
+/// \return a column with one number for each coordinate
+template <HasLimits C>
+[[nodiscard]] auto lower_limits(const C& chain) {
+  return detail::column_of_limits(chain, [](const auto& limits) { return limits.lower; });
+}
+template <HasLimits C>
 [[nodiscard]] auto upper_limits(const C& chain) {
-  detail::joint_vector<typename C::scalar_type, C::joints> result(chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
-    result[i] = chain.limits(i).upper;
-  }
-  return result;
+  return detail::column_of_limits(chain, [](const auto& limits) { return limits.upper; });
 }
 
 /// Compile-time message for a matrix of configurations as the argument of `function` of a chain,
