@@ -63,6 +63,39 @@ DUET_ALWAYS_INLINE void set_column(J& m, const twist_column<S>& twist, At... at)
   m(5, at...) = twist.omega.z;
 }
 
+/// Screw of a joint in space, v at the fixed origin, for its axis and a point on it.
+template <class S, class Step>
+[[nodiscard]] DUET_ALWAYS_INLINE twist_column<S>
+screw_of(const Step& step, const three_vector<S>& axis, const three_vector<S>& point) {
+  auto screw = no_twist<S>();
+  if (step.is_rotational()) {
+    screw = {cross(point, axis), axis};
+  }
+  if (step.is_translational()) {
+    screw.v = screw.v + step.pitch() * axis;
+  }
+  return screw;
+}
+
+/// Takes v of all columns at the point p instead of the origin: v + ω × p (N20).
+template <class J, class S>
+DUET_ALWAYS_INLINE void take_at(J& m, const three_vector<S>& p) {
+  for (Eigen::Index i = 0; i < m.cols(); ++i) {
+    const auto twist = column_of(m, i);
+    set_column(m, twist_column<S>{twist.v + cross(twist.omega, p), twist.omega}, i);
+  }
+}
+
+/// Expresses all columns in the axes of a rotation R: Rᵀv, Rᵀω.
+template <class J, class S>
+DUET_ALWAYS_INLINE void express_in(J& m, const quaternion<S>& r) {
+  const rotation_of_many to_axes(conj(r));
+  for (Eigen::Index i = 0; i < m.cols(); ++i) {
+    const auto twist = column_of(m, i);
+    set_column(m, twist_column<S>{to_axes(twist.v), to_axes(twist.omega)}, i);
+  }
+}
+
 /// Sets m to the Jacobian of a frame on a chain and returns the pose of that frame, with its
 /// rotation only if m needs it or `WithRotation` is true.
 template <class Frame, bool WithRotation, class S, class C, class X, class At, class J>
@@ -72,34 +105,17 @@ template <class Frame, bool WithRotation, class S, class C, class X, class At, c
   const auto& on = frame_on(chain, at);
   m.resize(6, chain.size());
   const auto put_screw = [&](Eigen::Index i, const auto& step, const auto& axis, const auto& point)
-                             DUET_INLINE_LAMBDA {
-                               auto screw = no_twist<S>(); // in space, v at the fixed origin
-                               if (step.is_rotational()) {
-                                 screw = {cross(point, axis), axis};
-                               }
-                               if (step.is_translational()) {
-                                 screw.v = screw.v + step.pitch() * axis;
-                               }
-                               set_column(m, screw, i);
-                             };
+                             DUET_INLINE_LAMBDA { set_column(m, screw_of(step, axis, point), i); };
   const auto link = walk < WithRotation || !is_spatial, S > (chain, theta, on.link, put_screw);
   for (Eigen::Index i = on.link; i < chain.size(); ++i) { // these joints only move other links
     set_column(m, no_twist<S>(), i);
   }
   const auto at_frame = attached(link, on.offset);
-  if constexpr (!is_spatial) { // v taken at the frame's origin instead: v + ω × p (N20)
-    for (Eigen::Index i = 0; i < m.cols(); ++i) {
-      const auto twist = column_of(m, i);
-      set_column(
-          m, twist_column<S>{twist.v + cross(twist.omega, at_frame.translation), twist.omega}, i);
-    }
+  if constexpr (!is_spatial) {
+    take_at(m, at_frame.translation);
   }
-  if constexpr (std::same_as<Frame, body_frame>) { // in its axes: Rᵀv, Rᵀω
-    const rotation_of_many to_body_axes(conj(at_frame.rotation));
-    for (Eigen::Index i = 0; i < m.cols(); ++i) {
-      const auto twist = column_of(m, i);
-      set_column(m, twist_column<S>{to_body_axes(twist.v), to_body_axes(twist.omega)}, i);
-    }
+  if constexpr (std::same_as<Frame, body_frame>) {
+    express_in(m, at_frame.rotation);
   }
   return at_frame;
 }

@@ -121,11 +121,7 @@ public:
   [[nodiscard]] attached_frame<double> link(std::string_view name) const {
     const auto found = table_.link_numbers.find(std::string(name));
     if (found == table_.link_numbers.end()) {
-      std::vector<std::string> names;
-      for (const tree_link& each : links()) {
-        names.push_back(each.name);
-      }
-      fail("link", name, names);
+      fail("link", name, detail::names_of(links()));
     }
     return {found->second, {}};
   }
@@ -145,14 +141,12 @@ public:
       return detail::attached(detail::walk_down<S>(table_, x, path, detail::visit_nothing),
                               frame.offset);
     };
-    detail::link_displacement<S> result = displacement_of(view.frame);
+    const detail::link_displacement<S> frame = displacement_of(view.frame);
     if constexpr (std::same_as<At, relative_frame>) {
-      const detail::link_displacement<S> observer = displacement_of(view.observer);
-      const quaternion<S> back = conj(observer.rotation);
-      result = {back * result.rotation,
-                detail::rotated(back, result.translation - observer.translation)};
+      return detail::relative_frames<S>{frame, displacement_of(view.observer)}.pose();
+    } else {
+      return detail::pose_of_unit(frame.rotation, frame.translation.eigen());
     }
-    return detail::pose_of_unit(result.rotation, result.translation.eigen());
   }
 
   /// Forward kinematics of all links at the configuration q, in the order of

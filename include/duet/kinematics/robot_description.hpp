@@ -173,29 +173,27 @@ struct robot_description {
 
 namespace detail {
 
-/// The description in a file.
-///
-/// \throws file_error as `read_urdf_tree`, for errors of single links and joints
-template <class Xml>
-[[nodiscard]] robot_description read_urdf_description(const std::string& path);
+/// Names of links or joints.
+template <class Parts>
+[[nodiscard]] std::vector<std::string> names_of(const Parts& parts) {
+  std::vector<std::string> names;
+  for (const auto& each : parts) {
+    names.push_back(each.name);
+  }
+  return names;
+}
 
 /// Throws the error of a link or a joint, with its line if it is from a file.
 template <class Part>
-[[noreturn]] void bad_part(const robot_description& robot, const char* tag, const Part& part,
+[[noreturn]] void bad_part(const robot_description& robot, const Part& part,
                            const std::string& what) {
-  const std::string text = std::string("<") + tag + " name=\"" + part.name + "\">: " + what;
+  const std::string tag = requires { part.motion; }
+  ? "joint" : "link";
+  const std::string text = "<" + tag + " name=\"" + part.name + "\">: " + what;
   if (robot.file.empty()) {
     raise(invalid_input(printable("duet: kinematic_tree: " + text)));
   }
   raise(file_error(robot.file, part.line, text));
-}
-[[noreturn]] inline void bad_part(const robot_description& robot, const tree_joint& part,
-                                  const std::string& what) {
-  bad_part(robot, "joint", part, what);
-}
-[[noreturn]] inline void bad_part(const robot_description& robot, const tree_link& part,
-                                  const std::string& what) {
-  bad_part(robot, "link", part, what);
 }
 [[noreturn]] inline void bad_robot(const robot_description& robot, const std::string& what) {
   if (robot.file.empty()) {

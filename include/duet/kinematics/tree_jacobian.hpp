@@ -173,29 +173,6 @@ template <class S, class X, class V>
 template <class S, int Rows>
 using tree_columns = Eigen::Matrix<S, Rows, Eigen::Dynamic>;
 
-/// A frame of a tree and its observer, relative to the node above both.
-template <class S>
-struct relative_frames {
-  link_displacement<S> frame, observer;
-
-  /// Pose of the frame relative to the observer.
-  [[nodiscard]] dual_quaternion<S> pose() const {
-    const quaternion<S> back = conj(observer.rotation);
-    return pose_of_unit(back * frame.rotation,
-                        rotated(back, frame.translation - observer.translation).eigen());
-  }
-  /// The frame whose axes the columns for `Frame` use.
-  template <class Frame>
-  [[nodiscard]] const link_displacement<S>& axes() const {
-    return std::same_as<Frame, body_frame> ? frame : observer;
-  }
-  /// The origin at which the columns for `Frame` have their v.
-  template <class Frame>
-  [[nodiscard]] const link_displacement<S>& origin() const {
-    return std::same_as<Frame, spatial_frame> ? observer : frame;
-  }
-};
-
 /// The two frames, and all nodes that move between them.
 template <class S>
 struct relative_motion : relative_frames<S> {
@@ -254,18 +231,10 @@ template <class Frame, class S, class X>
   }
   // All columns, as zero columns stay zero: finding the others takes longer.
   if (!std::same_as<Frame, spatial_frame> || !view.is_from_above) {
-    const three_vector<S>& p = result.template origin<Frame>().translation;
-    for (Eigen::Index i = 0; i < m.cols(); ++i) {
-      const twist_column<S> twist = column_of(m, i);
-      set_column(m, twist_column<S>{twist.v + cross(twist.omega, p), twist.omega}, i);
-    }
+    take_at(m, result.template origin<Frame>().translation);
   }
   if (std::same_as<Frame, body_frame> || !view.is_from_above) {
-    const rotation_of_many to_axes(conj(result.template axes<Frame>().rotation));
-    for (Eigen::Index i = 0; i < m.cols(); ++i) {
-      const twist_column<S> twist = column_of(m, i);
-      set_column(m, twist_column<S>{to_axes(twist.v), to_axes(twist.omega)}, i);
-    }
+    express_in(m, result.template axes<Frame>().rotation);
   }
   return result;
 }

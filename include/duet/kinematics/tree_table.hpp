@@ -157,11 +157,8 @@ private:
   [[nodiscard]] std::size_t link_of(const tree_joint& joint, const std::string& name) const {
     const auto found = table_.link_numbers.find(name);
     if (found == table_.link_numbers.end()) {
-      std::vector<std::string> names;
-      for (const tree_link& link : robot_.links) {
-        names.push_back(link.name);
-      }
-      bad_part(robot_, joint, "no link \"" + name + "\": " + closest_names(name, names));
+      bad_part(robot_, joint,
+               "no link \"" + name + "\": " + closest_names(name, names_of(robot_.links)));
     }
     return std::size_t(found->second);
   }
@@ -272,13 +269,9 @@ private:
     const tree_joint& joint = joint_at(j);
     const auto found = joint_numbers_.find(joint.mimic->joint);
     if (found == joint_numbers_.end()) {
-      std::vector<std::string> names;
-      for (const tree_joint& each : robot_.joints) {
-        names.push_back(each.name);
-      }
       bad_part(robot_, joint,
                "it mimics no joint \"" + joint.mimic->joint +
-                   "\": " + closest_names(joint.mimic->joint, names));
+                   "\": " + closest_names(joint.mimic->joint, names_of(robot_.joints)));
     }
     for (const tree_joint* each : {&joint, &joint_at(found->second)}) {
       if (each->motion.coordinates() != 1) {
@@ -492,14 +485,7 @@ DUET_ALWAYS_INLINE void for_each_node(const tree_table& table, const X& x, int c
       const auto put_screw = [&](Eigen::Index, const auto& step, const auto& axis,
                                  const auto& point) DUET_INLINE_LAMBDA {
         if constexpr (!std::same_as<Visit, decltype(visit_nothing)>) {
-          twist_column<S> screw = no_twist<S>();
-          if (step.is_rotational()) {
-            screw = {cross(point, axis), axis};
-          }
-          if (step.is_translational()) {
-            screw.v = screw.v + step.pitch() * axis;
-          }
-          visit(coordinate, screw);
+          visit(coordinate, screw_of(step, axis, point));
         }
       };
       after(node(i), [&](const link_displacement<S>& parent) DUET_INLINE_LAMBDA {
@@ -564,6 +550,29 @@ walk_down(const tree_table& table, const X& x, const node_path& path, const Visi
       [&](const tree_node&, const auto& move) DUET_INLINE_LAMBDA { result = move(result); });
   return result;
 }
+
+/// A frame of a tree and its observer, relative to the node above both.
+template <class S>
+struct relative_frames {
+  link_displacement<S> frame, observer;
+
+  /// Pose of the frame relative to the observer.
+  [[nodiscard]] dual_quaternion<S> pose() const {
+    const quaternion<S> back = conj(observer.rotation);
+    return pose_of_unit(back * frame.rotation,
+                        rotated(back, frame.translation - observer.translation).eigen());
+  }
+  /// The frame whose axes the columns for `Frame` use.
+  template <class Frame>
+  [[nodiscard]] const link_displacement<S>& axes() const {
+    return std::same_as<Frame, body_frame> ? frame : observer;
+  }
+  /// The origin at which the columns for `Frame` have their v.
+  template <class Frame>
+  [[nodiscard]] const link_displacement<S>& origin() const {
+    return std::same_as<Frame, spatial_frame> ? observer : frame;
+  }
+};
 
 /// Frames of all nodes.
 template <class S, class X>

@@ -63,12 +63,9 @@ public:
     const auto found = std::find_if(links_.begin(), links_.end(),
                                     [&](const urdf_link& each) { return each.name == name; });
     if (found == links_.end()) {
-      std::vector<std::string> names;
-      for (const urdf_link& each : links_) {
-        names.push_back(each.name);
-      }
-      detail::raise(invalid_input(printable("duet: urdf_chain: no link \"" + std::string(name) +
-                                            "\": " + detail::closest_names(name, names))));
+      detail::raise(
+          invalid_input(printable("duet: urdf_chain: no link \"" + std::string(name) +
+                                  "\": " + detail::closest_names(name, detail::names_of(links_)))));
     }
     return found->frame;
   }
