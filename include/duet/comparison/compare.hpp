@@ -230,12 +230,14 @@ struct complexity {
   double ratios = 0;
   std::size_t negative = 0;
 
-  void add(double x) {
-    if (x != 0) {
-      const std::size_t all = to_text(x).size();
-      characters += std::abs(x) < 1 && std::abs(x) >= 1e-3 ? all - 1 : all;
-      ratios += std::abs(std::log(std::abs(x)));
-      negative += x < 0 ? 1U : 0U;
+  explicit complexity(const coordinates& point) {
+    for (const double x : point) {
+      if (x != 0) {
+        const std::size_t all = to_text(x).size();
+        characters += std::abs(x) < 1 && std::abs(x) >= 1e-3 ? all - 1 : all;
+        ratios += std::abs(std::log(std::abs(x)));
+        negative += x < 0 ? 1U : 0U;
+      }
     }
   }
 
@@ -244,14 +246,6 @@ struct complexity {
            std::tie(other.characters, other.ratios, other.negative);
   }
 };
-
-[[nodiscard]] inline complexity complexity_of(const coordinates& point) {
-  complexity sum;
-  for (const double x : point) {
-    sum.add(x);
-  }
-  return sum;
-}
 
 /// x rounded to a number of significant decimal digits.
 ///
@@ -276,7 +270,7 @@ template <class Contains, class Fails>
 [[nodiscard]] coordinates simplified(coordinates point, const Contains& contains,
                                      const Fails& fails) {
   const auto is_simpler = [&](const coordinates& other) {
-    return complexity_of(other) < complexity_of(point) && contains(other) && fails(other);
+    return complexity(other) < complexity(point) && contains(other) && fails(other);
   };
   const auto simplify_from = [&](std::size_t i) {
     const double old = point[i];
@@ -441,10 +435,6 @@ inline void count_in_shorter(comparison& c, std::span<const difference> shorter)
       c.note = precision_note(c.errors[k].digits, shorter[k]);
     }
   }
-}
-
-[[nodiscard]] inline bool by_common_ulps(const difference& a, const difference& b) {
-  return a.common_ulps() < b.common_ulps();
 }
 
 /// Result type of a function of the inputs.
@@ -616,8 +606,11 @@ template <class Pair>
         });
     result.simplest = pair.values_at(simplest);
     pair.measure_at(simplest, differences);
-    result.simplest->difference =
-        std::max_element(differences.begin(), differences.end(), by_common_ulps)->absolute;
+    result.simplest->difference = std::max_element(differences.begin(), differences.end(),
+                                                   [](const difference& a, const difference& b) {
+                                                     return a.common_ulps() < b.common_ulps();
+                                                   })
+                                      ->absolute;
   }
   return result;
 }

@@ -99,9 +99,11 @@ void for_each_shaped(const Y& y, const Visit& visit) {
 
 /// The scalars of a result in a row.
 ///
-/// \param properties  properties of the result; fewer digits, if it had them, are kept
+/// \param makeup_of_result  its makeup, if wanted; fewer digits, if it had them, are kept
 template <class T, class Y>
-[[nodiscard]] std::vector<T> components_of(const Y& y, makeup& properties) {
+[[nodiscard]] std::vector<T> components_of(const Y& y, makeup* makeup_of_result = nullptr) {
+  makeup ignored;
+  makeup& properties = makeup_of_result != nullptr ? *makeup_of_result : ignored;
   std::vector<T> components;
   for_each_shaped(y, [&](const auto& x) {
     const std::size_t first = components.size();
@@ -130,24 +132,13 @@ template <class T, class Y>
   return components;
 }
 
-template <class T, class Y>
-[[nodiscard]] std::vector<T> components_of(const Y& y) {
-  makeup ignored;
-  return components_of<T>(y, ignored);
-}
-
 /// f at the point, in the precision of T.
 template <class T, class F, class Inputs>
 [[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
-                                         std::span<const double> point, makeup& properties) {
+                                         std::span<const double> point,
+                                         makeup* makeup_of_result = nullptr) {
   return components_of<T>(result_of_call(std::apply(f, inputs.template make<T>(point))),
-                          properties);
-}
-template <class T, class F, class Inputs>
-[[nodiscard]] std::vector<T> evaluate_at(const F& f, const Inputs& inputs,
-                                         std::span<const double> point) {
-  makeup ignored;
-  return evaluate_at<T>(f, inputs, point, ignored);
+                          makeup_of_result);
 }
 
 /// The difference of two results in one precision.
@@ -230,8 +221,8 @@ template <class T, class F, class G, class Inputs>
                                  const Inputs& inputs, std::span<const double> point,
                                  double tolerance) {
   std::array properties = {makeup_of<T>(), makeup_of<T>()};
-  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point, properties[0]);
-  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point, properties[1]);
+  const std::vector<T> a = evaluate_at<T>(automatic, inputs, point, &properties[0]);
+  const std::vector<T> b = evaluate_at<T>(closed_form, inputs, point, &properties[1]);
   require(a.size() == b.size(), "duet: compare \"", label, "\": the automatic result has ",
           a.size(), " components, the closed form ", b.size());
   if (!fit(properties[0], properties[1])) {
