@@ -130,40 +130,34 @@ template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
   const Eigen::Index n = chain.size();
   result.rate.resize(6, n);
   // Sums of the twists of those joints that contribute.
-  const detail::three_vector<S> zero{S(0), S(0), S(0)};
   const auto add = [&](detail::twist_column<S>& sum, Eigen::Index i) {
     const auto column = detail::column_of(m, i);
     const S rate(velocities::get(theta_dot, i));
     sum = {sum.v + rate * column.v, sum.omega + rate * column.omega};
   };
+  constexpr bool is_hybrid = std::same_as<Frame, hybrid_frame>;
   if constexpr (!std::same_as<Frame, body_frame>) {
-    detail::twist_column<S> before{zero, zero};
+    auto before = detail::no_twist<S>();
     for (Eigen::Index k = 0; k < n; ++k) {
-      const auto column = detail::column_of(m, k);
-      if constexpr (std::same_as<Frame, spatial_frame>) {
-        detail::set_column(result.rate, detail::bracket(before, column), k);
+      if constexpr (is_hybrid) {
         add(before, k);
-      } else {
+      }
+      const auto rate = detail::column_by_joint<Frame>(detail::column_of(m, k), before, true);
+      detail::set_column(result.rate, rate, k);
+      if constexpr (!is_hybrid) {
         add(before, k);
-        detail::set_column(result.rate,
-                           detail::twist_column<S>{cross(before.omega, column.v),
-                                                   cross(before.omega, column.omega)},
-                           k);
       }
     }
   }
   if constexpr (!std::same_as<Frame, spatial_frame>) {
-    detail::twist_column<S> after{zero, zero};
+    auto after = detail::no_twist<S>();
     for (Eigen::Index k = n - 1; k >= 0; --k) {
-      const auto column = detail::column_of(m, k);
-      if constexpr (std::same_as<Frame, body_frame>) {
-        detail::set_column(result.rate, detail::bracket(column, after), k);
-      } else {
-        const auto rate = detail::column_of(result.rate, k);
-        detail::set_column(
-            result.rate, detail::twist_column<S>{rate.v + cross(column.omega, after.v), rate.omega},
-            k);
+      auto rate = detail::column_by_joint<Frame>(detail::column_of(m, k), after, false);
+      if constexpr (is_hybrid) {
+        const auto by_before = detail::column_of(result.rate, k);
+        rate = {by_before.v + rate.v, by_before.omega};
       }
+      detail::set_column(result.rate, rate, k);
       add(after, k);
     }
   }

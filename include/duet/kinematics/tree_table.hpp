@@ -370,39 +370,28 @@ void require_size(const tree_table& table, const X& q) {
           ")");
 }
 
-/// Joint coordinates as functions of those of the tree.
-template <class S, class X>
-class joint_coordinates {
+/// Joint coordinates as functions of those of the tree, or their velocities.
+template <class S, class X, bool HasOffsets>
+class joint_values {
 public:
-  joint_coordinates(const tree_table& table, const X& q) : table_(table), q_(q) {
+  joint_values(const tree_table& table, const X& q) : table_(table), q_(q) {
     require_size(table, q);
   }
   [[nodiscard]] S operator[](int k) const {
     const coordinate_source& s = table_.sources[std::size_t(k)];
-    return S(S(vector_argument<X>::get(q_, s.own)) * s.multiplier + s.offset);
+    const S value(S(vector_argument<X>::get(q_, s.own)) * s.multiplier);
+    return HasOffsets ? S(value + s.offset) : value;
   }
 
 private:
   const tree_table& table_;
   const X& q_;
 };
-
-/// Velocities of the joint coordinates.
+template <class S, class X>
+using joint_coordinates = joint_values<S, X, true>;
 template <class S, class V>
-class joint_velocities {
-public:
-  joint_velocities(const tree_table& table, const V& v) : table_(table), v_(v) {
-    require_size(table, v);
-  }
-  [[nodiscard]] S operator[](int k) const {
-    const coordinate_source& s = table_.sources[std::size_t(k)];
-    return S(S(vector_argument<V>::get(v_, s.own)) * s.multiplier);
-  }
+using joint_velocities = joint_values<S, V, false>;
 
-private:
-  const tree_table& table_;
-  const V& v_;
-};
 /// Velocities of the joint coordinates if one coordinate of the tree has velocity 1 and the others
 /// are at rest.
 class unit_velocities {

@@ -216,12 +216,8 @@ template <class JointAt>
 [[nodiscard]] inline urdf_contents chain_contents(const robot_description& robot,
                                                   const std::string& base, const std::string& tip,
                                                   std::size_t max_joints) {
-  struct {
-    void operator()(std::size_t, const std::string& what) const { raise(invalid_input(what)); }
-    void operator()(const std::string& what) const { raise(invalid_input(what)); }
-  } const fail; // not called for a valid tree
-  const auto path = find_link_path(
-      robot.joints, base, tip, [](std::size_t) {}, fail);
+  const auto ignore = [](const auto&...) {}; // a valid tree has one path
+  const auto path = find_link_path(robot.joints, base, tip, ignore, ignore);
   urdf_contents result = link_path_contents(path, base, [&](std::size_t i) -> const tree_joint& {
     if (const std::string reason = not_in_a_chain(robot.joints[i]); !reason.empty()) {
       bad_part(robot, robot.joints[i], reason);

@@ -84,7 +84,7 @@ template <SerialChain C, VectorLike Start>
   detail::require_start(chain, start, "printed_screw_plan");
   detail::require_pose(goal, "printed_screw_plan", "the goal");
   motion_plan plan;
-  const auto theta = detail::to_chain_joints(chain, start);
+  const auto theta = detail::start_of(chain, start);
   const dual_quaternion<double> first = chain.pose(theta);
   const auto motion = screw_parameters(conj(first) * goal);
   plan.reason = detail::printed_steps(
@@ -126,7 +126,7 @@ template <SerialChain C, VectorLike Start>
   motion_plan plan;
   const auto target = [&](int k) { return std::min(std::size_t(std::max(k, 1)), path.size()) - 1; };
   plan.reason = detail::printed_steps(
-      chain, detail::to_chain_joints(chain, start), path.back(), int(path.size()), options,
+      chain, detail::start_of(chain, start), path.back(), int(path.size()), options,
       [&](int k, const dual_quaternion<double>&) { return path[target(k)]; },
       [&](int k, const auto& joints, const dual_quaternion<double>& current) {
         detail::add_waypoint(plan, chain, joints, current, k == 0 ? 0. : double(target(k) + 1),
