@@ -101,31 +101,15 @@ closed(std::vector<quaternion<T>> q) {
   return q;
 }
 
-/// Scalar of a curve of type `Spline` through samples over T.
-template <class Spline, class T>
-struct scalar_of_curve {
-  using type = T;
-};
-template <class Spline, class T>
-  requires requires { typename Spline::scalar_type; }
-struct scalar_of_curve<Spline, T> {
-  using type = typename Spline::scalar_type;
-};
-template <class Spline, class T>
-using scalar_of_curve_t = typename scalar_of_curve<Spline, T>::type;
-
 /// True if samples over T fit a curve of type `Spline`: T is its scalar, or its scalar has
 /// derivatives and T holds constants.
-template <class T, class Spline>
-concept SampleOf =
-    std::same_as<promote_t<scalar_of_curve_t<Spline, T>, T>, scalar_of_curve_t<Spline, T>> &&
-    contains_tag<scalar_of_curve_t<Spline, T>, screw_tag>()
-== contains_tag<T, screw_tag>() &&
-    std::same_as<real_type_t<scalar_of_curve_t<Spline, T>>, real_type_t<T>>;
+template <class T, class Spline, class S = typename Spline::scalar_type>
+concept SampleOf = std::same_as<promote_t<S, T>, S> && contains_tag<S, screw_tag>()
+== contains_tag<T, screw_tag>() && std::same_as<real_type_t<S>, real_type_t<T>>;
 
 template <class Spline, class T>
 [[nodiscard]] auto over_scalar_of_curve(const std::vector<quaternion<T>>& samples) {
-  return std::vector<quaternion<scalar_of_curve_t<Spline, T>>>(samples.begin(), samples.end());
+  return std::vector<quaternion<typename Spline::scalar_type>>(samples.begin(), samples.end());
 }
 
 /// Interpolates the samples by a curve of type `Spline`; reports if `report` is not null.
@@ -218,21 +202,18 @@ inline constexpr bool is_standard_vector<std::vector<X, Allocator>> = true;
 /// \throws no_convergence if no curve was found: neighbours very far apart, or parameters too
 /// uneven for the end conditions
 template <CurveType Spline, detail::SampleOf<Spline> T>
-[[nodiscard]] Spline
-interpolate(const std::vector<real_type_t<T>>& parameters,
-            const std::vector<quaternion<T>>& orientations,
-            const std::type_identity_t<curve_ends<detail::scalar_of_curve_t<Spline, T>>>& ends =
-                natural{}) {
+[[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
+                                 const std::vector<quaternion<T>>& orientations,
+                                 const curve_ends<typename Spline::scalar_type>& ends = natural{}) {
   return detail::curve_through<Spline>(
       parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, nullptr);
 }
 /// Interpolates as above, with a report of the iteration.
 template <CurveType Spline, detail::SampleOf<Spline> T>
-[[nodiscard]] Spline
-interpolate(const std::vector<real_type_t<T>>& parameters,
-            const std::vector<quaternion<T>>& orientations,
-            const std::type_identity_t<curve_ends<detail::scalar_of_curve_t<Spline, T>>>& ends,
-            interpolation_report& report) {
+[[nodiscard]] Spline interpolate(const std::vector<real_type_t<T>>& parameters,
+                                 const std::vector<quaternion<T>>& orientations,
+                                 const curve_ends<typename Spline::scalar_type>& ends,
+                                 interpolation_report& report) {
   return detail::curve_through<Spline>(
       parameters, detail::over_scalar_of_curve<Spline>(orientations), ends, &report);
 }
