@@ -6,7 +6,7 @@
 #include <duet/core/text/csv.hpp>
 #include <duet/duet.hpp>
 #include <duet/io/save_plan.hpp>
-#include <duet/kinematics/joint_trajectory.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 
 #include <algorithm>
 #include <cmath>

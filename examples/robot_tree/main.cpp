@@ -16,7 +16,6 @@
 #include <duet/core/text/printable.hpp>
 #include <duet/duet.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/centre_of_mass.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 
 #include <cstddef>

@@ -4,8 +4,8 @@
 #include "../support/drawing.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/kinematics/centre_of_mass.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
+#include <duet/kinematics/tree_jacobian.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>

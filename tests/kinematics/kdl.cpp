@@ -6,7 +6,6 @@
 #if DUET_TEST_KDL
 
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/centre_of_mass.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 

@@ -11,7 +11,6 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/kinematics/adapted.hpp>
-#include <duet/kinematics/centre_of_mass.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 
