@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/kinematics/joint_trajectory.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 
 #include <Eigen/Core>

@@ -6,7 +6,6 @@
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/centre_of_mass.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 
 #include <doctest/doctest.h>

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/text/file.hpp>
-#include <duet/kinematics/joint_trajectory.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 
 #include <string>

@@ -5,7 +5,6 @@
 
 #include <duet/derivative/argument.hpp>
 #include <duet/kinematics/chain_view.hpp>
-#include <duet/kinematics/joint_trajectory.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 
 #include <Eigen/Core>
