@@ -80,7 +80,7 @@ public:
   /// second root; joints close a cycle; a number is invalid; a joint mimics a joint that does not
   /// exist, itself, or one with several coordinates; or limits leave no motion
   explicit kinematic_tree(robot_description robot)
-      : description_(std::move(robot)), table_(detail::table_of(description_)) {}
+      : description_(std::move(robot)), table_(detail::tree_builder(description_).table()) {}
 
   /// Number of coordinates.
   [[nodiscard]] int size() const { return int(table_.names.size()); }

@@ -417,22 +417,6 @@ void add_to_column(J& m, const coordinate_source& source, double factor, const t
   m(2, source.own) += v.z * (factor * source.multiplier);
 }
 
-/// A coordinate moves the centre of mass c by (m v + ω × h)/M per unit: m and h are the mass and
-/// moment that it carries, [v; ω] is its screw.
-template <class S>
-[[nodiscard]] tree_columns<S, 3> centre_of_mass_jacobian_of(const tree_table& table,
-                                                            const tree_motion<S>& motion) {
-  const auto masses = carried_masses(table, motion);
-  tree_columns<S, 3> result(3, Eigen::Index(table.names.size()));
-  result.setConstant(S(0));
-  for (const tree_screw<S>& screw : motion.screws) {
-    const subtree_mass<S>& carried = masses[std::size_t(screw.at) + 1];
-    add_to_column(result, table.sources[std::size_t(screw.coordinate)], 1 / masses[0].mass,
-                  S(carried.mass) * screw.twist.v + cross(screw.twist.omega, carried.moment));
-  }
-  return result;
-}
-
 /// Time derivative (m v̇ + ω̇ × h + ω × ḣ)/M.
 template <class S, class X, class V>
 [[nodiscard]] tree_columns<S, 3> centre_of_mass_jacobian_rate_of(const tree_table& table,
@@ -445,10 +429,10 @@ template <class S, class X, class V>
   for (std::size_t i = 0; i < motion.screws.size(); ++i) {
     const tree_screw<S>& screw = motion.screws[i];
     const subtree_mass<S>& carried = masses[std::size_t(screw.at) + 1];
-    add_to_column(result, table.sources[std::size_t(screw.coordinate)], 1 / masses[0].mass,
-                  S(carried.mass) * rates.screws[i].v +
-                      cross(rates.screws[i].omega, carried.moment) +
-                      cross(screw.twist.omega, carried.rate));
+    detail::add_to_column(result, table.sources[std::size_t(screw.coordinate)], 1 / masses[0].mass,
+                          S(carried.mass) * rates.screws[i].v +
+                              cross(rates.screws[i].omega, carried.moment) +
+                              cross(screw.twist.omega, carried.rate));
   }
   return result;
 }
@@ -473,9 +457,20 @@ template <VectorLike X>
 template <VectorLike X>
 [[nodiscard]] auto centre_of_mass_jacobian(const kinematic_tree& tree, const X& q) {
   using S = detail::tree_scalar<X>;
-  const detail::joint_coordinates<S, X> x(tree.table(), q);
-  return detail::centre_of_mass_jacobian_of(tree.table(),
-                                            detail::motion_of_all<S>(tree.table(), x));
+  const detail::tree_table& table = tree.table();
+  const detail::joint_coordinates<S, X> x(table, q);
+  const auto motion = detail::motion_of_all<S>(table, x);
+  const auto masses = detail::carried_masses(table, motion);
+  detail::tree_columns<S, 3> result(3, Eigen::Index(table.names.size()));
+  result.setConstant(S(0));
+  // A coordinate moves c by (m v + ω × h)/M per unit: m and h are the mass and moment that it
+  // carries, [v; ω] is its screw.
+  for (const detail::tree_screw<S>& screw : motion.screws) {
+    const detail::subtree_mass<S>& carried = masses[std::size_t(screw.at) + 1];
+    add_to_column(result, table.sources[std::size_t(screw.coordinate)], 1 / masses[0].mass,
+                  S(carried.mass) * screw.twist.v + cross(screw.twist.omega, carried.moment));
+  }
+  return result;
 }
 
 /// Time derivative J̇ along q̇ of J = `centre_of_mass_jacobian`, so that c̈ = J q̈ + J̇ q̇.

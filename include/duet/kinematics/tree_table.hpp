@@ -351,13 +351,6 @@ private:
   std::vector<int> first_;              ///< number of the first coordinate of each joint
 };
 
-/// The table of a description.
-///
-/// \throws as `tree_builder`
-[[nodiscard]] inline tree_table table_of(const robot_description& robot) {
-  return tree_builder(robot).table();
-}
-
 /// The scalar of a tree's results at a configuration of type X.
 template <class X>
 using tree_scalar = promote_t<double, typename vector_argument<X>::scalar>;
