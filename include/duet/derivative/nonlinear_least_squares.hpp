@@ -99,6 +99,8 @@ namespace detail {
 
 template <class F, class X>
 class nonlinear_least_squares_problem;
+template <class Y>
+struct residual_blocks;
 
 } // namespace detail
 
@@ -134,6 +136,13 @@ template <detail::FunctionOfAny F, class X>
 [[nodiscard]] nonlinear_least_squares_result<detail::own_t<X>>
 nonlinear_least_squares(const F& f, const X& start,
                         const nonlinear_least_squares_options& options = {}) {
+  static_assert(
+      requires {
+        detail::residual_blocks<
+            std::decay_t<decltype(detail::result_of_call(detail::call(f, start)))>>::block_size;
+      },
+      "duet: nonlinear_least_squares: the function must return a scalar, a vector of residuals, or "
+      "a vector of fixed-size vectors");
   detail::nonlinear_least_squares_problem<F, detail::own_t<X>> problem(f, start, options);
   return problem.minimised();
 }
@@ -185,14 +194,6 @@ struct loss_at {
 };
 
 /// Residuals as blocks of components.
-template <class Y>
-struct residual_blocks {
-  static_assert(VectorLike<Y>, "duet: nonlinear_least_squares: the function must return a scalar, "
-                               "a vector of residuals, or a vector of fixed-size vectors");
-  static constexpr int block_size = 1;
-  static Eigen::Index count(const Y&);
-  static double component(const Y&, Eigen::Index);
-};
 template <VectorLike Y>
 struct residual_blocks<Y> {
   static constexpr int block_size = 1;
