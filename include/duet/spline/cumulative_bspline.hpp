@@ -7,9 +7,11 @@
 #include <duet/quaternion/norm.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/motion.hpp>
+#include <duet/spline/motion_jacobian.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/piecewise_curve.hpp>
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -125,6 +127,33 @@ private:
       omega = detail::gathered(spans, increments_);
     }
     return detail::product_of_exponentials<Rates>(start, increments.data(), weights);
+  }
+
+  template <int Rates, class P, class Frame>
+  [[nodiscard]] auto jacobian_on_span(std::size_t span, const P& u, Frame frame,
+                                      perturbation side) const {
+    using D = promote_t<T, P>;
+    const std::size_t first = basis_.first_function(span);
+    const auto weights = basis_.template weights<4>(span, u);
+    const auto jacobian = [&](const quaternion<D>* controls, const vector3<D>* increments) {
+      return detail::jacobian_of_product<Rates, D, std::size_t(Order) - 1>(controls, increments,
+                                                                           weights, frame, side);
+    };
+    auto result = [&] {
+      if constexpr (std::is_same_v<D, T>) {
+        return jacobian(&controls_[first], &increments_[first + 1]);
+      } else {
+        std::array<quaternion<D>, std::size_t(Order)> controls;
+        std::array<vector3<D>, std::size_t(Order) - 1> increments;
+        std::copy_n(&controls_[first], Order, controls.begin());
+        for (std::size_t j = 0; j < increments.size(); ++j) {
+          increments[j] = increments_[first + 1 + j].template cast<D>();
+        }
+        return jacobian(controls.data(), increments.data());
+      }
+    }();
+    result.first = first;
+    return result;
   }
 
   basis_type basis_;

@@ -5,6 +5,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
+#include <duet/derivative/perturbation.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/basis.hpp>
@@ -68,6 +69,26 @@ public:
                "frame::hybrid")
   auto motion(const S& u) const -> decltype(motion(u, frame::body));
 
+  /// Motion at u, as by `motion`, with the Jacobians of the value and of `Rates` rates with respect
+  /// to the active control points and to u. The frame is that of the rates; the side is that on
+  /// which control points and value are perturbed. No heap.
+  ///
+  /// \tparam Rates  0 to 3: none, velocity, acceleration, jerk
+  /// \return `curve_jacobian`
+  /// \throws invalid_input outside the domain, unless `set_out_of_domain` permits it; at rest beyond
+  /// an end all Jacobians of rates are zero
+  template <int Rates, class S, FrameConstant Frame>
+  [[nodiscard]] auto motion_jacobian(const S& u, Frame frame,
+                                     perturbation side = perturbation::right) const {
+    no_hint hint;
+    return jacobian_at<Rates>(u, frame, side, hint);
+  }
+  template <int Rates, class S, FrameConstant Frame>
+  [[nodiscard]] auto motion_jacobian(const S& u, Frame frame, perturbation side,
+                                     span_hint& hint) const {
+    return jacobian_at<Rates>(u, frame, side, hint);
+  }
+
   /// Derivatives Q, Q′ = Q w, Q″ = Q (a − |w|²) and Q‴ = Q (j − |w|² w + w × a − 3 w·a), with
   /// halved rates in body axes (P3, P4 in their true form).
   ///
@@ -106,25 +127,47 @@ private:
 
   template <int Rates, class P, class Hint>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate_one(P u, Hint& hint) const {
-    const auto& spans = curve().spans();
-    const auto value = static_cast<R>(innermost(u));
     std::size_t span = 0;
-    bool is_at_rest = false;
-    if (!spans.contains(value)) [[unlikely]] {
-      const evaluation_point point = clamp_to_domain(value);
-      span = point.span;
-      is_at_rest = point.is_at_rest;
-      u = is_at_rest ? P(point.u) : P(u + (point.u - value));
-    } else if constexpr (std::is_same_v<Hint, span_hint>) {
-      span = spans.find_span(value, hint);
-    } else {
-      span = spans.find_span(value);
-    }
+    const bool is_at_rest = locate(u, span, hint);
     auto m = curve().template on_span<Rates>(span, u);
     if (Rates > 0 && is_at_rest) [[unlikely]] {
       m.velocity = m.acceleration = m.jerk = {};
     }
     return m;
+  }
+
+  template <int Rates, class S, class Frame, class Hint>
+  [[nodiscard]] auto jacobian_at(const S& parameter, Frame frame, perturbation side,
+                                 Hint& hint) const {
+    static_assert(Rates >= 0 && Rates <= 3, "duet: motion_jacobian<Rates> takes 0 to 3 rates");
+    std::conditional_t<Arithmetic<S>, R, S> u(parameter);
+    std::size_t span = 0;
+    const bool is_at_rest = locate(u, span, hint);
+    auto result = curve().template jacobian_on_span<Rates>(span, u, frame, side);
+    if (is_at_rest) [[unlikely]] {
+      result.set_at_rest();
+    }
+    return result;
+  }
+
+  /// Finds the span of u, and moves u into the domain if it is outside; true if the curve is at
+  /// rest there.
+  template <class P, class Hint>
+  [[nodiscard]] DUET_ALWAYS_INLINE bool locate(P& u, std::size_t& span, Hint& hint) const {
+    const auto& spans = curve().spans();
+    const auto value = static_cast<R>(innermost(u));
+    if (!spans.contains(value)) [[unlikely]] {
+      const evaluation_point point = clamp_to_domain(value);
+      span = point.span;
+      u = point.is_at_rest ? P(point.u) : P(u + (point.u - value));
+      return point.is_at_rest;
+    }
+    if constexpr (std::is_same_v<Hint, span_hint>) {
+      span = spans.find_span(value, hint);
+    } else {
+      span = spans.find_span(value);
+    }
+    return false;
   }
 
   /// Evaluates a batch of parameters; lanes may be on different spans.
