@@ -6,6 +6,7 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/spline/basis.hpp>
+#include <duet/spline/knot_jacobian.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/motion_jacobian.hpp>
 #include <duet/spline/orientations.hpp>
@@ -94,6 +95,21 @@ public:
   [[nodiscard]] const std::vector<quaternion<T>>& control_points() const { return controls_; }
   /// Increments ω_i with exp(ω_i) = q_{i−1}⁻¹ q_i, half-angle vectors; ω_0 is zero.
   [[nodiscard]] const std::vector<vector3<T>>& increments() const { return increments_; }
+
+  /// Derivatives of the value and the rates at u with respect to the 2k − 2 knots of its span, in
+  /// the frame; the value is perturbed on the side.
+  ///
+  /// \throws invalid_input outside the domain
+  template <FrameConstant Frame>
+  [[nodiscard]] knot_jacobian_result<T, Order>
+  knot_jacobian(const real_type& u, Frame frame, perturbation side = perturbation::right) const {
+    const std::size_t span = basis_.find_span(u), first = basis_.first_function(span);
+    auto result = detail::knot_jacobian_of_product<T, Order>(
+        &controls_[first], &increments_[first + 1], &basis_.knots()[first + 1], u,
+        basis_.template weights<4>(span, u), frame, side);
+    result.first = first + 1;
+    return result;
+  }
 
 private:
   friend class piecewise_curve<cumulative_bspline, real_type_t<T>>;

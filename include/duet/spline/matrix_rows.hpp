@@ -205,19 +205,23 @@ template <class T>
 }
 /// A M.
 template <class S, class T>
-[[nodiscard]] DUET_ALWAYS_INLINE matrix_rows<T> product(const matrix_rows<S>& a,
-                                                        const matrix_rows<T>& m) {
+[[nodiscard]] DUET_ALWAYS_INLINE matrix_rows<T> rows_product(const matrix_rows<S>& a,
+                                                             const matrix_rows<T>& m) {
   const auto row = [&](const matrix_row<S>& r)
                        DUET_INLINE_LAMBDA { return r[0] * m.x + r[1] * m.y + r[2] * m.z; };
   return {row(a.x), row(a.y), row(a.z)};
 }
 
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE matrix_rows<T> rows_of(const matrix3<T>& m) {
+  return {matrix_row<T>::of(m(0, 0), m(0, 1), m(0, 2)),
+          matrix_row<T>::of(m(1, 0), m(1, 1), m(1, 2)),
+          matrix_row<T>::of(m(2, 0), m(2, 1), m(2, 2))};
+}
 /// Ad(q), the matrix of v ↦ q v q*.
 template <class T>
 [[nodiscard]] matrix_rows<T> adjoint_rows(const quaternion<T>& q) {
-  const matrix3<T> m = rotation_matrix(q);
-  const auto row = [&](int i) { return matrix_row<T>::of(m(i, 0), m(i, 1), m(i, 2)); };
-  return {row(0), row(1), row(2)};
+  return rows_of(rotation_matrix(q));
 }
 
 /// The rows as a matrix of Eigen.

@@ -6,6 +6,7 @@
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/perturbation.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
@@ -97,25 +98,26 @@ struct not_computed {};
 /// of poses are [v; ω].
 template <class T, int Count, int Rates, class Frame = body_frame>
 struct curve_jacobian {
-  static constexpr bool is_pose = manifold<quaternion<T>>::dimension == 6;
+  static constexpr int value_dimension = manifold<quaternion<T>>::dimension;
+  static constexpr bool is_pose = value_dimension == 6;
   static constexpr bool is_hybrid = is_pose && std::is_same_v<Frame, hybrid_frame>;
   using rate_type = typename duet::motion<T>::rate_type;
   template <int Order>
   using blocks_of_rate =
       std::conditional_t<(Rates >= Order), tangent_blocks<T, Count, is_hybrid>, not_computed>;
 
-  duet::motion<T> motion;            ///< value and all rates in the frame
-  std::size_t first = 0;             ///< number of the first active control point
-  perturbation side = {};            ///< side on which control points and value move
-  tangent_blocks<T, Count> value;    ///< of the value
-  blocks_of_rate<1> velocity;        ///< of the velocity
-  blocks_of_rate<2> acceleration;    ///< of the acceleration
-  blocks_of_rate<3> jerk;            ///< of the jerk
+  duet::motion<T> motion;         ///< value and all rates in the frame
+  std::size_t first = 0;          ///< number of the first active control point
+  perturbation side = {};         ///< side on which control points and value move
+  tangent_blocks<T, Count> value; ///< of the value
+  blocks_of_rate<1> velocity;     ///< of the velocity
+  blocks_of_rate<2> acceleration; ///< of the acceleration
+  blocks_of_rate<3> jerk;         ///< of the jerk
 
   /// Derivatives with respect to u. Those of the highest rate are one-sided at knots.
   struct by_parameter {
-    rate_type value;        ///< of the value: ω in body axes, for `perturbation::left` spatial axes
-    rate_type velocity;     ///< of the velocity: the acceleration
+    rate_type value;    ///< of the value: ω in body axes, for `perturbation::left` spatial axes
+    rate_type velocity; ///< of the velocity: the acceleration
     rate_type acceleration; ///< of the acceleration: the jerk
     rate_type jerk;         ///< of the jerk
   };
@@ -170,8 +172,8 @@ template <class S>
 
 /// Derivative of the jerk in the frame, from rates w, a, j, s in body axes.
 template <class T, class Frame>
-[[nodiscard]] typename motion<T>::rate_type
-snap_in(Frame, const quaternion<T>& value, const std::array<three_vector<T>, 4>& rates) {
+[[nodiscard]] typename motion<T>::rate_type snap_in(Frame, const quaternion<T>& value,
+                                                    const std::array<three_vector<T>, 4>& rates) {
   const auto& [w, a, j, s] = rates;
   const real_type_t<T> two(2), three(3);
   constexpr bool is_pose = contains_tag<T, screw_tag>();
@@ -187,9 +189,8 @@ snap_in(Frame, const quaternion<T>& value, const std::array<three_vector<T>, 4>&
     // the acceleration in body axes x, and ẋ, with ẗ = R x
     const auto across = cross(omega, v);
     const auto third = v_2 + cross(alpha, v) + two * cross(omega, v_1) + cross(omega, across);
-    const auto fourth = v_3 + cross(jerk, v) + three * cross(alpha, v_1) +
-                        two * cross(omega, v_2) + cross(alpha, across) +
-                        cross(omega, cross(alpha, v) + cross(omega, v_1));
+    const auto fourth = v_3 + cross(jerk, v) + three * cross(alpha, v_1) + two * cross(omega, v_2) +
+                        cross(alpha, across) + cross(omega, cross(alpha, v) + cross(omega, v_1));
     const rotation_of_many to_fixed_axes(rotation(value));
     typename motion<T>::rate_type result;
     result << to_fixed_axes(fourth + cross(omega, third)).eigen(),
@@ -212,13 +213,14 @@ void rotate_to_spatial_axes(blocks_in_body_axes<Rates, T>& d, const matrix_rows<
   const auto& [w, a, j, s] = rates;
   if constexpr (Rates >= 3) {
     const three_vector<T> along = j + cross(w, a);
-    d[3] = product(adjoint, d[3] + minus_cross(a, d[1]) + cross(w, d[2]) + minus_cross(along, d[0]));
+    d[3] = rows_product(adjoint,
+                        d[3] + minus_cross(a, d[1]) + cross(w, d[2]) + minus_cross(along, d[0]));
   }
   if constexpr (Rates >= 2) {
-    d[2] = product(adjoint, d[2] + minus_cross(a, d[0]));
+    d[2] = rows_product(adjoint, d[2] + minus_cross(a, d[0]));
   }
   if constexpr (Rates >= 1) {
-    d[1] = product(adjoint, d[1] + minus_cross(w, d[0]));
+    d[1] = rows_product(adjoint, d[1] + minus_cross(w, d[0]));
   }
 }
 
@@ -239,13 +241,98 @@ void rotate_linear_rows(blocks_in_body_axes<Rates, screw_dual<S>>& d,
                        scaled(two, minus_cross(v_1, d_omega) + cross(omega, d[2])) +
                        minus_cross(across, d_omega) +
                        cross(omega, minus_cross(v, d_omega) + cross(omega, d[1]));
-    d[3] = product(rotation, moved + minus_cross(x, sigma));
+    d[3] = rows_product(rotation, moved + minus_cross(x, sigma));
   }
   if constexpr (Rates >= 2) {
     const auto moved = d[2] + minus_cross(v, d_omega) + cross(omega, d[1]);
-    d[2] = product(rotation, moved + minus_cross(v_1 + across, sigma));
+    d[2] = rows_product(rotation, moved + minus_cross(v_1 + across, sigma));
   }
-  d[1] = product(rotation, d[1] + minus_cross(v, sigma));
+  d[1] = rows_product(rotation, d[1] + minus_cross(v, sigma));
+}
+
+/// Blocks of a Jacobian as arrays: of the value, then of the rates.
+template <class T, int Count, int Rates, class Frame>
+[[nodiscard]] block_pointers<Rates, T>
+pointers_to_blocks(curve_jacobian<T, Count, Rates, Frame>& m) {
+  block_pointers<Rates, T> blocks;
+  blocks[0] = m.value.linear.data();
+  if constexpr (Rates >= 1) {
+    blocks[1] = m.velocity.linear.data();
+  }
+  if constexpr (Rates >= 2) {
+    blocks[2] = m.acceleration.linear.data();
+  }
+  if constexpr (Rates >= 3) {
+    blocks[3] = m.jerk.linear.data();
+  }
+  return blocks;
+}
+
+/// Sets the motion, and converts blocks in body axes, for right perturbations, to the frame and the
+/// side.
+///
+/// \param rates            w, a, j and the derivative of j in body axes
+/// \param left_of_control  of i: Ad(q_i)⁻¹, which takes a left perturbation of control point i to
+///                         the right one
+template <class T, int Count, int Rates, class Frame, class LeftOfControl>
+DUET_ALWAYS_INLINE void
+set_frame(curve_jacobian<T, Count, Rates, Frame>& m, perturbation side, const quaternion<T>& value,
+          const std::array<three_vector<T>, 4>& rates, const LeftOfControl& left_of_control) {
+  constexpr bool is_body = std::is_same_v<Frame, body_frame>;
+  using result_type = curve_jacobian<T, Count, Rates, Frame>;
+  const auto& [w, a, j, s] = rates;
+  const real_type_t<T> half(0.5);
+  const bool is_right = side == perturbation::right;
+  m.side = side;
+  m.motion = motion_of(half_motion<T>{value, half * w, half * a, half * j}, Frame{});
+  m.parameter_derivative = {tangent_of(is_right ? w : three_vector<T>(rotated(value, w))),
+                            m.motion.acceleration, m.motion.jerk, snap_in(Frame{}, value, rates)};
+  if (is_body && is_right) {
+    return;
+  }
+  const block_pointers<Rates, T> blocks = pointers_to_blocks(m);
+  const matrix_rows<T> adjoint = adjoint_rows(value);
+  for (std::size_t i = 0; i < std::size_t(Count); ++i) {
+    blocks_in_body_axes<Rates, T> d;
+    for (std::size_t k = 0; k <= std::size_t(Rates); ++k) {
+      d[k] = blocks[k][i];
+    }
+    const matrix_rows<T> of_control =
+        is_right ? diagonal_rows<T>(T(1)) : matrix_rows<T>(left_of_control(i));
+    if constexpr (result_type::is_hybrid && Rates >= 1) {
+      using S = typename T::value_type;
+      std::array<three_vector<S>, 4> angular_rates;
+      blocks_in_body_axes<Rates, S> angular;
+      for (std::size_t k = 0; k < 4; ++k) {
+        angular_rates[k] = angular_part(rates[k]);
+      }
+      for (std::size_t k = 0; k <= std::size_t(Rates); ++k) {
+        angular[k] = angular_part(d[k]);
+      }
+      const auto rotation_rows = adjoint_rows(rotation(value));
+      rotate_to_spatial_axes<Rates>(angular, rotation_rows, angular_rates);
+      const auto store = [&](auto& of_rate, std::size_t k) {
+        of_rate.angular[i] =
+            is_right ? angular[k] : rows_product(angular[k], angular_part(of_control));
+      };
+      store(m.velocity, 1);
+      if constexpr (Rates >= 2) {
+        store(m.acceleration, 2);
+      }
+      if constexpr (Rates >= 3) {
+        store(m.jerk, 3);
+      }
+      rotate_linear_rows<Rates>(d, rotation_rows, rates);
+    } else if constexpr (!is_body) {
+      rotate_to_spatial_axes<Rates>(d, adjoint, rates);
+    }
+    if (!is_right) {
+      d[0] = rows_product(adjoint, d[0]);
+    }
+    for (std::size_t k = 0; k <= std::size_t(Rates); ++k) {
+      blocks[k][i] = is_right ? d[k] : rows_product(d[k], of_control);
+    }
+  }
 }
 
 /// Jacobian of a product of exponentials as that of a curve, in any frame, for either perturbation.
@@ -254,79 +341,67 @@ void rotate_linear_rows(blocks_in_body_axes<Rates, screw_dual<S>>& d,
 template <int Rates, class T, std::size_t Factors, class Weights, class Frame>
 [[nodiscard]] DUET_OUT_OF_LINE curve_jacobian<T, int(Factors) + 1, Rates, Frame>
 jacobian_of_product(const quaternion<T>* controls, const vector3<T>* increments,
-                    const Weights& weights, Frame frame, perturbation side) {
-  using result_type = curve_jacobian<T, int(Factors) + 1, Rates, Frame>;
-  constexpr bool is_body = std::is_same_v<Frame, body_frame>;
-  result_type result;
-  result.side = side;
-  block_pointers<Rates, T> blocks;
-  blocks[0] = result.value.linear.data();
-  if constexpr (Rates >= 1) {
-    blocks[1] = result.velocity.linear.data();
-  }
-  if constexpr (Rates >= 2) {
-    blocks[2] = result.acceleration.linear.data();
-  }
-  if constexpr (Rates >= 3) {
-    blocks[3] = result.jerk.linear.data();
-  }
+                    const Weights& weights, Frame, perturbation side) {
+  curve_jacobian<T, int(Factors) + 1, Rates, Frame> result;
   const functions_of_factors<T, Factors> functions(weights[0], increments);
-  const tail_vectors<T, Factors> tails(controls[0], increments, functions, weights);
-  fill_product_jacobian<Rates>(tails, functions, increments, weights, blocks);
-
-  const auto& [w, a, j, s] = tails.rates;
-  const real_type_t<T> half(0.5);
-  result.motion = motion_of(half_motion<T>{tails.value, half * w, half * a, half * j}, frame);
-  const bool is_right = side == perturbation::right;
-  result.parameter_derivative = {
-      tangent_of(is_right ? w : three_vector<T>(rotated(tails.value, w))),
-      result.motion.acceleration, result.motion.jerk, snap_in(frame, tails.value, tails.rates)};
-
-  if (is_body && is_right) {
-    return result;
-  }
-  const matrix_rows<T> adjoint = adjoint_rows(tails.value);
-  for (std::size_t i = 0; i <= Factors; ++i) {
-    blocks_in_body_axes<Rates, T> d;
-    for (std::size_t k = 0; k <= std::size_t(Rates); ++k) {
-      d[k] = blocks[k][i];
-    }
-    const matrix_rows<T> of_control = adjoint_rows(conj(controls[i]));
-    if constexpr (result_type::is_hybrid && Rates >= 1) {
-      std::array<three_vector<typename T::value_type>, 4> angular_rates;
-      blocks_in_body_axes<Rates, typename T::value_type> angular;
-      for (std::size_t k = 0; k < 4; ++k) {
-        angular_rates[k] = angular_part(tails.rates[k]);
-      }
-      for (std::size_t k = 0; k <= std::size_t(Rates); ++k) {
-        angular[k] = angular_part(d[k]);
-      }
-      const auto rotation_rows = adjoint_rows(rotation(tails.value));
-      rotate_to_spatial_axes<Rates>(angular, rotation_rows, angular_rates);
-      const auto store = [&](auto& of_rate, std::size_t k) {
-        of_rate.angular[i] =
-            is_right ? angular[k] : product(angular[k], angular_part(of_control));
-      };
-      store(result.velocity, 1);
-      if constexpr (Rates >= 2) {
-        store(result.acceleration, 2);
-      }
-      if constexpr (Rates >= 3) {
-        store(result.jerk, 3);
-      }
-      rotate_linear_rows<Rates>(d, rotation_rows, tails.rates);
-    } else if constexpr (!is_body) {
-      rotate_to_spatial_axes<Rates>(d, adjoint, tails.rates);
-    }
-    if (!is_right) {
-      d[0] = product(adjoint, d[0]);
-    }
-    for (std::size_t k = 0; k <= std::size_t(Rates); ++k) {
-      blocks[k][i] = is_right ? d[k] : product(d[k], of_control);
-    }
-  }
+  tail_vectors<T, Factors> tails(controls[0], increments, functions);
+  tails.add_rates(weights);
+  fill_product_jacobian<Rates>(tails, functions, increments, weights, pointers_to_blocks(result));
+  set_frame(result, side, tails.value, tails.rates,
+            [&](std::size_t i) DUET_INLINE_LAMBDA { return adjoint_rows(conj(controls[i])); });
   return result;
 }
 
 } // namespace detail
+
+/// Point S(u) p of a moving body, with its Jacobian.
+template <class T, int Count>
+struct point_jacobian_result {
+  using scalar = typename manifold<quaternion<T>>::scalar;
+  static constexpr int dimension = manifold<quaternion<T>>::dimension;
+  vector3<scalar> value; ///< point in fixed axes
+  /// Derivatives with respect to the active control points, side by side: 3 × 3 for each rotation,
+  /// 3 × 6 for each pose.
+  Eigen::Matrix<scalar, 3, dimension * Count> jacobian;
+  vector3<scalar> parameter_derivative; ///< velocity of the point, with respect to u
+
+  /// Derivative with respect to the i-th active control point.
+  [[nodiscard]] Eigen::Matrix<scalar, 3, dimension> block(int i) const {
+    return jacobian.template middleCols<dimension>(i * dimension);
+  }
+};
+
+/// Jacobian of the point S(u) p with respect to the control points and u, from that of the curve:
+/// δ(S p) = R (σ_v + σ_ω × p) in body axes, σ_v + σ_ω × S p in spatial axes.
+///
+/// \param p  point in body axes
+template <class T, int Count, int Rates, class Frame>
+[[nodiscard]] point_jacobian_result<T, Count>
+point_jacobian(const curve_jacobian<T, Count, Rates, Frame>& m,
+               const vector3<typename manifold<quaternion<T>>::scalar>& p) {
+  using S = typename manifold<quaternion<T>>::scalar;
+  constexpr bool is_pose = curve_jacobian<T, Count, Rates, Frame>::is_pose;
+  const bool is_right = m.side == perturbation::right;
+  matrix3<S> r;
+  point_jacobian_result<T, Count> result;
+  if constexpr (is_pose) {
+    r = rotation_matrix(rotation(m.motion.value));
+    result.value = r * p + translation(m.motion.value);
+  } else {
+    r = rotation_matrix(m.motion.value);
+    result.value = r * p;
+  }
+  const matrix3<S> axes = is_right ? r : matrix3<S>(matrix3<S>::Identity());
+  const vector3<S> arm = is_right ? p : result.value;
+  const auto arm_skew = detail::matrix_of(detail::skew_rows(detail::components(arm)));
+  Eigen::Matrix<S, 3, curve_jacobian<T, Count, Rates, Frame>::value_dimension> by_value;
+  if constexpr (is_pose) {
+    by_value.template leftCols<3>() = axes;
+  }
+  by_value.template rightCols<3>() = -(axes * arm_skew);
+  result.jacobian = by_value * m.value.matrix();
+  result.parameter_derivative = by_value * m.parameter_derivative.value;
+  return result;
+}
+
 } // namespace duet

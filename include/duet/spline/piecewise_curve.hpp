@@ -75,8 +75,8 @@ public:
   ///
   /// \tparam Rates  0 to 3: none, velocity, acceleration, jerk
   /// \return `curve_jacobian`
-  /// \throws invalid_input outside the domain, unless `set_out_of_domain` permits it; at rest beyond
-  /// an end all Jacobians of rates are zero
+  /// \throws invalid_input outside the domain, unless `set_out_of_domain` permits it; at rest
+  /// beyond an end all Jacobians of rates are zero
   template <int Rates, class S, FrameConstant Frame>
   [[nodiscard]] auto motion_jacobian(const S& u, Frame frame,
                                      perturbation side = perturbation::right) const {

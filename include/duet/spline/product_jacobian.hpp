@@ -50,10 +50,10 @@ template <class D>
 /// Functions of one factor: those of ω̂ as a I + b ω̂ + c ω ωᵀ. D may have lanes, one a factor.
 template <class D>
 struct factor_functions {
-  D u0, u1;                          ///< E = u0 + u1 ω
-  D n_scalar, n_skew, n_outer;       ///< N − I
-  D e_scalar, e_skew, e_outer;       ///< Ad(E)⁻¹ = e^{−bφ̂}
-  D d_scalar, d_skew, d_outer;       ///< J_r⁻¹(φ) Ad(E)⁻¹
+  D u0, u1;                    ///< E = u0 + u1 ω
+  D n_scalar, n_skew, n_outer; ///< N − I
+  D e_scalar, e_skew, e_outer; ///< Ad(E)⁻¹ = e^{−bφ̂}
+  D d_scalar, d_skew, d_outer; ///< J_r⁻¹(φ) Ad(E)⁻¹
 
   factor_functions() = default;
 
@@ -137,11 +137,12 @@ public:
       return T(dot(v, v));
     };
     if constexpr (in_lanes) {
-      const auto at = [](std::size_t lane) DUET_INLINE_LAMBDA { return std::min(lane, Factors - 1); };
-      const auto weights = from_lanes<count>([&](std::size_t i)
-                                                 DUET_INLINE_LAMBDA { return b[at(i)]; });
-      const auto squares = from_lanes<count>([&](std::size_t i)
-                                                 DUET_INLINE_LAMBDA { return square(at(i)); });
+      const auto at = [](std::size_t lane)
+                          DUET_INLINE_LAMBDA { return std::min(lane, Factors - 1); };
+      const auto weights =
+          from_lanes<count>([&](std::size_t i) DUET_INLINE_LAMBDA { return b[at(i)]; });
+      const auto squares =
+          from_lanes<count>([&](std::size_t i) DUET_INLINE_LAMBDA { return square(at(i)); });
       const factor_functions functions(weights, squares);
       for (std::size_t j = 0; j < Factors; ++j) {
         functions_[j] = lane(functions, int(j));
@@ -168,21 +169,14 @@ using block_pointers = std::array<matrix_rows<T>*, std::size_t(Rates) + 1>;
 template <class T, std::size_t Factors>
 struct tail_vectors {
   using vector = three_vector<T>;
-  quaternion<T> value;                        ///< S
-  std::array<vector, Factors> omega;          ///< P_j ω_j = ½Φ_j
+  quaternion<T> value;                                 ///< S
+  std::array<vector, Factors> omega;                   ///< P_j ω_j = ½Φ_j
   std::array<std::array<vector, 3>, Factors> velocity; ///< v_j, v_j′, v_j″ of tail T_j
   std::array<vector, 4> rates; ///< w = v_0, a = v_0′, j = v_0″ and v_0‴
 
-  /// With Φ_j = P_j φ_j: v_{j−1} = v_j + b_j′Φ_j and its derivatives, Φ_j′ = Φ_j × v_j.
-  template <class Weights>
   DUET_ALWAYS_INLINE tail_vectors(const quaternion<T>& start, const vector3<T>* increments,
-                                  const functions_of_factors<T, Factors>& functions,
-                                  const Weights& b) {
-    const real_type_t<T> two(2), three(3);
+                                  const functions_of_factors<T, Factors>& functions) {
     quaternion<T> tail(T(1));
-    const T zero(0);
-    const vector none{zero, zero, zero};
-    vector v = none, v_1 = none, v_2 = none, v_3 = none;
     for (std::size_t j = Factors; j-- > 0;) {
       const auto& f = functions[j];
       const vector own = components(increments[j]);
@@ -191,9 +185,24 @@ struct tail_vectors {
       const vector u1_omega = f.u1 * own;
       const quaternion<T> e(f.u0, u1_omega.x, u1_omega.y, u1_omega.z);
       tail = is_last ? e : quaternion<T>(e * tail);
+    }
+    value = start * tail;
+  }
+
+  /// Velocities of the tails, v_{j−1} = v_j + b_j′Φ_j, and their derivatives, with Φ_j = P_j φ_j
+  /// and Φ_j′ = Φ_j × v_j.
+  ///
+  /// \param b  element [d][j] is the d-th derivative of the weight of factor j, d ≤ 4
+  template <class Weights>
+  DUET_ALWAYS_INLINE void add_rates(const Weights& b) {
+    const real_type_t<T> two(2), three(3);
+    const T zero(0);
+    const vector none{zero, zero, zero};
+    vector v = none, v_1 = none, v_2 = none, v_3 = none;
+    for (std::size_t j = Factors; j-- > 0;) {
       velocity[j] = {v, v_1, v_2};
       const vector phi = two * omega[j];
-      if (is_last) {
+      if (j + 1 == Factors) {
         v = b[1][j] * phi;
         v_1 = b[2][j] * phi;
         v_2 = b[3][j] * phi;
@@ -209,7 +218,6 @@ struct tail_vectors {
         v = v + b[1][j] * phi;
       }
     }
-    value = start * tail;
     rates = {v, v_1, v_2, v_3};
   }
 };
@@ -282,6 +290,20 @@ DUET_ALWAYS_INLINE void fill_product_jacobian(const tail_vectors<T, Factors>& ta
   for (std::size_t d = 0; d <= std::size_t(Rates); ++d) {
     blocks[d][0] = negated(behind[d]);
   }
+}
+
+/// Value of a product of exponentials, and its Jacobians: the above without rates.
+///
+/// \param b  weights of the factors
+template <class T, class R, std::size_t Factors>
+[[nodiscard]] DUET_ALWAYS_INLINE quaternion<T>
+value_of_product(const quaternion<T>& start, const vector3<T>* increments,
+                 const std::array<R, Factors>& b, std::array<matrix_rows<T>, Factors + 1>& blocks) {
+  const std::array<std::array<R, Factors>, 1> weights{b};
+  const functions_of_factors<T, Factors> functions(b, increments);
+  const tail_vectors<T, Factors> tails(start, increments, functions);
+  fill_product_jacobian<0, T, Factors>(tails, functions, increments, weights, {blocks.data()});
+  return tails.value;
 }
 
 DUET_ABI_END
