@@ -18,7 +18,9 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit_start.hpp>
 #include <duet/spline/interpolate.hpp>
+#include <duet/spline/matrix_rows.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/product_jacobian.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -291,28 +293,20 @@ protected:
     return sum;
   }
 
-  /// Common data of samples on one span: the control point at its start, the increments, and their
-  /// derivatives with respect to the control points.
-  struct segment {
-    element start;
-    std::array<vector3<T>, factors> increments; ///< half-angle vectors
-    /// J_r⁻¹ and J_l⁻¹ of the increments: their derivatives with respect to the control points
-    /// after and before.
-    std::array<matrix3<T>, factors> by_next, by_last;
-  };
-  /// Span of the caller's last sample, valid until the control points change.
+  /// Span of the caller's last sample, valid until the control points change: the control point at
+  /// its start, and the increments, half-angle vectors.
   struct last_span {
     std::size_t first = std::size_t(-1);
-    bool has_rates = false;
-    segment shared;
+    element start;
+    std::array<vector3<T>, factors> increments;
   };
 
   [[nodiscard]] tangent residual_at(std::size_t i, const std::vector<element>& controls,
                                     last_span& last) const {
     move_to(first_[i], controls, last);
-    element value = last.shared.start;
+    element value = last.start;
     for (std::size_t j = 0; j < factors; ++j) {
-      value = value * duet::exp(part(i, j, last));
+      value = value * exp_of_multiple(weights_[i][j], last.increments[j]);
     }
     return scaled(twice(residual(value, i)), i);
   }
@@ -324,35 +318,16 @@ protected:
     Eigen::Matrix<R, unknowns, dimension> gradient;
   };
 
-  /// Residual i and its derivatives. With c exp(δ/2) for a control point c, φ = 2 log(c* c⁺) has
-  /// the rate φ̇ = J_r⁻¹(φ) δ⁺ − J_l⁻¹(φ) δ, and the factor exp(wφ/2) has the rate w J_r(wφ) φ̇ in
-  /// its body axes. The factors behind it transform this rate to the axes of the value. The
-  /// residual r changes by −J_l⁻¹(r) times the rate of the value.
+  /// Residual i and its derivatives: it changes by −J_l⁻¹(r) times the rate of the value.
   [[nodiscard]] linear_residual linearised(std::size_t i, const std::vector<element>& controls,
                                            last_span& last) const {
     move_to(first_[i], controls, last);
-    add_rates(last);
-    std::array<element, factors> exponentials;
-    element value = last.shared.start;
-    for (std::size_t j = 0; j < factors; ++j) {
-      exponentials[j] = duet::exp(part(i, j, last));
-      value = value * exponentials[j];
-    }
     linear_residual result;
+    std::array<matrix_rows<T>, std::size_t(Order)> blocks;
+    const element value = value_of_product(last.start, last.increments.data(), weights_[i], blocks);
     const vector3<T> r = twice(residual(value, i));
     result.value = scaled(r, i);
-    matrix3<T> by_value = -left_jacobian_inverse(r);
-    matrix3<T> by_element = matrix3<T>::Zero();
-    for (std::size_t j = factors; j-- > 0;) {
-      matrix3<T> by_increment = product(by_value, right_jacobian(twice(part(i, j, last))));
-      for (T& each : by_increment.reshaped()) {
-        each *= weights_[i][j];
-      }
-      put(by_element + product(by_increment, last.shared.by_next[j]), j + 1, i, result.gradient);
-      by_element = -product(by_increment, last.shared.by_last[j]);
-      by_value = product(by_value, rotation_matrix(conj(exponentials[j])));
-    }
-    put(by_element + by_value, 0, i, result.gradient);
+    put(rows_of(matrix3<T>(-left_jacobian_inverse(r))), blocks, i, result.gradient);
     return result;
   }
 
@@ -363,23 +338,10 @@ private:
       return;
     }
     last.first = first;
-    last.has_rates = false;
-    last.shared.start = controls[first];
+    last.start = controls[first];
     for (std::size_t j = 0; j < factors; ++j) {
-      last.shared.increments[j] = increment(controls, first + j + 1);
+      last.increments[j] = increment(controls, first + j + 1);
     }
-  }
-  static void add_rates(last_span& last) {
-    for (std::size_t j = 0; j < factors && !last.has_rates; ++j) {
-      const vector3<T> phi = twice(last.shared.increments[j]);
-      last.shared.by_next[j] = right_jacobian_inverse(phi);
-      last.shared.by_last[j] = left_jacobian_inverse(phi);
-    }
-    last.has_rates = true;
-  }
-
-  [[nodiscard]] vector3<T> part(std::size_t i, std::size_t j, const last_span& last) const {
-    return weights_[i][j] * components(last.shared.increments[j]);
   }
 
   /// Logarithm log(S* Q) along the shorter arc.
@@ -390,9 +352,6 @@ private:
   }
 
   [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return R(2) * components(half); }
-  [[nodiscard]] static matrix3<T> product(const matrix3<T>& a, const matrix3<T>& b) {
-    return a.lazyProduct(b);
-  }
 
   /// Whitening matrices L⁻¹ of the covariances L Lᵀ.
   ///
@@ -438,19 +397,23 @@ private:
     return result;
   }
 
-  /// Stores the transposed linear map m from rates of control point j to residual i.
-  void put(const matrix3<T>& m, std::size_t j, std::size_t i,
+  /// Stores the transposed derivatives `by_value` times the blocks, scaled as the residual.
+  void put(const matrix_rows<T>& by_value,
+           const std::array<matrix_rows<T>, std::size_t(Order)>& blocks, std::size_t i,
            Eigen::Matrix<R, unknowns, dimension>& gradient) const {
-    auto block = gradient.template middleRows<dimension>(Eigen::Index(j) * dimension);
-    if constexpr (dimension == 3) {
-      block = m.transpose();
-    } else {
-      block = unfolded(m).transpose();
-    }
-    if (!whitening_.empty()) {
-      block = block.lazyProduct(whitening(i).transpose()).eval();
-    } else if constexpr (dimension == 6) {
-      block.template leftCols<3>() /= characteristic_length_;
+    for (std::size_t j = 0; j < blocks.size(); ++j) {
+      const matrix3<T> m = matrix_of(rows_product(by_value, blocks[j]));
+      auto block = gradient.template middleRows<dimension>(Eigen::Index(j) * dimension);
+      if constexpr (dimension == 3) {
+        block = m.transpose();
+      } else {
+        block = unfolded(m).transpose();
+      }
+      if (!whitening_.empty()) {
+        block = block.lazyProduct(whitening(i).transpose()).eval();
+      } else if constexpr (dimension == 6) {
+        block.template leftCols<3>() /= characteristic_length_;
+      }
     }
   }
 
