@@ -6,6 +6,10 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/derivative/perturbation.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/quaternion.hpp>
@@ -14,9 +18,12 @@
 #include <duet/spline/basis.hpp>
 #include <duet/spline/blocks.hpp>
 #include <duet/spline/end_conditions.hpp>
+#include <duet/spline/matrix_rows.hpp>
 #include <duet/spline/motion.hpp>
+#include <duet/spline/motion_jacobian.hpp>
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/piecewise_curve.hpp>
+#include <duet/spline/product_jacobian.hpp>
 
 #include <algorithm>
 #include <array>
@@ -39,6 +46,11 @@ template <class T, int Order>
 class rotation_vector_segment;
 template <class T, int Order, class Piece>
 class rotation_vector_equations;
+template <int Rates, int Order, class T, class Frame>
+[[nodiscard]] curve_jacobian<T, 2, Rates, Frame>
+jacobian_of_segment(const std::array<quaternion<T>, 2>& ends, const real_type_t<T>& h,
+                    const std::array<vector3<T>, std::size_t(Order)>& piece,
+                    const real_type_t<T>& t, Frame frame, perturbation side);
 
 } // namespace detail
 
@@ -54,6 +66,10 @@ class rotation_vector_equations;
 /// `interpolate` finds the rates that make the curve C² or, for order 6, C⁴. Given rates make it a
 /// Hermite curve, C¹ or C². Rates are with respect to u: rad per unit of u, for poses twists [v;
 /// ω].
+///
+/// `motion_jacobian` is with respect to the data points Q_i and Q_{i+1} of the span, the rates at
+/// the knots fixed in body axes: those of Q = Q_i exp(x) and of log(Q_i* Q_{i+1}) in closed form,
+/// that of the polynomial with respect to this logarithm by dual numbers with three partials.
 template <class T, int Order = 4>
 class rotation_vector_spline
     : public piecewise_curve<rotation_vector_spline<T, Order>, real_type_t<T>> {
@@ -134,6 +150,11 @@ public:
 private:
   using polynomial = std::array<vector3<T>, std::size_t(Order)>;
   friend class piecewise_curve<rotation_vector_spline, real_type_t<T>>;
+  template <int Rates, int K, class S, class Frame>
+  friend curve_jacobian<S, 2, Rates, Frame>
+  detail::jacobian_of_segment(const std::array<quaternion<S>, 2>&, const real_type_t<S>&,
+                              const std::array<vector3<S>, std::size_t(K)>&, const real_type_t<S>&,
+                              Frame, perturbation);
   template <class, int, class>
   friend class detail::rotation_vector_equations;
 
@@ -181,6 +202,18 @@ private:
                                                 const P& u) const {
     return on_piece<Rates>(detail::gathered(spans, elements_), detail::gathered(spans, pieces_),
                            P(u - detail::gathered(spans, knots())));
+  }
+
+  template <int Rates, class P, class Frame>
+  [[nodiscard]] auto jacobian_on_span(std::size_t i, const P& u, Frame frame,
+                                      perturbation side) const {
+    static_assert(std::is_same_v<P, real_type>,
+                  "duet: motion_jacobian of a rotation_vector_spline takes a real parameter");
+    auto result = detail::jacobian_of_segment<Rates, Order, T>(
+        {elements_[i], elements_[i + 1]}, knots()[i + 1] - knots()[i], pieces_[i],
+        real_type(u - knots()[i]), frame, side);
+    result.first = i;
+    return result;
   }
 
   template <int Rates, class S, class P>
@@ -550,6 +583,93 @@ private:
   jacobian_coefficients<std::size_t(Order) - 1, T> at_end_;
   matrix3<T> inverse_; ///< J(d)⁻¹
 };
+
+/// Derivatives of the dual numbers in a vector: one column a partial.
+template <class T, class D>
+[[nodiscard]] matrix_rows<T> rows_of_partials(const three_vector<D>& v) {
+  const auto row = [](const D& x) {
+    const auto part = [&](int c) {
+      if constexpr (contains_tag<T, screw_tag>()) {
+        return T(x.value().partial(c), x.epsilon().partial(c));
+      } else {
+        return T(x.partial(c));
+      }
+    };
+    return matrix_row<T>::of(part(0), part(1), part(2));
+  };
+  return {row(v.x), row(v.y), row(v.z)};
+}
+
+/// Jacobian of one segment Q_0 exp(x(t)) with respect to its ends, its rates there fixed. With
+/// φ = 2 log(Q_0* Q_1), dφ = J_r⁻¹(φ) d_1 − J_l⁻¹(φ) d_0; the value moves by Ad(exp(x))⁻¹ d_0 and
+/// by what dφ does to exp(x), the rates by what dφ does to them. (Over dual numbers of rigid motion
+/// three partials suffice for six columns.)
+template <int Rates, int Order, class T, class Frame>
+[[nodiscard]] curve_jacobian<T, 2, Rates, Frame>
+jacobian_of_segment(const std::array<quaternion<T>, 2>& ends, const real_type_t<T>& h,
+                    const std::array<vector3<T>, std::size_t(Order)>& piece,
+                    const real_type_t<T>& t, Frame, perturbation side) {
+  using curve = rotation_vector_spline<T, Order>;
+  using segment = rotation_vector_segment<T, Order>;
+  using scalar = typename manifold<quaternion<T>>::scalar;
+  using number = dual<scalar, 3, derivative_tag<curve>>;
+  using time = dual<scalar, 1, derivative_tag<segment>>;
+  using D = promote_t<T, number>;
+  using R = real_type_t<T>;
+  constexpr std::size_t count = segment::rates_per_knot;
+  const auto at_end = taylor_shift<count + 1>(piece, h);
+  const segment plain(h, vector3<T>(at_end[0]));
+  std::array<vector3<T>, count> x_start, x_end;
+  std::copy_n(piece.begin() + 1, count, x_start.begin());
+  std::copy_n(at_end.begin() + 1, count, x_end.begin());
+  const auto start = plain.rates_at_start(x_start), end = plain.rates_at_end(x_end);
+
+  std::array<vector3<D>, count> wide_start, wide_end;
+  vector3<D> d;
+  for (int c = 0; c < 3; ++c) {
+    d[c] = D(at_end[0][c]) + number::variable(scalar(0), c) * R(0.5); // by φ = 2d
+    for (std::size_t k = 0; k < count; ++k) {
+      wide_start[k][c] = D(start[k][c]);
+      wide_end[k][c] = D(end[k][c]);
+    }
+  }
+  const auto wide = rotation_vector_spline<T, Order>::template on_piece<3>(
+      quaternion<D>(D(1)), rotation_vector_segment<D, Order>(h, d).polynomial(wide_start, wide_end),
+      t);
+  const auto m = curve::template on_piece<3>(quaternion<T>(T(1)), piece, t);
+  const auto in_time =
+      curve::template on_piece<3>(quaternion<T>(T(1)), piece, time::variable(scalar(t)));
+
+  curve_jacobian<T, 2, Rates, Frame> result;
+  const block_pointers<Rates, T> blocks = pointers_to_blocks(result);
+  const vector3<T> phi = R(2) * components(vector3<T>(at_end[0]));
+  const matrix_rows<T> by_last = rows_of(left_jacobian_inverse(phi));
+  const matrix_rows<T> by_next = rows_of(right_jacobian_inverse(phi));
+  const quaternion<D> back = conj(quaternion<D>(m.value));
+  const quaternion<D> sigma = back * wide.value;
+  const std::array<three_vector<D>, 4> moved{three_vector<D>{sigma.x(), sigma.y(), sigma.z()},
+                                             wide.velocity, wide.acceleration, wide.jerk};
+  for (std::size_t k = 0; k <= std::size_t(Rates); ++k) {
+    const matrix_rows<T> by_phi = scaled(R(2), rows_of_partials<T>(moved[k]));
+    blocks[k][0] = negated(rows_product(by_phi, by_last));
+    blocks[k][1] = rows_product(by_phi, by_next);
+  }
+  blocks[0][0] = blocks[0][0] + adjoint_rows(conj(m.value));
+  const auto snap = [](const auto& x) {
+    if constexpr (contains_tag<T, screw_tag>()) {
+      return T(x.value().epsilon(), x.epsilon().epsilon());
+    } else {
+      return T(x.epsilon());
+    }
+  };
+  const R two(2);
+  set_frame(
+      result, side, quaternion<T>(ends[0] * m.value),
+      {two * m.velocity, two * m.acceleration, two * m.jerk,
+       two * three_vector<T>{snap(in_time.jerk.x), snap(in_time.jerk.y), snap(in_time.jerk.z)}},
+      [&](std::size_t i) { return adjoint_rows(conj(ends[i])); });
+  return result;
+}
 
 } // namespace detail
 
