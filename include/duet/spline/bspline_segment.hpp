@@ -16,6 +16,7 @@
 #include <duet/spline/motion.hpp>
 #include <duet/spline/motion_jacobian.hpp>
 #include <duet/spline/orientations.hpp>
+#include <duet/spline/product_jacobian.hpp>
 
 #include <algorithm>
 #include <array>
@@ -173,15 +174,12 @@ private:
         detail::raise(
             invalid_sample(i, detail::message("quaternion ", controls_[i], " is not of norm 1")));
       }
-      if (i > 0) {
-        if (innermost(dot(controls_[i - 1], controls_[i])) < 0) [[unlikely]] {
-          detail::raise(invalid_sample(
-              i, "its sign is not aligned with that of the control point before (negate it)"));
-        }
-        increments_[i - 1] = detail::log_vector(
-            detail::relative_rotation(controls_[i - 1], controls_[i]), "bspline_segment");
+      if (i > 0 && innermost(dot(controls_[i - 1], controls_[i])) < 0) [[unlikely]] {
+        detail::raise(invalid_sample(
+            i, "its sign is not aligned with that of the control point before (negate it)"));
       }
     }
+    increments_ = detail::increments_between<T, factors>(controls_.data(), "bspline_segment");
   }
 
   [[nodiscard]] const real_type& checked(const real_type& u) const {

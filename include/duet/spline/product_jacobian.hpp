@@ -9,6 +9,7 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/matrix_rows.hpp>
+#include <duet/spline/orientations.hpp>
 
 #include <algorithm>
 #include <array>
@@ -123,11 +124,12 @@ DUET_ABI_BEGIN
 template <class T, std::size_t Factors>
 class functions_of_factors {
   using R = real_type_t<T>;
+
+public:
   static constexpr bool in_lanes =
       LaneReal<R> && (std::is_same_v<T, R> || std::is_same_v<T, screw_dual<R>>)&&(Factors > 1);
   static constexpr std::size_t count = in_lanes ? std::bit_ceil(Factors) : Factors;
 
-public:
   /// \param b  weights of the factors
   template <class B>
   DUET_ALWAYS_INLINE functions_of_factors(const std::array<B, Factors>& b,
@@ -164,6 +166,52 @@ private:
 /// Element [d][i]: Jacobian of the value (d = 0) or the d-th rate with respect to control point i.
 template <int Rates, class T>
 using block_pointers = std::array<matrix_rows<T>*, std::size_t(Rates) + 1>;
+
+/// atan(√x)/√x of x ≤ tan²(π/8), by its series.
+template <class D, int K = 0>
+[[nodiscard]] DUET_ALWAYS_INLINE D arctangent_ratio(const D& x) {
+  using R = lane_type_t<real_type_t<D>>;
+  constexpr R coefficient = R(K % 2 == 0 ? 1 : -1) / R(2 * K + 1);
+  if constexpr (K == 20) {
+    return D(coefficient);
+  } else {
+    return coefficient + x * arctangent_ratio<D, K + 1>(x);
+  }
+}
+
+/// Increments ω_j = log(q_{j−1}* q_j) of control points less than a full turn apart, all in lanes
+/// for plain numbers and their screws. With the vector part v and the scalar part w of the relative
+/// rotation, ω = 4 atan(z/(1 + √(1 + z²))) v/|v|, z = |v|/(|q| + w): no branch, regular at v = 0.
+template <class T, std::size_t Factors>
+[[nodiscard]] DUET_ALWAYS_INLINE std::array<vector3<T>, Factors>
+increments_between(const quaternion<T>* controls, const char* function) {
+  std::array<vector3<T>, Factors> result;
+  if constexpr (functions_of_factors<T, Factors>::in_lanes) {
+    using std::sqrt;
+    constexpr std::size_t count = functions_of_factors<T, Factors>::count;
+    const auto from = [&](std::size_t offset) DUET_INLINE_LAMBDA {
+      return from_lanes<count>([&](std::size_t i) DUET_INLINE_LAMBDA -> const quaternion<T>& {
+        return controls[std::min(i, Factors - 1) + offset];
+      });
+    };
+    const auto q = relative_rotation(from(0), from(1));
+    using D = typename std::decay_t<decltype(q)>::scalar_type;
+    const D s = q.x() * q.x() + q.y() * q.y() + q.z() * q.z();
+    const D per_sum = 1 / D(sqrt(D(s + q.w() * q.w())) + q.w());
+    const D square = s * per_sum * per_sum; // z²
+    const D per_root = 1 / D(1 + D(sqrt(D(1 + square))));
+    const D ratio = 4 * per_sum * per_root * arctangent_ratio<D>(square * per_root * per_root);
+    const vector3<D> omega(q.x() * ratio, q.y() * ratio, q.z() * ratio);
+    for (std::size_t j = 0; j < Factors; ++j) {
+      result[j] = {lane(omega[0], int(j)), lane(omega[1], int(j)), lane(omega[2], int(j))};
+    }
+  } else {
+    for (std::size_t j = 0; j < Factors; ++j) {
+      result[j] = log_vector(relative_rotation(controls[j], controls[j + 1]), function);
+    }
+  }
+  return result;
+}
 
 /// Vectors of the tails, in axes of S, from the last factor to the first.
 template <class T, std::size_t Factors>
