@@ -4,8 +4,10 @@
 #include "support/allocations.hpp"
 
 #include <duet/derivative/derivative.hpp>
+#include <duet/derivative/perturbation.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/exponential.hpp>
+#include <duet/spline/bspline_segment.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/printed.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
@@ -13,6 +15,7 @@
 #include <doctest/doctest.h>
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 TEST_CASE("curves: evaluation does not allocate memory") {
@@ -34,6 +37,9 @@ TEST_CASE("curves: evaluation does not allocate memory") {
   const dual_vector v = duet::make_dual_vector(w, w);
   const duet::rotation_vector_spline<duet::screw_dual<double>> rp(ends, {poses[0], poses[1]},
                                                                   {{v}, {v}});
+  const duet::segment_basis<4> segment_basis(std::span<const double, 6>(&knots[1], 6));
+  const std::span<const duet::quaternion<double>, 4> controls(s.control_points().data(), 4);
+  const duet::bspline_segment<double> segment(controls, segment_basis);
   duet::span_hint hint;
   double sum = 0;
   const std::size_t before = duet_test::allocations;
@@ -46,6 +52,13 @@ TEST_CASE("curves: evaluation does not allocate memory") {
     sum += p.motion(u, duet::frame::hybrid).acceleration[0];
     sum += r(u).x() + r.motion(u, duet::frame::spatial).jerk[2] + r.derivatives(u)[3].x();
     sum += rp.motion(u, duet::frame::hybrid, hint).jerk[5];
+    sum += s.motion_jacobian<3>(u, duet::frame::body).jerk.block(0)(0, 0);
+    sum += p.motion_jacobian<2>(u, duet::frame::hybrid, duet::perturbation::left, hint)
+               .acceleration.block(1)(5, 5);
+    sum += s.knot_jacobian(u, duet::frame::body).exists[0] ? 1 : 0;
+    sum +=
+        segment.motion_jacobian<2>(segment_basis.front(), duet::frame::body).value.block(3)(0, 0);
+    sum += r.motion_jacobian<1>(u, duet::frame::body).value.block(1)(0, 0);
     sum += duet::printed_derivative(s, u).literal_second.x();
     sum += s(duet::dual<double>::variable(u)).w().epsilon();
     sum += duet::derivatives<2>([&](const auto& x) { return s(x); }, u)[2].y();

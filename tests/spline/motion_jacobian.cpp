@@ -27,22 +27,22 @@ using duet_test::jacobian_errors;
 
 namespace {
 
-const double almost_half_a_turn = duet::constant::pi<double>() - 1e-9;
-const std::array steps{0.0, 1e-12, 1e-6, 0.01, 0.7, 2.5, almost_half_a_turn};
+const double almost_pi = duet::constant::pi<double>() - 1e-9;
+const std::array steps{0.0, 1e-12, 1e-6, 0.01, 0.7, 2.5, almost_pi};
 
 /// All kinds of knots, all steps between control points, both ends and the inside of all spans.
 template <int Order>
 void compare_order(jacobian_errors& errors) {
-  std::size_t turn = 0;
+  std::size_t count = 0;
   for (const auto& [name, knots] : duet_test::knot_vectors(Order)) {
     // Each parameter with another step; all of them are met several times.
     for (const double u : duet_test::parameters_on(knots, Order, 1)) {
-      const double step = steps[turn++ % steps.size()];
-      const auto s = duet_test::curve_of_steps<double, Order>(knots, step, turn);
+      const double step = steps[count++ % steps.size()];
+      const auto s = duet_test::curve_of_steps<double, Order>(knots, step, count);
       const std::string text =
           "order " + std::to_string(Order) + ", " + name + ", step " + std::to_string(step);
-      const perturbation side = turn % 3 == 0 ? perturbation::left : perturbation::right;
-      if (turn % 2 == 0) {
+      const perturbation side = count % 3 == 0 ? perturbation::left : perturbation::right;
+      if (count % 2 == 0) {
         compare_blocks(errors, text, s, u, duet::frame::body, side);
       } else {
         compare_blocks(errors, text, s, u, duet::frame::spatial, side);

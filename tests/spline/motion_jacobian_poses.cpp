@@ -30,15 +30,15 @@ const std::array steps{0.0, 1e-12, 1e-6, 0.01, 0.7, 2.5, duet::constant::pi<doub
 
 template <int Order>
 void compare_order(jacobian_errors& errors, std::size_t every) {
-  std::size_t turn = 0;
+  std::size_t count = 0;
   for (const auto& [name, knots] : duet_test::knot_vectors(Order)) {
     for (const double u : duet_test::parameters_on(knots, Order, 1)) {
-      if (++turn % every != 0) {
+      if (++count % every != 0) {
         continue;
       }
-      const std::size_t k = turn / every;
+      const std::size_t k = count / every;
       const double step = steps[k % steps.size()];
-      const auto s = duet_test::curve_of_steps<screw, Order>(knots, step, turn);
+      const auto s = duet_test::curve_of_steps<screw, Order>(knots, step, count);
       const std::string text =
           "poses, order " + std::to_string(Order) + ", " + name + ", step " + std::to_string(step);
       const perturbation side = k % 2 == 0 ? perturbation::left : perturbation::right;

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <type_traits>
 #include <utility>
@@ -58,7 +59,7 @@ struct factor_functions {
 
   factor_functions() = default;
 
-  /// By universal functions U_n(x) = xⁿ c_n(x² s), s = ω·ω, of b, 1 and 1 − b: regular at s = 0,
+  /// Uses universal functions U_n(x) = xⁿ c_n(x² s), s = ω·ω, of b, 1 and 1 − b: regular at s = 0,
   /// singular at |φ| = 2π alone.
   ///
   /// N = b J_r(bφ) J_r⁻¹(φ) = (I − e^{−bφ̂})/(I − e^{−φ̂}), with the derivative J_r⁻¹(φ) e^{−bφ̂}

@@ -27,7 +27,7 @@ namespace duet {
 /// Motion of a split curve at a parameter, with its Jacobians.
 template <Real R, int Order, int Rates, class Frame>
 struct split_jacobian {
-  /// Of the orientation, with respect to the control rotations.
+  /// Orientation, with its Jacobians with respect to the control rotations.
   curve_jacobian<R, Order, Rates, Frame> rotation;
   vector3<R> position;     ///< position p in fixed axes
   vector3<R> velocity;     ///< ṗ
