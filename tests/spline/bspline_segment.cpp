@@ -13,6 +13,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -38,20 +39,24 @@ duet::bspline_segment<T, Order> segment_of(const duet::cumulative_bspline<T, Ord
 }
 
 template <class T, int Order>
-void compare_with_curve() {
+void compare_with_curve(double step) {
   for (const auto& [name, knots] : duet_test::knot_vectors(Order)) {
-    const auto s = duet_test::curve_of_steps<T, Order>(knots, 0.7, 3);
+    const auto s = duet_test::curve_of_steps<T, Order>(knots, step, 3);
     for (const double u : duet_test::parameters_on(knots, Order, 1)) {
       const auto segment = segment_of(s, u);
       const auto a = segment.template motion_jacobian<3>(u, duet::frame::spatial);
       const auto b = s.template motion_jacobian<3>(u, duet::frame::spatial);
-      CHECK(a.motion.value == b.motion.value);
-      CHECK(a.value.matrix() == b.value.matrix());
-      CHECK(a.velocity.matrix() == b.velocity.matrix());
-      CHECK(a.acceleration.matrix() == b.acceleration.matrix());
-      CHECK(a.jerk.matrix() == b.jerk.matrix());
-      CHECK(segment(u) == s(u));
-      CHECK(segment.motion(u, duet::frame::body).jerk == s.motion(u, duet::frame::body).jerk);
+      const auto is_close = [](const auto& x, const auto& y, double size) {
+        return (x - y).cwiseAbs().maxCoeff() <= 1e-13 * std::max(size, y.cwiseAbs().maxCoeff());
+      };
+      CHECK(duet_test::max_abs_difference(a.motion.value, b.motion.value) <= 4e-15);
+      CHECK(is_close(a.value.matrix(), b.value.matrix(), 1));
+      CHECK(is_close(a.velocity.matrix(), b.velocity.matrix(), 1));
+      CHECK(is_close(a.acceleration.matrix(), b.acceleration.matrix(), 1));
+      CHECK(is_close(a.jerk.matrix(), b.jerk.matrix(), 1));
+      CHECK(duet_test::max_abs_difference(segment(u), s(u)) <= 4e-15);
+      CHECK(is_close(segment.motion(u, duet::frame::body).velocity,
+                     s.motion(u, duet::frame::body).velocity, 0));
       const auto by_knots = segment.knot_jacobian(u, duet::frame::body);
       CHECK(by_knots.exists == s.knot_jacobian(u, duet::frame::body).exists);
     }
@@ -61,10 +66,10 @@ void compare_with_curve() {
 } // namespace
 
 TEST_CASE("bspline_segment: equals the curve that it is a span of") {
-  compare_with_curve<double, 2>();
-  compare_with_curve<double, 4>();
-  compare_with_curve<double, 5>();
-  compare_with_curve<screw, 4>();
+  compare_with_curve<double, 2>(0.7);
+  compare_with_curve<double, 4>(1e-9);
+  compare_with_curve<double, 5>(3.1);
+  compare_with_curve<screw, 4>(0.7);
 }
 
 TEST_CASE("bspline_segment: reads both storage orders") {
@@ -85,7 +90,8 @@ TEST_CASE("bspline_segment: reads both storage orders") {
       rotations[i] = &numbers[i][3];
     }
     CHECK(numbers[0][order == quaternion_order::wxyz ? 3 : 6] == s.control_points()[0].w());
-    CHECK(duet::bspline_segment<double>(rotations.data(), order, window)(u) == s(u));
+    const duet::bspline_segment<double> of_rotations(rotations.data(), order, window);
+    CHECK(duet_test::max_abs_difference(of_rotations(u), s(u)) <= 1e-15);
     const duet::bspline_segment<screw> of_poses(poses.data(), order, window);
     CHECK(duet_test::max_abs_difference(rotation(of_poses(u)), rotation(p(u))) <= 1e-15);
     CHECK((translation(of_poses(u)) - translation(p(u))).norm() <= 1e-14);
