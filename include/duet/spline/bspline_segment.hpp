@@ -10,9 +10,9 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/quaternion_order.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/bspline_span.hpp>
 #include <duet/spline/knot_jacobian.hpp>
-#include <duet/spline/location.hpp>
 #include <duet/spline/motion.hpp>
 #include <duet/spline/motion_jacobian.hpp>
 #include <duet/spline/orientations.hpp>

@@ -7,8 +7,8 @@
 #include <duet/derivative/perturbation.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
+#include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/location.hpp>
 #include <duet/spline/motion_jacobian.hpp>
 
 #include <Eigen/Core>
