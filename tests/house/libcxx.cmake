@@ -24,13 +24,11 @@ execute_process(
 execute_process(COMMAND ${folder}/tests COMMAND_ERROR_IS_FATAL ANY)
 
 # Both libraries as one.
-file(WRITE ${folder}/duet.hpp "#include <duet/duet.hpp>\n")
+include(${CMAKE_CURRENT_LIST_DIR}/all_sources.cmake)
+write_all_sources(${project}/src ${folder}/sources.cpp)
 list(APPEND compile -fPIC -pthread -Wno-ignored-attributes)
-execute_process(COMMAND ${compile} -fpch-instantiate-templates -x c++-header ${folder}/duet.hpp -o ${folder}/duet.hpp.gch COMMAND_ERROR_IS_FATAL ANY)
-list(APPEND compile -include ${folder}/duet.hpp)
-file(GLOB sources ${project}/src/*/*.cpp)
 execute_process(
-  COMMAND ${compile} -shared -Wl,--version-script=${project}/src/exported_symbols.map ${sources}
+  COMMAND ${compile} -shared -Wl,--version-script=${project}/src/exported_symbols.map ${folder}/sources.cpp
     -o ${folder}/libduet.so -lexpat
   COMMAND_ERROR_IS_FATAL ANY)
 foreach(program IN ITEMS files planning)

@@ -24,7 +24,8 @@ file(GLOB_RECURSE headers RELATIVE ${include} ${include}/duet/*.hpp)
 list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>")
 list(JOIN headers "\n" lines)
 file(WRITE ${folder}/everything.cpp "${lines}\n")
-file(WRITE ${folder}/duet.hpp "#include <duet/duet.hpp>\n")
+include(${CMAKE_CURRENT_LIST_DIR}/all_sources.cmake)
+write_all_sources(${include}/../src ${folder}/sources.cpp)
 
 list(APPEND compile --target=x86_64-pc-windows-msvc -fms-compatibility -fms-extensions -fms-compatibility-version=19.30
   -DDUET_PORTABLE -DDUET_WITHOUT_EXPAT -Wall -Wextra -Werror -Wno-ignored-attributes -Wno-unknown-attributes
@@ -35,12 +36,6 @@ list(APPEND compile --target=x86_64-pc-windows-msvc -fms-compatibility -fms-exte
   -D__GLIBCXX_TYPE_INT_N_0=__int128 -D__GLIBCXX_BITSIZE_INT_N_0=128
   -DBOOST_TYPE_INDEX_FORCE_NO_RTTI_COMPATIBILITY)
 execute_process(COMMAND ${compile} -fsyntax-only ${folder}/everything.cpp COMMAND_ERROR_IS_FATAL ANY)
-# Sources share what they read for long. (Templates are instantiated there, or every source would do so.)
-execute_process(COMMAND ${compile} -fpch-instantiate-templates -x c++-header ${folder}/duet.hpp -o ${folder}/duet.pch
-  COMMAND_ERROR_IS_FATAL ANY)
-file(GLOB sources ${include}/../src/*/*.cpp)
-execute_process(COMMAND ${compile} -fsyntax-only -include-pch ${folder}/duet.pch ${sources}
-  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${compile} -fsyntax-only ${folder}/sources.cpp COMMAND_ERROR_IS_FATAL ANY)
 list(LENGTH headers count)
-list(LENGTH sources source_count)
-message("${count} headers and ${source_count} sources compile as for MSVC")
+message("${count} headers and all sources compile as for MSVC")

@@ -14,25 +14,17 @@ file(GLOB_RECURSE all RELATIVE ${include} ${include}/duet/*.hpp)
 list(FILTER all EXCLUDE REGEX "/interop/")
 list(TRANSFORM all REPLACE "(.+)" "#include <\\1>\n")
 list(JOIN all "" headers)
-file(GLOB sources ${include}/../src/*/*.cpp)
 file(WRITE without_exceptions_headers.hpp "${headers}")
-# Sources share what they read for long.
-set(precompiled ${CMAKE_CURRENT_BINARY_DIR}/without_exceptions_duet.hpp)
-file(WRITE ${precompiled} "#include <duet/duet.hpp>\n")
+include(${CMAKE_CURRENT_LIST_DIR}/all_sources.cmake)
+write_all_sources(${include}/../src without_exceptions_sources.cpp)
 
 list(APPEND compile ${flags} -Wall -Wextra -Werror -Wno-ignored-attributes)
-set(instantiated "")
-if(compile MATCHES "clang")
-  set(instantiated -fpch-instantiate-templates) # or every source would instantiate them
-endif()
-execute_process(COMMAND ${compile} ${instantiated} -x c++-header ${precompiled} -o ${precompiled}.gch
-  COMMAND_ERROR_IS_FATAL ANY)
 execute_process(
   COMMAND ${compile} -I . -include without_exceptions_headers.hpp -c ${CMAKE_CURRENT_LIST_DIR}/without_exceptions.cpp
     -o without_exceptions.o
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(
-  COMMAND ${compile} -include ${precompiled} ${sources} without_exceptions.o -o without_exceptions -lexpat
+  COMMAND ${compile} without_exceptions_sources.cpp without_exceptions.o -o without_exceptions -lexpat
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ./without_exceptions COMMAND_ERROR_IS_FATAL ANY)
 
