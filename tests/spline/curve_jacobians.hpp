@@ -159,7 +159,8 @@ void compare_blocks(jacobian_errors& errors, const std::string& name,
   const std::size_t span = s.basis().find_span(u);
   const std::array ends{s.breaks()[span], std::nextafter(s.breaks()[span + 1], u)};
   double slope = 0;
-  for (const double b : s.basis().template weights<1>(span, u)[1]) {
+  const auto weights = s.basis().template weights<1>(span, u);
+  for (const double b : weights[1]) {
     slope = std::max(slope, std::abs(b));
   }
   for (const double end : ends) {
