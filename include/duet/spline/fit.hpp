@@ -4,6 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/levenberg_marquardt.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
 #include <duet/dual_quaternion/twist.hpp>
@@ -552,8 +553,50 @@ public:
   /// \throws no_convergence if the iteration does not converge
   int solve() { return iterations_ + descend(options_.max_iterations, true); }
 
+  /// The problem at the control points so far, for `levenberg_marquardt`.
+  [[nodiscard]] R linearise() {
+    is_bold_ = must_converge_ && is_robust();
+    const R cost = assemble(is_bold_);
+    if (++descent_steps_ >
+        10) { // Gauss–Newton steps alone are mostly enough, and faster at the end
+      changes_.arrive(-gradient_);
+    }
+    return cost;
+  }
+  [[nodiscard]] bool solve(const R& damping) {
+    damping_ = damping;
+    moved_ = moved_control_points(damping, step_);
+    return !moved_.empty();
+  }
+  [[nodiscard]] bool solve_better() {
+    if (!changes_.empty()) {
+      changes_.clear();
+      return true;
+    }
+    if (is_bold_) {
+      is_bold_ = false;
+      static_cast<void>(assemble(false));
+      return true;
+    }
+    return false;
+  }
+  [[nodiscard]] const R& step_size() const { return step_; }
+  /// ½ δᵀ(g + λ D δ) of the step δ, g the negative gradient and D the diagonal of JᵀWJ.
+  [[nodiscard]] R predicted_decrease() const {
+    R sum = last_step_.dot(gradient_);
+    for (std::size_t i = 0; i < normal_.rows(); ++i) {
+      const auto d = last_step_.template segment<dimension>(Eigen::Index(i) * dimension);
+      sum += damping_ * d.cwiseAbs2().dot(normal_.at(i, i).diagonal());
+    }
+    return sum / 2;
+  }
+  [[nodiscard]] R cost_after_step() const { return this->cost_of(moved_, limits_); }
+  void accept() {
+    controls_ = std::move(moved_);
+    changes_.step(last_step_, -gradient_);
+  }
+
 private:
-  static constexpr R tolerance = R(1e-11); // rad
   static constexpr R max_rotation = R(0.5);
   static constexpr R min_outlier_threshold =
       R(1e-9); ///< samples that fit to round-off have no outliers
@@ -566,62 +609,23 @@ private:
   ///
   /// \throws no_convergence if `must_converge` and the iteration does not
   int descend(int max_steps, bool must_converge) {
-    const R gain = must_converge ? std::numeric_limits<R>::epsilon() : R(0.1);
     using std::sqrt;
     const R rounding = 8 * std::numeric_limits<R>::epsilon() * sqrt(R(samples().size()));
-    R damping(0), step(0), before(std::numeric_limits<R>::max()), rate(1);
-    for (int iteration = 1; iteration <= max_steps; ++iteration) {
-      bool is_bold = must_converge && is_robust();
-      const R cost = assemble(is_bold);
-      if (iteration > 10) { // Gauss–Newton steps alone are mostly enough, and faster at the end
-        changes_.arrive(-gradient_);
-      }
-      R next(0);
-      for (;;) {
-        std::vector<element> moved = moved_control_points(damping, step);
-        next = moved.empty() ? std::numeric_limits<R>::infinity() : this->cost_of(moved, limits_);
-        const bool is_tiny = !moved.empty() && step <= tolerance;
-        if (next <= cost * (1 + rounding) || (is_tiny && damping == 0)) {
-          controls_ = std::move(moved);
-          changes_.step(last_step_, -gradient_);
-          damping = damping > R(1e-9) ? R(damping / 10) : R(0);
-          break;
-        }
-        if (is_tiny) { // the cost is at its minimum to round-off
-          return iteration;
-        }
-        if (!changes_.empty()) {
-          changes_.clear();
-          continue;
-        }
-        if (is_bold) {
-          is_bold = false;
-          static_cast<void>(assemble(false));
-          continue;
-        }
-        damping = damping > 0 ? R(damping * 10) : R(1e-6);
-        if (!(damping < R(1e12))) {
-          if (!must_converge) {
-            return iteration;
-          }
-          fail("finds no step that reduces the cost", iteration, step);
-        }
-      }
-      // An error e in the control points adds e² to the cost, which therefore stops changing before
-      // the steps vanish. Steps shrink, at a rate given by the last two, down to round-off.
-      const bool is_low = step <= tolerance || cost - next <= gain * next;
-      const bool is_shrinking = 2 * step <= before;
-      const R last_rate = std::exchange(rate, damping > 0 ? R(1) : R(step / before));
-      before = step;
-      if (is_low && (!must_converge || !is_shrinking || iteration == max_steps ||
-                     step * std::max(rate, last_rate) <= std::numeric_limits<R>::epsilon())) {
-        return iteration;
-      }
+    must_converge_ = must_converge;
+    descent_steps_ = 0;
+    descent_options<R> options{max_steps, R(0), rounding};
+    if (!must_converge) {
+      options.min_decrease = R(0.1);
+      options.is_polished = false;
     }
-    if (must_converge) {
-      fail("does not converge", max_steps, step);
+    const descent<R> d = levenberg_marquardt<R>(*this, options);
+    if (must_converge && d.reason == least_squares_stop::no_decrease) {
+      fail("finds no step that reduces the cost", d.iterations, d.step);
     }
-    return max_steps;
+    if (must_converge && d.reason == least_squares_stop::iteration_limit) {
+      fail("does not converge", max_steps, d.step);
+    }
+    return d.iterations;
   }
 
   /// Approaches the samples robustly: the outlier limits follow from medians of the distances of
@@ -753,8 +757,10 @@ private:
   const std::vector<R>* u_;
   element origin_;        ///< sample to which the others are relative
   std::vector<R> limits_; ///< outlier limits of Huber's loss for each sample; 0: does not count
-  std::vector<element> controls_;
-  int iterations_ = 0;
+  std::vector<element> controls_, moved_; ///< control points; after the step
+  R step_{0}, damping_{0};                ///< largest coordinate of the step, and its damping
+  int iterations_ = 0, descent_steps_ = 0;
+  bool must_converge_ = false, is_bold_ = false;
   block_band_matrix<R, dimension, std::size_t(Order) - 1> normal_, factors_;
   vector gradient_, last_step_; ///< negative gradient
   gradient_changes<R> changes_;
