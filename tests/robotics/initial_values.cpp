@@ -13,6 +13,8 @@
 #include <duet/motion/printed_plan.hpp>
 #include <duet/robotics.hpp>
 #include <duet/spline/fit.hpp>
+#include <duet/spline/knot_jacobian.hpp>
+#include <duet/spline/split_bspline.hpp>
 
 #include <doctest/doctest.h>
 
@@ -62,6 +64,13 @@ bool is_uninitialized(T& x) {
     return std::all_of(bytes, bytes + sizeof(T), [](unsigned char b) { return b == pattern; });
   } else if constexpr (requires { T::SizeAtCompileTime; }) {
     return std::any_of(x.data(), x.data() + x.size(), [](auto& e) { return is_uninitialized(e); });
+  } else if constexpr (requires { x.block(x.size()); }) {
+    bool result = false;
+    for (int i = 0; i < x.size(); ++i) {
+      auto block = x.block(i);
+      result = result || is_uninitialized(block);
+    }
+    return result;
   } else if constexpr (requires { std::tuple_size<T>::value; }) {
     return std::any_of(x.begin(), x.end(), [](auto& e) { return is_uninitialized(e); });
   } else if constexpr (std::is_aggregate_v<T>) {
@@ -138,6 +147,9 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(value_and_gradient<double, Vector3d>);
   DUET_CHECK(value_gradient_and_hessian<double, Vector3d, Matrix3d>);
   DUET_CHECK(newton_options);
+  DUET_CHECK(loss_function);
+  DUET_CHECK(nonlinear_least_squares_options);
+  DUET_CHECK(nonlinear_least_squares_result<Vector3d>);
   DUET_CHECK(value_and_jacobian<Vector3d, Matrix3d>);
   DUET_CHECK(value_gradient_and_product<double, Vector3d>);
   DUET_CHECK(value_and_mixed_hessian<double, Matrix3d>);
@@ -219,6 +231,11 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(interpolation_report);
   DUET_CHECK(span_hint);
   DUET_CHECK(lookup_table<double>);
+  DUET_CHECK(bspline_span<4, double>);
+  DUET_CHECK(knot_jacobian_result<double, 4>);
+  DUET_CHECK(curve_jacobian<double, 4, 3, body_frame>);
+  DUET_CHECK(point_jacobian_result<double, 4>);
+  DUET_CHECK(split_jacobian<double, 4, 3, body_frame>);
   DUET_CHECK(motion<double>);
   DUET_CHECK(motion<dual<double, 1, screw_tag>>);
   DUET_CHECK(printed_derivatives<double>);

@@ -30,8 +30,8 @@ template <int Order, class S = double>
 struct bspline_span {
   static_assert(Order >= 2, "duet: a B-spline basis needs order 2 or more");
   using polynomial = std::array<S, std::size_t(Order)>;
-  S middle;                                                   ///< midpoint of the span
-  std::array<polynomial, std::size_t(Order) - 1> polynomials; ///< derivatives at the midpoint
+  S middle = S(0);                                                 ///< midpoint of the span
+  std::array<polynomial, std::size_t(Order) - 1> polynomials = {}; ///< derivatives at the midpoint
 
   /// Functions and derivatives at u, over the scalar of u; a built-in number is converted to S.
   /// Like any polynomial they may be evaluated outside the span.

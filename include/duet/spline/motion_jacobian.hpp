@@ -81,10 +81,10 @@ public:
   struct none {
     none& operator[](std::size_t) { return *this; }
   };
-  std::array<detail::matrix_rows<T>, std::size_t(Count)> linear;
+  std::array<detail::matrix_rows<T>, std::size_t(Count)> linear = {};
   DUET_NO_UNIQUE_ADDRESS
   std::conditional_t<IsHybrid, std::array<detail::matrix_rows<scalar>, std::size_t(Count)>, none>
-      angular;
+      angular = {};
 };
 
 /// A rate that was not requested.
@@ -116,10 +116,11 @@ struct curve_jacobian {
 
   /// Derivatives with respect to u. Those of the highest rate are one-sided at knots.
   struct by_parameter {
-    rate_type value;    ///< of the value: ω in body axes, for `perturbation::left` spatial axes
-    rate_type velocity; ///< of the velocity: the acceleration
-    rate_type acceleration; ///< of the acceleration: the jerk
-    rate_type jerk;         ///< of the jerk
+    rate_type value = detail::zero_initialized<rate_type>(); ///< of the value: ω in body axes, for
+                                                             ///< `perturbation::left` spatial axes
+    rate_type velocity = value;                              ///< of the velocity: the acceleration
+    rate_type acceleration = value;                          ///< of the acceleration: the jerk
+    rate_type jerk = value;                                  ///< of the jerk
   };
   by_parameter parameter_derivative; ///< with respect to u, for offsets in time
 
@@ -359,11 +360,12 @@ template <class T, int Count>
 struct point_jacobian_result {
   using scalar = typename manifold<quaternion<T>>::scalar;
   static constexpr int dimension = manifold<quaternion<T>>::dimension;
-  vector3<scalar> value; ///< point in fixed axes
+  vector3<scalar> value = detail::zero_initialized<vector3<scalar>>(); ///< point in fixed axes
   /// Derivatives with respect to the active control points, side by side: 3 × 3 for each rotation,
   /// 3 × 6 for each pose.
-  Eigen::Matrix<scalar, 3, dimension * Count> jacobian;
-  vector3<scalar> parameter_derivative; ///< velocity of the point, with respect to u
+  Eigen::Matrix<scalar, 3, dimension* Count> jacobian =
+      Eigen::Matrix<scalar, 3, dimension * Count>::Zero();
+  vector3<scalar> parameter_derivative = value; ///< velocity of the point, with respect to u
 
   /// Derivative with respect to the i-th active control point.
   [[nodiscard]] Eigen::Matrix<scalar, 3, dimension> block(int i) const {

@@ -29,13 +29,13 @@ template <Real R, int Order, int Rates, class Frame>
 struct split_jacobian {
   /// Orientation, with its Jacobians with respect to the control rotations.
   curve_jacobian<R, Order, Rates, Frame> rotation;
-  vector3<R> position;     ///< position p in fixed axes
-  vector3<R> velocity;     ///< ṗ
-  vector3<R> acceleration; ///< p̈
-  vector3<R> jerk;         ///< third derivative of p
+  vector3<R> position = detail::zero_initialized<vector3<R>>(); ///< position p in fixed axes
+  vector3<R> velocity = position;                               ///< ṗ
+  vector3<R> acceleration = position;                           ///< p̈
+  vector3<R> jerk = position;                                   ///< third derivative of p
   /// Element [d][i] is the d-th derivative of the weight of control position first + i: the d-th
   /// derivative of p has the Jacobian weights[d][i] I with respect to it.
-  std::array<std::array<R, std::size_t(Order)>, 4> weights;
+  std::array<std::array<R, std::size_t(Order)>, 4> weights = {};
 };
 
 /// Split curve of poses over one basis: positions p(u) = Σ B_i(u) p_i and rotations, a cumulative
