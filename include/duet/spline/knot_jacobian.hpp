@@ -30,13 +30,14 @@ struct knot_jacobian_result {
   static constexpr int dimension = manifold<quaternion<T>>::dimension;
   static constexpr int count = 2 * Order - 2; ///< number of knots
   using matrix_type = Eigen::Matrix<typename manifold<quaternion<T>>::scalar, dimension, count>;
-  std::size_t first = 0;                            ///< number of the first of these knots
-  std::array<bool, std::size_t(count)> exists = {}; ///< whether the derivative exists
-  matrix_type value = detail::zero_initialized<matrix_type>(); ///< column m: of the value, with
-                                                               ///< respect to knot first + m
-  matrix_type velocity = value;                                ///< of the velocity
-  matrix_type acceleration = value;                            ///< of the acceleration
-  matrix_type jerk = value;                                    ///< of the jerk, on this span
+  std::size_t first = 0; ///< number of the first of these knots
+  /// Element m is false if the derivative with respect to knot first + m does not exist.
+  std::array<bool, std::size_t(count)> exists = {};
+  /// Derivatives of the value; column m with respect to knot first + m.
+  matrix_type value = detail::zero_initialized<matrix_type>();
+  matrix_type velocity = value;     ///< of the velocity
+  matrix_type acceleration = value; ///< of the acceleration
+  matrix_type jerk = value;         ///< of the jerk, on this span
 };
 
 namespace detail {
