@@ -281,7 +281,7 @@ struct tail_vectors {
 /// and for rates C_j is F_j + ŵ, F_j + â or F_j + ĵ, as dw = σ′ + w × σ and its derivatives give.
 /// All matrices are products with numbers and skew matrices from the left: P ω̂ = (Pω)^ P.
 ///
-/// \param weights  element [d][j] is the d-th derivative of the weight of factor j
+/// \param b  element [d][j] is the d-th derivative of the weight of factor j
 template <int Rates, class T, std::size_t Factors, class Weights>
 DUET_ALWAYS_INLINE void fill_product_jacobian(const tail_vectors<T, Factors>& tails,
                                               const functions_of_factors<T, Factors>& functions,
