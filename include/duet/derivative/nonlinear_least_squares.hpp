@@ -126,12 +126,7 @@ struct residual_blocks;
 /// \throws invalid_input for options of wrong size or value, a start out of bounds, fewer residuals
 ///   than one, and residuals that are not finite at the start
 ///
-/// Example:
-/// ```cpp
-/// const auto result = duet::nonlinear_least_squares(
-///     [&](const auto& a, const auto& b) { return (a * exp(b * t) - y).eval(); }, std::tuple(1.0,
-///     0.5));
-/// ```
+/// Example: `nonlinear_least_squares([](const auto& x) { return x * x - 2; }, 1.0).estimate` is √2.
 template <detail::FunctionOfAny F, class X>
   requires detail::ParameterSet<detail::own_t<X>>
 [[nodiscard]] nonlinear_least_squares_result<detail::own_t<X>>
