@@ -41,60 +41,21 @@ struct matrix_row {
   }
 };
 
-/// Four numbers in vectors of the target: a `batch` without functions, which compiles faster.
+/// Three numbers in the lanes of a batch, the last of which is zero.
 template <LaneReal R>
-struct four_lanes {
-  using storage = packets<R, 4>;
-  typename storage::packet of[std::size_t(storage::count)];
-
-  DUET_ALWAYS_INLINE static four_lanes load(R x, R y, R z) {
-    four_lanes result;
-    if constexpr (storage::count == 1) {
-      result.of[0] = typename storage::packet{x, y, z, R(0)};
-    } else if constexpr (storage::width == 2) {
-      result.of[0] = typename storage::packet{x, y};
-      result.of[1] = typename storage::packet{z, R(0)};
-    }
-    return result;
-  }
-  [[nodiscard]] DUET_ALWAYS_INLINE R operator[](int i) const {
-    return of[i / storage::width][i % storage::width];
-  }
-  [[nodiscard]] friend DUET_ALWAYS_INLINE four_lanes operator+(const four_lanes& a,
-                                                               const four_lanes& b) {
-    DUET_CONTRACTED
-    four_lanes result;
-    for (int p = 0; p < storage::count; ++p) {
-      result.of[p] = a.of[p] + b.of[p];
-    }
-    return result;
-  }
-  [[nodiscard]] friend DUET_ALWAYS_INLINE four_lanes operator-(const four_lanes& a,
-                                                               const four_lanes& b) {
-    DUET_CONTRACTED
-    four_lanes result;
-    for (int p = 0; p < storage::count; ++p) {
-      result.of[p] = a.of[p] - b.of[p];
-    }
-    return result;
-  }
-  [[nodiscard]] friend DUET_ALWAYS_INLINE four_lanes operator*(R s, const four_lanes& a) {
-    DUET_CONTRACTED
-    four_lanes result;
-    for (int p = 0; p < storage::count; ++p) {
-      result.of[p] = s * a.of[p];
-    }
-    return result;
-  }
-};
+[[nodiscard]] DUET_ALWAYS_INLINE batch<R, 4> three_lanes(R x, R y, R z) {
+  return batch<R, 4>::from_lanes([&](int i) DUET_INLINE_LAMBDA {
+    return i == 0 ? x : i == 1 ? y : i == 2 ? z : R(0);
+  });
+}
 
 /// The last lane is not used.
 template <LaneReal R>
 struct matrix_row<R> {
-  four_lanes<R> a;
+  batch<R, 4> a;
 
   [[nodiscard]] DUET_ALWAYS_INLINE static matrix_row of(R x, R y, R z) {
-    return {four_lanes<R>::load(x, y, z)};
+    return {three_lanes<R>(x, y, z)};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE R operator[](int i) const { return a[i]; }
   [[nodiscard]] friend DUET_ALWAYS_INLINE matrix_row operator+(const matrix_row& x,
@@ -113,11 +74,11 @@ struct matrix_row<R> {
 template <LaneReal R>
 struct matrix_row<screw_dual<R>> {
   using T = screw_dual<R>;
-  four_lanes<R> a, b; ///< a + εb
+  batch<R, 4> a, b; ///< a + εb
 
   [[nodiscard]] DUET_ALWAYS_INLINE static matrix_row of(const T& x, const T& y, const T& z) {
-    return {four_lanes<R>::load(x.value(), y.value(), z.value()),
-            four_lanes<R>::load(x.epsilon(), y.epsilon(), z.epsilon())};
+    return {three_lanes<R>(x.value(), y.value(), z.value()),
+            three_lanes<R>(x.epsilon(), y.epsilon(), z.epsilon())};
   }
   [[nodiscard]] DUET_ALWAYS_INLINE T operator[](int i) const { return {a[i], b[i]}; }
   [[nodiscard]] friend DUET_ALWAYS_INLINE matrix_row operator+(const matrix_row& x,
