@@ -4,7 +4,7 @@
 #include "support/allocations.hpp"
 
 #include <duet/derivative/derivative.hpp>
-#include <duet/derivative/perturbation.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/spline/bspline_segment.hpp>

@@ -4,7 +4,6 @@
 #include "spline/curves.hpp"
 
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/perturbation.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/quaternion_order.hpp>
 #include <duet/spline/bspline_segment.hpp>

@@ -4,7 +4,6 @@
 #include "spline/curves.hpp"
 
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/perturbation.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 
 #include <doctest/doctest.h>

@@ -6,7 +6,6 @@
 #include <duet/core/constants.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/perturbation.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/spline/cumulative_bspline.hpp>

@@ -5,7 +5,6 @@
 
 #include <duet/core/constants.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/perturbation.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/spline/cumulative_bspline.hpp>

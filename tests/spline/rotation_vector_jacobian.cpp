@@ -4,7 +4,6 @@
 #include "spline/curves.hpp"
 
 #include <duet/derivative/frame.hpp>
-#include <duet/derivative/perturbation.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 

@@ -7,7 +7,8 @@
 #include <type_traits>
 
 /// \file
-/// Frames in which velocities are expressed, as constants of distinct types: `frame::spatial` …
+/// Frames in which velocities are expressed, as constants of distinct types: `frame::spatial` …;
+/// sides of perturbations.
 
 namespace duet {
 
@@ -33,6 +34,13 @@ inline constexpr hybrid_frame hybrid{};
 template <class Frame>
 concept FrameConstant = std::same_as<Frame, spatial_frame> || std::same_as<Frame, body_frame> ||
     std::same_as<Frame, hybrid_frame>;
+
+/// Side on which a small rotation vector or twist δ perturbs a rotation or pose q. Jacobians with
+/// respect to q and of q are those of δ.
+enum class perturbation {
+  right, ///< q exp(δ/2): δ in body axes
+  left   ///< exp(δ/2) q: δ in spatial axes
+};
 
 namespace detail {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/derivative/perturbation.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/spline/motion_jacobian.hpp>

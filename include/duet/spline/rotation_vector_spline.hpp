@@ -7,7 +7,6 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/derivative/perturbation.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/quaternion/exponential.hpp>
