@@ -579,8 +579,9 @@ template <class Pair>
     return differences.size() < 2 || is_slip(pair, point, s, points.back());
   };
   // The largest first, until one is a slip: then all are that cannot be round-off.
-  std::stable_sort(suspects.begin(), suspects.end(),
-                   [](const sample& a, const sample& b) { return a.ulps > b.ulps; });
+  std::sort(suspects.begin(), suspects.end(), [](const sample& a, const sample& b) {
+    return a.ulps == b.ulps ? a.point < b.point : a.ulps > b.ulps;
+  });
   bool has_slip = false;
   for (const sample& s : suspects) {
     const bool is_slip = has_slip ? !s.error.may_be_rounding : is_slip_at(points[s.point], s.error);
