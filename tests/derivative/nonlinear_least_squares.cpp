@@ -479,6 +479,36 @@ TEST_CASE("undetermined parameters are named") {
   CHECK(one.estimate == Eigen::Vector2d(2.4, 7));
 }
 
+TEST_CASE("structured starts: the solution, its antipode, a half turn, a flat point") {
+  const curve f = noisy_curve(0);
+  const auto exact = nonlinear_least_squares(f, std::tuple(2., .5, -.7));
+  CHECK(exact.converged());
+  CHECK(exact.iterations <= 3);
+  CHECK(exact.estimate == std::tuple(2., .5, -.7));
+
+  const rotation goal = duet::from_rotation_vector(Eigen::Vector3d(.3, -.2, .5));
+  const auto error = [&](const auto& q) { return rotation_vector(conj(goal) * q); };
+  const rotation half_turn(0, 0, 1, 0),
+      quarter = duet::from_rotation_vector(Eigen::Vector3d(std::acos(-1.) / 2, 0, 0));
+  for (const rotation& start : {goal, rotation(-goal), rotation(goal * half_turn * quarter),
+                                rotation(1), rotation(goal * quarter)}) {
+    const auto r = nonlinear_least_squares(error, start);
+    CHECK(r.converged());
+    CHECK(rotation_vector(conj(goal) * r.estimate).norm() < 1e-15);
+    CHECK(r.degrees_of_freedom == 0);
+    CHECK(std::isnan(r.covariance(0, 0)));
+  }
+  // (x² − 2)²/2 has a maximum at 0, where no step is better than another.
+  const auto flat = nonlinear_least_squares([](const auto& x) { return x * x - 2; }, 0.);
+  CHECK(flat.estimate == 0);
+  CHECK(flat.undetermined == std::vector<std::string>{"the parameter"});
+  // Equal parameters with equal columns, more parameters than residuals.
+  const auto equal = nonlinear_least_squares([](const auto& x) { return x[0] + x[1] + x[2] - 6; },
+                                             Eigen::Vector3d(1, 1, 1));
+  CHECK(equal.undetermined.size() == 3);
+  CHECK(equal.estimate.sum() == doctest::Approx(6).epsilon(1e-15));
+}
+
 TEST_CASE("iterations end for the reason that they give") {
   const curve f = noisy_curve(.01);
   const auto few = nonlinear_least_squares(f, std::tuple(1., 1., 1.), {.max_iterations = 2});
@@ -502,15 +532,19 @@ TEST_CASE("bad input is refused with the value") {
   const std::string name = "duet: nonlinear_least_squares: ";
   CHECK(text({.weights = {1, 2}}) == name + "2 weights for 5 residuals");
   CHECK(text({.weights = {1, 1, 0, 1, 1}}) ==
-        name + "weight 2 is 0 (expected a finite positive number)");
+        name + "weight 2 is 0 (expected a finite positive number; omit residuals that should not "
+               "count)");
   CHECK(text({.covariances = {MatrixXd::Identity(2, 2)}}) ==
         name + "covariance 0 is 2 x 2, not 1 x 1");
   CHECK(text({.covariances = {-MatrixXd::Identity(1, 1)}}) ==
-        name + "covariance 0 is not symmetric and positive definite");
+        name + "covariance 0 is not positive definite");
   CHECK(text({.covariances = {MatrixXd::Identity(1, 1), MatrixXd::Identity(1, 1)}}) ==
         name + "2 covariances for 5 residuals (expected one for each, or one for all)");
   CHECK(text({.loss = loss_function::huber(0)}) ==
-        name + "the scale of the loss is 0 (expected a positive number)");
+        name + "the scale of the loss is 0 (expected a finite positive number)");
+  CHECK(text({.loss = loss_function::tukey(std::numeric_limits<double>::infinity())}) ==
+        name + "the scale of the loss is inf (expected a finite positive number)");
+  CHECK(text({.lower = Eigen::Vector3d(0, std::nan(""), 0)}) == name + "lower[1] is nan");
   CHECK(text({.lower = VectorXd::Zero(2)}) == name + "lower has 2 entries for 3 parameters");
   CHECK(text({.upper = VectorXd::Zero(3)}) == name + "argument 0 is 1, outside its bounds, -inf to "
                                                      "0 (rotations and poses cannot have bounds)");

@@ -1,7 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -9,9 +13,11 @@
 #include <cstddef>
 #include <limits>
 #include <utility>
+#include <vector>
 
 /// \file
-/// The iteration of Levenberg and Marquardt, for least-squares problems of any structure.
+/// The iteration of Levenberg and Marquardt, for least-squares problems of any structure; weights
+/// and covariances of their residuals.
 
 namespace duet {
 
@@ -46,7 +52,7 @@ struct descent_options {
 template <Real R>
 struct descent {
   int iterations;            ///< number of steps
-  least_squares_stop reason; ///< why it ended
+  least_squares_stop reason; ///< termination reason
   R step;                    ///< size of the last step
 };
 
@@ -103,6 +109,47 @@ template <Real R, class Problem>
     }
   }
   return {options.max_iterations, least_squares_stop::iteration_limit, step};
+}
+
+/// \param function  name for messages
+/// \param of        plural of what has the weights, for messages
+/// \throws invalid_input unless there are no weights, or `count`, positive and finite
+inline void require_weights(const char* function, const std::vector<double>& weights,
+                            std::size_t count, const char* of) {
+  require(weights.empty() || weights.size() == count, "duet: ", function, ": ", weights.size(),
+          " weights for ", count, " ", of);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    require(weights[i] > 0 && weights[i] <= std::numeric_limits<double>::max(), "duet: ", function,
+            ": weight ", i, " is ", weights[i], " (expected a finite positive number; omit ", of,
+            " that should not count)");
+  }
+}
+
+/// Whitening matrices L⁻¹ of covariances L Lᵀ, `size` × `size`, over the scalar of `Square`.
+///
+/// \throws invalid_input unless there are no covariances, one for all, or `count`, symmetric and
+///   positive definite
+template <class Square>
+[[nodiscard]] std::vector<Square>
+inverse_roots(const char* function, const std::vector<Eigen::MatrixXd>& covariances,
+              std::size_t count, Eigen::Index size, const char* of) {
+  require(covariances.size() <= 1 || covariances.size() == count, "duet: ", function, ": ",
+          covariances.size(), " covariances for ", count, " ", of,
+          " (expected one for each, or one for all)");
+  std::vector<Square> result;
+  for (std::size_t i = 0; i < covariances.size(); ++i) {
+    const Eigen::MatrixXd& covariance = covariances[i];
+    require(covariance.rows() == size && covariance.cols() == size, "duet: ", function,
+            ": covariance ", i, " is ", covariance.rows(), " x ", covariance.cols(), ", not ", size,
+            " x ", size);
+    require(covariance.isApprox(covariance.transpose()), "duet: ", function, ": covariance ", i,
+            " is not symmetric");
+    const Eigen::LLT<Square> root(covariance.template cast<typename Square::Scalar>());
+    require(covariance.allFinite() && root.info() == Eigen::Success, "duet: ", function,
+            ": covariance ", i, " is not positive definite");
+    result.push_back(root.matrixL().solve(Square::Identity(size, size)));
+  }
+  return result;
 }
 
 } // namespace detail

@@ -71,12 +71,15 @@ struct nonlinear_least_squares_result {
   Eigen::VectorXd residuals = {};             ///< f(estimate), its components one after the other
   double cost = 0;                            ///< Σ wᵢ ρ(|rᵢ|), half the sum of squares
   int iterations = 0;                         ///< number of steps
-  least_squares_stop reason = least_squares_stop::iteration_limit; ///< why the iteration ended
-  /// Covariance of the estimate in tangent coordinates, in the body axes of rotations and poses:
-  /// of the errors that follow from those of the residuals to first order. Parameters at a bound
-  /// have none; those of `undetermined` have infinite variances.
+  least_squares_stop reason = least_squares_stop::iteration_limit; ///< termination reason
+  /// Covariance of the estimate in tangent coordinates, n × n, of rotations (rad) and poses
+  /// ([v; ω]) in body axes: of the errors that those of the residuals cause to first order.
+  /// σ²(JᵀJ)⁻¹ with σ² = 2 cost/degrees of freedom, NaN without any; (JᵀJ)⁻¹ of whitened residuals
+  /// if there are covariances; with a robust loss H⁻¹(Σ gᵢgᵢᵀ)H⁻¹ (sandwich) of the gradients gᵢ of
+  /// single losses. Zero for parameters at a bound; infinite variances for those in
+  /// `undetermined`.
   Eigen::MatrixXd covariance = {};
-  int degrees_of_freedom = 0; ///< number of components less that of determined parameters
+  int degrees_of_freedom = 0; ///< number of components less the rank of the Jacobian
   /// Names of the parameters that the residuals do not determine, alone or together with others:
   /// the columns of the Jacobian that depend on each other.
   std::vector<std::string> undetermined = {};
@@ -123,8 +126,11 @@ struct residual_blocks;
 /// Time grows with the square of the number of parameters, about 200 at most; for large sparse
 /// problems use Ceres.
 ///
+/// Where the Jacobian vanishes, as at a maximum of the cost, no step follows: `undetermined` then
+/// names the parameters.
+///
 /// \throws invalid_input for options of wrong size or value, a start out of bounds, fewer residuals
-///   than one, and residuals that are not finite at the start
+///   than one, and residuals or derivatives that are not finite at the start
 ///
 /// Example: `nonlinear_least_squares([](const auto& x) { return x * x - 2; }, 1.0).estimate` is √2.
 template <detail::FunctionOfAny F, class X>
@@ -224,6 +230,8 @@ class nonlinear_least_squares_problem {
       set::dimension > 0 && set::dimension <= single_pass_limit ? set::dimension : chunk;
   using variable = dual<double, partials, tag>;
   using options_type = nonlinear_least_squares_options;
+  static constexpr int block_size = residual_blocks<std::decay_t<decltype(result_of_call(
+      call(std::declval<const F&>(), std::declval<const X&>())))>>::block_size;
 
 public:
   nonlinear_least_squares_problem(const F& f, const X& start, const options_type& options)
@@ -232,8 +240,9 @@ public:
         upper_(bound("upper", options.upper, std::numeric_limits<double>::infinity())),
         scale_(Eigen::VectorXd::Zero(size_)) {
     require(size_ > 0, "duet: nonlinear_least_squares: there are no parameters");
-    require(options.loss.scale > 0, "duet: nonlinear_least_squares: the scale of the loss is ",
-            options.loss.scale, " (expected a positive number)");
+    require(options.loss.scale > 0 && std::isfinite(options.loss.scale),
+            "duet: nonlinear_least_squares: the scale of the loss is ", options.loss.scale,
+            " (expected a finite positive number)");
     const Eigen::VectorXd values = values_of(start);
     for (Eigen::Index i = 0; i < size_; ++i) {
       const bool has_bounds = lower_[i] > -std::numeric_limits<double>::infinity() ||
@@ -248,7 +257,7 @@ public:
   [[nodiscard]] nonlinear_least_squares_result<X> minimised() {
     const double cost = linearise();
     for (Eigen::Index i = 0; i < residuals_.size(); ++i) {
-      const Eigen::Index residual = i / block_size_;
+      const Eigen::Index residual = i / block_size;
       require(std::isfinite(residuals_[i]), "duet: nonlinear_least_squares: residual ", residual,
               " is ", residuals_[i], " at the start");
       for (Eigen::Index k = 0; k < size_; ++k) {
@@ -286,6 +295,7 @@ public:
       using blocks = residual_blocks<std::decay_t<decltype(y)>>;
       const Eigen::Index rows = blocks::count(y) * blocks::block_size;
       if (first == 0) {
+        set_residuals(y);
         jacobian.resize(rows, size_);
       }
       for (Eigen::Index i = 0; i < rows; ++i) {
@@ -294,7 +304,7 @@ public:
         }
       }
     }
-    const double cost = read(evaluated(x_), &jacobian);
+    const double cost = weigh(&jacobian);
     for (Eigen::Index k = 0; k < size_; ++k) {
       scale_[k] = std::max(.7 * scale_[k], jacobian.col(k).norm());
     }
@@ -378,7 +388,8 @@ public:
   }
   [[nodiscard]] double cost_after_step() {
     next_ = moved();
-    return read(evaluated(next_), nullptr);
+    set_residuals(result_of_call(call(f_, next_)));
+    return weigh(nullptr);
   }
   void accept() { x_ = next_; }
 
@@ -437,32 +448,37 @@ private:
            (values[k] >= upper_[k] && gradient_[k] < 0);
   }
 
-  [[nodiscard]] auto evaluated(const X& x) const { return result_of_call(call(f_, x)); }
-
-  /// Reads residuals; whitens them, and the Jacobian if there is one, and scales both by the loss;
-  /// returns the cost. (Triggs et al. 2000: curvature along a residual is ρ″, not less than a
-  /// tenth of ρ′/r, so that the matrix stays positive definite.)
+  /// Takes the values of residuals, over any scalar.
   template <class Y>
-  [[nodiscard]] double read(const Y& y, Eigen::MatrixXd* jacobian) {
+  void set_residuals(const Y& y) {
     using blocks = residual_blocks<Y>;
-    constexpr int size = blocks::block_size;
     const Eigen::Index count = blocks::count(y);
-    if (block_size_ == 0) {
-      block_size_ = size;
-      check(count);
+    if (residuals_.size() == 0) {
+      require(count > 0, "duet: nonlinear_least_squares: the function returns no residuals");
+      require_weights("nonlinear_least_squares", options_.weights, std::size_t(count), "residuals");
+      whitening_ = inverse_roots<Eigen::MatrixXd>("nonlinear_least_squares", options_.covariances,
+                                                  std::size_t(count), block_size, "residuals");
+      residuals_.resize(count * block_size);
     }
-    require(count * size == residuals_.size() || residuals_.size() == 0,
+    require(count * block_size == residuals_.size(),
             "duet: nonlinear_least_squares: the number of residuals changed from ",
-            residuals_.size() / size, " to ", count);
-    residuals_.resize(count * size);
+            residuals_.size() / block_size, " to ", count);
+    for (Eigen::Index i = 0; i < residuals_.size(); ++i) {
+      residuals_[i] = double(part<tag>(blocks::component(y, i), 0));
+    }
+  }
+
+  /// Whitens residuals, and the Jacobian if there is one, and scales both by the loss; returns the
+  /// cost. (Triggs et al. 2000: curvature along a residual is ρ″, not less than a tenth of ρ′/r, so
+  /// that the matrix stays positive definite.)
+  [[nodiscard]] double weigh(Eigen::MatrixXd* jacobian) {
+    constexpr int size = block_size;
+    const Eigen::Index count = residuals_.size() / size;
     weighted_.resize(count * size);
     roots_.resize(count);
     double cost = 0;
     for (Eigen::Index i = 0; i < count; ++i) {
-      Eigen::Matrix<double, size, 1> r;
-      for (int k = 0; k < size; ++k) {
-        residuals_[i * size + k] = r[k] = double(blocks::component(y, i * size + k));
-      }
+      Eigen::Matrix<double, size, 1> r = residuals_.segment<size>(i * size);
       if (!whitening_.empty()) {
         r = (whitening(i) * r).eval();
       }
@@ -540,7 +556,9 @@ private:
     if (options_.loss.form == loss_function::kind::squares) {
       inverse = top.solve(identity);
       inverse *= inverse.transpose().eval(); // (RᵀR)⁻¹
-      inverse *= whitening_.empty() ? 2 * result.cost / freedom : 1;
+      inverse *= !whitening_.empty() ? 1
+                 : freedom > 0       ? 2 * result.cost / freedom
+                                     : std::numeric_limits<double>::quiet_NaN();
     } else if (rank > 0) { // sandwich H⁻¹ (Σ gᵢgᵢᵀ) H⁻¹ of the gradients gᵢ of single losses
       const auto scaled = [&](const Eigen::MatrixXd& m) -> Eigen::MatrixXd {
         return scale.asDiagonal() * m(kept, kept) * scale.asDiagonal();
@@ -563,33 +581,6 @@ private:
     }
   }
 
-  /// Checks weights and covariances, for a number of residuals; factorises the covariances.
-  void check(Eigen::Index count) {
-    require(count > 0, "duet: nonlinear_least_squares: the function returns no residuals");
-    const std::size_t weights = options_.weights.size(), given = options_.covariances.size();
-    require(weights == 0 || weights == std::size_t(count),
-            "duet: nonlinear_least_squares: ", weights, " weights for ", count, " residuals");
-    for (std::size_t i = 0; i < weights; ++i) {
-      require(options_.weights[i] > 0 && std::isfinite(options_.weights[i]),
-              "duet: nonlinear_least_squares: weight ", i, " is ", options_.weights[i],
-              " (expected a finite positive number)");
-    }
-    require(given <= 1 || given == std::size_t(count), "duet: nonlinear_least_squares: ", given,
-            " covariances for ", count, " residuals (expected one for each, or one for all)");
-    for (std::size_t i = 0; i < given; ++i) {
-      const Eigen::MatrixXd& covariance = options_.covariances[i];
-      require(covariance.rows() == block_size_ && covariance.cols() == block_size_,
-              "duet: nonlinear_least_squares: covariance ", i, " is ", covariance.rows(), " x ",
-              covariance.cols(), ", not ", block_size_, " x ", block_size_);
-      const Eigen::LLT<Eigen::MatrixXd> root(covariance);
-      require(covariance.allFinite() && covariance.isApprox(covariance.transpose()) &&
-                  root.info() == Eigen::Success,
-              "duet: nonlinear_least_squares: covariance ", i,
-              " is not symmetric and positive definite");
-      whitening_.push_back(
-          root.matrixL().solve(Eigen::MatrixXd::Identity(block_size_, block_size_)));
-    }
-  }
   [[nodiscard]] const Eigen::MatrixXd& whitening(Eigen::Index i) const {
     return whitening_[whitening_.size() > 1 ? std::size_t(i) : 0];
   }
@@ -598,6 +589,10 @@ private:
                                       double none) const {
     require(given.size() == 0 || given.size() == size_, "duet: nonlinear_least_squares: ", name,
             " has ", given.size(), " entries for ", size_, " parameters");
+    for (Eigen::Index i = 0; i < given.size(); ++i) {
+      require(!std::isnan(given[i]), "duet: nonlinear_least_squares: ", name, "[", i, "] is ",
+              given[i]);
+    }
     return given.size() > 0 ? given : Eigen::VectorXd(Eigen::VectorXd::Constant(size_, none));
   }
 
@@ -605,7 +600,6 @@ private:
   X x_, next_ = x_;
   options_type options_;
   Eigen::Index size_;
-  int block_size_ = 0;
   std::vector<Eigen::MatrixXd> whitening_; ///< L⁻¹ of the covariances L Lᵀ
   Eigen::VectorXd lower_, upper_;
   Eigen::VectorXd residuals_, weighted_; ///< components of f; whitened and scaled by the loss

@@ -89,17 +89,6 @@ namespace detail {
 template <class T, int Order>
 class bspline_fit;
 
-/// \throws invalid_input unless there are no weights, or one for each sample, positive and finite
-inline void require_fit_weights(const std::vector<double>& weights, std::size_t samples) {
-  require(weights.empty() || weights.size() == samples, "duet: fit: ", weights.size(),
-          " weights for ", samples, " samples");
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    require(weights[i] > 0 && weights[i] <= std::numeric_limits<double>::max(),
-            "duet: fit: weight ", i, " is ", weights[i],
-            " (expected a finite positive number; omit samples that should not count)");
-  }
-}
-
 /// Checks the Schoenberg–Whitney condition: every control point needs a separate sample where its
 /// basis function is not zero, or it would be arbitrary.
 ///
@@ -160,7 +149,7 @@ template <CurveType Spline, class R, detail::SampleOf<Spline> T>
                   "duet: fit: characteristic_length is ", options.characteristic_length,
                   " and outlier_threshold is ", options.outlier_threshold,
                   " (expected a positive length and a non-negative threshold)");
-  detail::require_fit_weights(options.weights, samples.size());
+  detail::require_weights("fit", options.weights, samples.size(), "samples");
   const bspline_basis<Spline::order, R> basis(std::move(knots));
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     if (!basis.contains(parameters[i])) {
@@ -232,7 +221,9 @@ protected:
   bspline_residuals(const basis_type& basis, const std::vector<R>& u, std::vector<element> data,
                     const fit_options& options)
       : samples_(std::move(data)), characteristic_length_(R(options.characteristic_length)),
-        sample_weights_(options.weights), whitening_(inverse_roots(options.covariances)) {
+        sample_weights_(options.weights),
+        whitening_(inverse_roots<square>("fit", options.covariances, samples_.size(), dimension,
+                                         "samples")) {
     first_.reserve(u.size());
     weights_.reserve(u.size());
     for (const R& parameter : u) {
@@ -354,29 +345,6 @@ private:
 
   [[nodiscard]] static vector3<T> twice(const vector3<T>& half) { return R(2) * components(half); }
 
-  /// Whitening matrices L⁻¹ of the covariances L Lᵀ.
-  ///
-  /// \throws invalid_input for a wrong number or size of covariances, and for a covariance that is
-  /// not symmetric or not positive definite
-  [[nodiscard]] std::vector<square> inverse_roots(const std::vector<Eigen::MatrixXd>& covariances) {
-    const std::size_t count = covariances.size();
-    require(count <= 1 || count == samples_.size(), "duet: fit: ", count, " covariances for ",
-            samples_.size(), " samples (expected one for each, or one for all)");
-    std::vector<square> result;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Eigen::MatrixXd& covariance = covariances[i];
-      require(covariance.rows() == dimension && covariance.cols() == dimension,
-              "duet: fit: covariance ", i, " is ", covariance.rows(), " x ", covariance.cols(),
-              ", not ", dimension, " x ", dimension);
-      require(covariance.isApprox(covariance.transpose()), "duet: fit: covariance ", i,
-              " is not symmetric");
-      const Eigen::LLT<square> root(covariance.template cast<R>());
-      require(covariance.allFinite() && root.info() == Eigen::Success, "duet: fit: covariance ", i,
-              " is not positive definite");
-      result.push_back(root.matrixL().solve(square::Identity()));
-    }
-    return result;
-  }
   [[nodiscard]] const square& whitening(std::size_t i) const {
     return whitening_[whitening_.size() > 1 ? i : 0];
   }
