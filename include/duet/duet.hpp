@@ -3,19 +3,20 @@
 
 /// \file
 /// Everything in the headers of duet::duet except those that take long to compile or are rarely
-/// needed, which programs include explicitly: sparse Jacobians and Hessians
-/// (derivative/sparse.hpp), kinematic trees (kinematics/tree_jacobian.hpp), loops of trees
-/// (kinematics/tree_loop.hpp), distances of shapes (kinematics/closest_points.hpp), plans and
-/// trajectories of joints (kinematics/motion_plan.hpp), sweeps over configurations
-/// (kinematics/sweep.hpp), chains of all types as one type (kinematics/chain_view.hpp), fits
-/// (spline/fit.hpp), curves in the caller's memory (spline/bspline_segment.hpp,
-/// quaternion/quaternion_order.hpp), split curves (spline/split_bspline.hpp), CSV
-/// (core/text/csv.hpp), the planner of the lecture notes (motion/printed_plan.hpp), the nearest
-/// pose on a screw motion (dual_quaternion/nearest.hpp), and `interop/`. The headers of the
-/// compiled libraries are in duet/io.hpp and duet/robotics.hpp.
+/// needed, which programs include explicitly: the judge of handwritten Jacobians
+/// (comparison/judge_jacobian.hpp), sparse Jacobians and Hessians (derivative/sparse.hpp),
+/// kinematic trees (kinematics/tree_jacobian.hpp), loops of trees (kinematics/tree_loop.hpp),
+/// distances of shapes (kinematics/closest_points.hpp), plans and trajectories of joints
+/// (kinematics/motion_plan.hpp), sweeps over configurations (kinematics/sweep.hpp), chains of all
+/// types as one type (kinematics/chain_view.hpp), fits (spline/fit.hpp), curves in the caller's
+/// memory (spline/bspline_segment.hpp, quaternion/quaternion_order.hpp), split curves
+/// (spline/split_bspline.hpp), CSV (core/text/csv.hpp), the planner of the lecture notes
+/// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp), and
+/// `interop/`. The headers of the compiled libraries are in duet/io.hpp and duet/robotics.hpp.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
+#include <duet/comparison/poses.hpp>
 #include <duet/comparison/rotations.hpp>
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/parallel_for.hpp>

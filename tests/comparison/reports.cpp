@@ -23,7 +23,7 @@ comparison sample() {
   c.label = "P5, \"printed\"";
   c.outcome = verdict::disagrees;
   c.samples = 100;
-  c.counts = {60, 8, 2, 30};
+  c.counts = {60, 0, 8, 2, 30};
   c.tolerance = 100;
   c.errors = {{15, 0.25, 0.5, 4.5e15, "u = 1, w = (0, 2)"}};
   c.simplest = duet::counterexample{

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include <duet/comparison/judge_jacobian.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
 #include <duet/core/progress.hpp>
 #include <duet/core/text/csv.hpp>
@@ -130,6 +131,9 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
 
 #define DUET_CHECK(...) CHECK_MESSAGE((is_initialized<__VA_ARGS__>()), #__VA_ARGS__)
   DUET_CHECK(comparison_options);
+  DUET_CHECK(jacobian_options);
+  DUET_CHECK(jacobian_judgement);
+  DUET_CHECK(jacobian_slip);
   DUET_CHECK(worst_errors);
   DUET_CHECK(counterexample);
   DUET_CHECK(comparison);
@@ -140,6 +144,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(derivative_and_error<Vector3d>);
   DUET_CHECK(rotations);
   DUET_CHECK(quaternions);
+  DUET_CHECK(poses);
   DUET_CHECK(execution);
   DUET_CHECK(progress);
   DUET_CHECK(csv_row);

@@ -45,6 +45,7 @@ struct comparison_options {
 /// Verdict of `compare` on two formulas, from best to worst.
 enum class verdict {
   agrees,          ///< everywhere, within the tolerance
+  inconclusive,    ///< the reference, extrapolated differences, has a larger error than that seen
   loses_precision, ///< the same formula, but spoilt by round-off (or a constant of few digits)
   not_finite,      ///< somewhere one of them is infinite or NaN and the other is not
   disagrees        ///< the formulas differ
@@ -52,7 +53,8 @@ enum class verdict {
 
 /// A verdict in words, as in reports.
 [[nodiscard]] inline std::string_view to_text(verdict v) {
-  constexpr std::array words = {"agrees", "loses digits", "not finite", "disagrees"};
+  constexpr std::array words = {"agrees", "inconclusive", "loses digits", "not finite",
+                                "disagrees"};
   return words[std::size_t(v)];
 }
 
@@ -83,7 +85,7 @@ struct comparison {
   std::string label;                      ///< label passed to `compare`
   verdict outcome = verdict::agrees;      ///< worst verdict of all samples
   std::size_t samples = 0;                ///< number of inputs tried
-  std::array<std::size_t, 4> counts{};    ///< number of samples of every verdict
+  std::array<std::size_t, 5> counts{};    ///< number of samples of every verdict
   double tolerance = 0;                   ///< allowed error, in units of the last place
   std::vector<worst_errors> errors;       ///< one for every scalar type
   std::optional<counterexample> simplest; ///< simplest input with the worst verdict
@@ -534,7 +536,7 @@ template <class Pair>
   result.samples = points.size();
   result.tolerance = options.tolerance;
   result.errors = std::move(errors);
-  std::array<sample, 4> worst{}; // worst sample of every verdict
+  std::array<sample, 5> worst{}; // worst sample of every verdict
   std::vector<sample> suspects;
   bool rounds = false; // by more than is allowed, in the first precision
   std::vector<difference> shorter(differences.size()); // measured with fewer digits, if decisive

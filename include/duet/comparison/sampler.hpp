@@ -326,6 +326,9 @@ public:
     return result;
   }
 
+  /// The names of the arguments.
+  [[nodiscard]] std::span<const std::string> names() const { return names_; }
+
   /// Adds a point: the coordinates of all arguments in a row.
   ///
   /// \throws invalid_input if their number is wrong or one is out of range

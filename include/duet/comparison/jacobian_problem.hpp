@@ -1,0 +1,157 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/quaternion_order.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+/// \file
+/// A function, its handwritten Jacobian, and the meaning of their numbers. For `judge_jacobian`.
+
+namespace duet {
+
+/// A single slip that explains a wrong Jacobian at all inputs that were tried.
+struct jacobian_slip {
+  std::string name{};  ///< as "left perturbation for right"
+  std::string block{}; ///< what is wrong: as "row 2 of d f / d q"
+};
+
+namespace detail {
+DUET_ABI_BEGIN
+
+/// An argument or result, or one element of it. Its state is the number, the vector, the quaternion
+/// (w first), or the quaternion and then the translation of a pose.
+struct jacobian_part {
+  enum class kind { number, vector, rotation, pose };
+  kind type = kind::number;
+  std::string name{};
+  Eigen::Index state = 0;     ///< index of its first number in the state
+  Eigen::Index first = 0;     ///< index of its first tangent coordinate
+  Eigen::Index dimension = 1; ///< number of its tangent coordinates
+
+  [[nodiscard]] bool is_motion() const { return type == kind::rotation || type == kind::pose; }
+  [[nodiscard]] Eigen::Index state_size() const { return dimension + (is_motion() ? 1 : 0); }
+  /// Index of a translation or a vector of three components in the state; or −1.
+  [[nodiscard]] Eigen::Index vector_state() const {
+    return type == kind::pose ? state + 4 : type == kind::vector && dimension == 3 ? state : -1;
+  }
+};
+
+using long_matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Value and derivative of a function in tangent coordinates.
+struct jacobian_evaluation {
+  Eigen::VectorXd value{}; ///< states of the results
+  long_matrix jacobian{};
+  double error = 0; ///< estimated error of the derivative, not counting round-off
+};
+
+/// A function, its handwritten Jacobian, and what their numbers mean.
+struct jacobian_problem {
+  std::vector<jacobian_part> arguments{}, results{};
+  std::function<jacobian_evaluation(const Eigen::VectorXd& state)> truth{};
+  /// The handwritten matrix as it is rerotated_part: with columns for tangent coordinates, or for
+  /// stored numbers (quaternions in `order`, poses as [t; q]).
+  std::function<Eigen::MatrixXd(const Eigen::VectorXd& state)> written{};
+  std::vector<jacobian_part> context{}; ///< further numbers of the state
+  perturbation side = perturbation::right;
+  quaternion_order order = quaternion_order::wxyz;
+};
+
+/// A function and its handwritten Jacobian at one input.
+struct jacobian_sample {
+  Eigen::VectorXd state{};
+  jacobian_evaluation truth{};
+  Eigen::MatrixXd exact{};   ///< the derivative, rounded to double
+  Eigen::MatrixXd raw{};     ///< as rerotated_part
+  Eigen::MatrixXd written{}; ///< in tangent coordinates
+  Eigen::MatrixXd outer{}; ///< factor A if A times the exact matrix is what is written, else empty
+  double allowed = 0;      ///< allowed error of an entry
+  bool is_wrong = false;
+  /// Error, if it is little beside that at other inputs: it may be that of round-off as well.
+  double little_error = 0;
+};
+
+[[nodiscard]] inline quaternion<double> rotation_at(const jacobian_part& part,
+                                                    const Eigen::VectorXd& state) {
+  return normalized(load_quaternion(state.data() + part.state, quaternion_order::wxyz));
+}
+[[nodiscard]] inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
+  return m;
+}
+
+/// Derivative of the stored numbers with respect to tangent coordinates: of a quaternion 4 × 3, of
+/// a pose [t; q] 7 × 6.
+[[nodiscard]] inline Eigen::MatrixXd chart_derivative(const jacobian_part& part,
+                                                      const Eigen::VectorXd& state,
+                                                      perturbation side, quaternion_order order) {
+  if (!part.is_motion()) {
+    return Eigen::MatrixXd::Identity(part.dimension, part.dimension);
+  }
+  const quaternion<double> q = rotation_at(part, state);
+  Eigen::Matrix<double, 4, 3> by_rotation;
+  for (int k = 0; k < 3; ++k) {
+    const quaternion<double> half(0, k == 0 ? .5 : 0, k == 1 ? .5 : 0, k == 2 ? .5 : 0);
+    const quaternion<double> rate = side == perturbation::right ? q * half : half * q;
+    store_quaternion(rate, by_rotation.col(k).data(), order);
+  }
+  if (part.type == jacobian_part::kind::rotation) {
+    return by_rotation;
+  }
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(7, 6);
+  result.bottomRightCorner<4, 3>() = by_rotation;
+  if (side == perturbation::right) {
+    result.topLeftCorner<3, 3>() = rotation_matrix(q);
+  } else {
+    result.topLeftCorner<3, 3>().setIdentity();
+    result.topRightCorner<3, 3>() = -cross_matrix(state.segment<3>(part.state + 4));
+  }
+  return result;
+}
+
+/// Number of columns of a Jacobian by stored numbers.
+[[nodiscard]] inline Eigen::Index stored_size(const std::vector<jacobian_part>& parts) {
+  Eigen::Index sum = 0;
+  for (const jacobian_part& part : parts) {
+    sum += part.state_size();
+  }
+  return sum;
+}
+[[nodiscard]] inline Eigen::Index tangent_size(const std::vector<jacobian_part>& parts) {
+  return parts.empty() ? 0 : parts.back().first + parts.back().dimension;
+}
+
+/// A Jacobian in tangent coordinates from one that may have columns for stored numbers.
+[[nodiscard]] inline Eigen::MatrixXd to_tangent(const jacobian_problem& problem,
+                                                const Eigen::VectorXd& state,
+                                                const Eigen::MatrixXd& raw) {
+  const Eigen::Index columns = tangent_size(problem.arguments);
+  if (raw.cols() == columns) {
+    return raw;
+  }
+  Eigen::MatrixXd result(raw.rows(), columns);
+  for (const jacobian_part& part : problem.arguments) {
+    result.middleCols(part.first, part.dimension) =
+        raw.middleCols(part.state, part.state_size()) *
+        chart_derivative(part, state, problem.side, problem.order);
+  }
+  return result;
+}
+
+[[nodiscard]] inline double largest_entry(const Eigen::MatrixXd& m) {
+  return m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0;
+}
+
+DUET_ABI_END
+} // namespace detail
+} // namespace duet

@@ -1,0 +1,474 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/jacobian_problem.hpp>
+#include <duet/comparison/slips_of_terms.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Search for the single slip that makes a handwritten Jacobian wrong. For `judge_jacobian`.
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Searches all slips of blocks, points and terms, also in one factor of a chain and in derivatives
+/// by stored numbers.
+class jacobian_slip_search : protected slips_of_terms {
+public:
+  /// \param samples  with at least one that is wrong; the wrong ones are searched first
+  jacobian_slip_search(const jacobian_problem& problem, std::vector<jacobian_sample> samples)
+      : slips_of_terms(problem, std::move(samples)) {}
+
+  [[nodiscard]] std::vector<jacobian_slip> found() {
+    try_algebra();
+    try_frames();
+    if (problem_.truth) {
+      try_other_points();
+      try_parts_of_sums();
+    }
+    if (samples_[0].outer.size() == 0) {
+      try_columns();
+      try_constants();
+      try_summands();
+      if (last_ == first_ && last_row_ == first_row_) {
+        try_entry();
+      }
+      if (problem_.written) {
+        try_charts();
+        try_regions();
+        if (slips_.empty()) {
+          try_parts_by_intermediates();
+        }
+        if (slips_.empty()) {
+          try_stored_numbers();
+        }
+        if (slips_.empty()) {
+          try_chains();
+        }
+      }
+    }
+    return std::move(slips_);
+  }
+
+private:
+  /// Parts of sums by products of two rotations and by moved points.
+  void try_parts_by_intermediates() {
+    for (const intermediate& z : intermediates()) {
+      if (z.part.type != kind::pose) {
+        try_parts_by(z.part.name, [&](const vector& state, double factor) {
+          vector value = z.evaluate(state).value;
+          if (z.part.type == kind::vector) {
+            value *= factor;
+          } else {
+            set_rotation(value, z.part,
+                         factor == 0 ? quaternion<double>(1) : conj(rotation_at(z.part, value)));
+          }
+          return z.set(state, value);
+        });
+      }
+    }
+  }
+
+  /// A function of some arguments through which others may depend on these.
+  struct intermediate {
+    jacobian_part part; ///< its kind and name
+    std::vector<const jacobian_part*> arguments;
+    std::function<jacobian_evaluation(const vector&)> evaluate;
+    std::function<vector(vector, const vector&)> set; ///< a state that gives another value
+    /// The rotated vector in a moved point, and the vector that is rotated.
+    std::function<std::pair<Eigen::Vector3d, Eigen::Vector3d>(const vector&)> rotated{};
+  };
+
+  /// Points moved by rotations and poses and back, and products of two rotations or poses.
+  [[nodiscard]] std::vector<intermediate> intermediates() const {
+    std::vector<intermediate> list;
+    const Eigen::Index columns = tangent_size(problem_.arguments);
+    const bool is_right = problem_.side == perturbation::right;
+    const auto rotation_of_part = [](const jacobian_part& m, const vector& x) {
+      return Eigen::Matrix3d(rotation_matrix(rotation_at(m, x)));
+    };
+    for (const jacobian_part& m : problem_.arguments) {
+      if (!m.is_motion()) {
+        continue;
+      }
+      for (const jacobian_part& v : problem_.arguments) {
+        if (v.type != kind::vector || v.dimension != 3) {
+          continue;
+        }
+        std::vector<const jacobian_part*> offsets = {nullptr};
+        for (const jacobian_part& w : problem_.arguments) {
+          if (m.type == kind::rotation && &w != &v && w.type == kind::vector && w.dimension == 3) {
+            offsets.push_back(&w);
+          }
+        }
+        for (const jacobian_part* w : offsets) {
+          for (const bool is_back : {false, true}) {
+            intermediate z;
+            z.arguments = {&m, &v};
+            const bool is_pose = m.type == kind::pose;
+            z.part = {
+                kind::vector,
+                is_back ? message(m.name, "^-1 ",
+                                  w != nullptr ? message("(", v.name, " - ", w->name, ")") : v.name)
+                        : message(m.name, " ", v.name, w != nullptr ? " + " + w->name : ""),
+                0, 0, 3};
+            if (w != nullptr) {
+              z.arguments.push_back(w);
+            }
+            z.evaluate = [=, &m, &v](const vector& x) {
+              const Eigen::Matrix3d r = rotation_of_part(m, x);
+              const Eigen::Vector3d point = x.segment<3>(v.state);
+              Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+              if (is_pose) {
+                offset = x.segment<3>(m.state + 4);
+              } else if (w != nullptr) {
+                offset = x.segment<3>(w->state);
+              }
+              matrix j = matrix::Zero(3, columns);
+              const Eigen::Index omega = m.first + m.dimension - 3;
+              Eigen::Vector3d value;
+              if (is_back) {
+                value = r.transpose() * (point - offset);
+                const Eigen::Vector3d arm = is_pose ? point : Eigen::Vector3d(point - offset);
+                j.middleCols(omega, 3) = is_right
+                                             ? cross_matrix(value)
+                                             : Eigen::Matrix3d(r.transpose() * cross_matrix(arm));
+                j.middleCols(v.first, 3) = r.transpose();
+                if (is_pose) {
+                  j.middleCols(m.first, 3) = is_right
+                                                 ? Eigen::Matrix3d(-Eigen::Matrix3d::Identity())
+                                                 : Eigen::Matrix3d(-r.transpose());
+                } else if (w != nullptr) {
+                  j.middleCols(w->first, 3) = -r.transpose();
+                }
+              } else {
+                value = r * point + offset;
+                j.middleCols(omega, 3) =
+                    is_right ? Eigen::Matrix3d(-r * cross_matrix(point))
+                             : Eigen::Matrix3d(
+                                   -cross_matrix(is_pose ? value : Eigen::Vector3d(r * point)));
+                j.middleCols(v.first, 3) = r;
+                if (is_pose) {
+                  j.middleCols(m.first, 3) = is_right ? r : Eigen::Matrix3d::Identity();
+                } else if (w != nullptr) {
+                  j.middleCols(w->first, 3).setIdentity();
+                }
+              }
+              return jacobian_evaluation{value, j.template cast<long double>(), 0};
+            };
+            z.rotated = [=, &m, &v](const vector& x) {
+              const Eigen::Matrix3d r = rotation_of_part(m, x);
+              Eigen::Vector3d arm = x.segment<3>(v.state);
+              if (is_back && is_pose) {
+                arm -= x.segment<3>(m.state + 4);
+              } else if (is_back && w != nullptr) {
+                arm -= x.segment<3>(w->state);
+              }
+              return std::pair(
+                  Eigen::Vector3d((is_back ? Eigen::Matrix3d(r.transpose()) : r) * arm), arm);
+            };
+            z.set = [=, &m, &v](vector x, const vector& value) {
+              const Eigen::Matrix3d r = rotation_of_part(m, x);
+              Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+              if (is_pose) {
+                offset = x.segment<3>(m.state + 4);
+              } else if (w != nullptr) {
+                offset = x.segment<3>(w->state);
+              }
+              x.segment<3>(v.state) = is_back ? Eigen::Vector3d(r * value + offset)
+                                              : Eigen::Vector3d(r.transpose() * (value - offset));
+              return x;
+            };
+            list.push_back(std::move(z));
+          }
+        }
+      }
+      for (const jacobian_part& n : problem_.arguments) {
+        if (&n == &m || n.type != m.type) {
+          continue;
+        }
+        for (const bool is_back : {true, false}) {
+          intermediate z;
+          z.arguments = {&m, &n};
+          z.part = {m.type, message(m.name, is_back ? "^-1 " : " ", n.name), 0, 0, m.dimension};
+          z.evaluate = [=, &m, &n](const vector& x) {
+            // In body axes: of a^-1 b, -Ad(b^-1 a) and 1; of a b, Ad(b^-1) and 1. In fixed axes: of
+            // a^-1 b, -Ad(a^-1) and Ad(a^-1); of a b, 1 and Ad(a).
+            const matrix a = adjoint_of(m, x), b = adjoint_of(n, x),
+                         one = matrix::Identity(m.dimension, m.dimension);
+            matrix j = matrix::Zero(m.dimension, columns);
+            if (is_right) {
+              j.middleCols(m.first, m.dimension) =
+                  is_back ? matrix(-b.inverse() * a) : matrix(b.inverse());
+              j.middleCols(n.first, n.dimension) = one;
+            } else {
+              j.middleCols(m.first, m.dimension) = is_back ? matrix(-a.inverse()) : one;
+              j.middleCols(n.first, n.dimension) = is_back ? matrix(a.inverse()) : a;
+            }
+            vector value = vector::Zero(m.state_size());
+            const quaternion<double> q = rotation_at(m, x);
+            set_rotation(value, {m.type, "", 0, 0, m.dimension},
+                         quaternion<double>((is_back ? conj(q) : q) * rotation_at(n, x)));
+            if (m.type == kind::pose) {
+              const Eigen::Matrix3d r = rotation_of_part(m, x);
+              const Eigen::Vector3d t = x.segment<3>(m.state + 4), u = x.segment<3>(n.state + 4);
+              value.segment<3>(4) =
+                  is_back ? Eigen::Vector3d(r.transpose() * (u - t)) : Eigen::Vector3d(r * u + t);
+            }
+            return jacobian_evaluation{value, j.template cast<long double>(), 0};
+          };
+          z.set = [=, &m, &n](vector x, const vector& value) {
+            const quaternion<double> q = rotation_at(m, x);
+            const jacobian_part whole{m.type, "", 0, 0, m.dimension};
+            set_rotation(x, n,
+                         quaternion<double>((is_back ? q : conj(q)) * rotation_at(whole, value)));
+            if (m.type == kind::pose) {
+              const Eigen::Matrix3d r = rotation_matrix(q);
+              const Eigen::Vector3d t = x.segment<3>(m.state + 4), u = value.segment<3>(4);
+              x.segment<3>(n.state + 4) =
+                  is_back ? Eigen::Vector3d(r * u + t) : Eigen::Vector3d(r.transpose() * (u - t));
+            }
+            return x;
+          };
+          list.push_back(std::move(z));
+        }
+      }
+    }
+    return list;
+  }
+
+  [[nodiscard]] static matrix adjoint_of(const jacobian_part& m, const vector& x) {
+    const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, x));
+    matrix out = matrix::Zero(m.dimension, m.dimension);
+    out.bottomRightCorner(3, 3) = r;
+    if (m.type == kind::pose) {
+      out.topLeftCorner(3, 3) = r;
+      out.topRightCorner(3, 3) = cross_matrix(x.segment<3>(m.state + 4)) * r;
+    }
+    return out;
+  }
+
+  /// Slips in derivatives by stored numbers. These are not unique where numbers are bound together:
+  /// what is written may be the derivative of a function that continues f to quaternions of any
+  /// norm without changing it, or quadratically, as q p q* and p + 2 w v x p + 2 v x (v x p) do.
+  void try_stored_numbers() {
+    const Eigen::Index stored = stored_size(problem_.arguments);
+    if (samples_[0].raw.cols() != stored || stored == samples_[0].exact.cols()) {
+      return;
+    }
+    jacobian_problem part = problem_;
+    part.written = nullptr;
+    part.arguments.clear();
+    Eigen::Index first = 0;
+    std::vector<Eigen::Index> order; // columns as rerotated_part
+    for (const jacobian_part& a : problem_.arguments) {
+      const Eigen::Index count = a.type == kind::pose ? 3 : a.is_motion() ? 0 : a.dimension;
+      if (count > 0) {
+        part.arguments.push_back({a.type == kind::number ? kind::number : kind::vector,
+                                  a.name + (a.type == kind::pose ? ".translation" : ""),
+                                  a.state + (a.type == kind::pose ? 4 : 0), first, count});
+      }
+      for (Eigen::Index k = 0; k < count; ++k) {
+        order.push_back(a.state + k);
+      }
+      first += count;
+      if (a.is_motion()) {
+        part.arguments.push_back({kind::vector, a.name, a.state, first, 4});
+        first += 4;
+        const bool is_w_first = problem_.order == quaternion_order::wxyz;
+        const Eigen::Index q = a.state + count;
+        for (const Eigen::Index k : {0, 1, 2, 3}) {
+          order.push_back(q + (is_w_first ? k : (k + 3) % 4));
+        }
+      }
+    }
+    try_continued(part, order, nullptr);
+    for (const intermediate& z : intermediates()) {
+      for (const bool from_vector : {false, true}) {
+        if (z.rotated && slips_.empty()) {
+          // Change of f with the norm of the quaternion: A times twice what is rotated, or twice
+          // its difference to the vector before.
+          try_continued(part, order, [&](const vector& x, const matrix& exact) {
+            const matrix factor = z.evaluate(x).jacobian.template cast<double>();
+            matrix columns = exact;
+            for (const jacobian_part& a : problem_.arguments) {
+              if (std::find(z.arguments.begin(), z.arguments.end(), &a) == z.arguments.end()) {
+                columns.middleCols(a.first, a.dimension).setZero();
+              }
+            }
+            const Eigen::LDLT<matrix> normal(factor * factor.transpose());
+            const matrix outer = normal.solve(factor * columns.transpose()).transpose();
+            const auto [rotated, before] = z.rotated(x);
+            return std::pair(z.arguments[0],
+                             vector(2 * outer * (rotated - (from_vector ? 1. : 0.) * before)));
+          });
+        }
+      }
+    }
+  }
+
+  using growth =
+      std::function<std::pair<const jacobian_part*, vector>(const vector&, const matrix&)>;
+
+  /// \param part    the problem with stored numbers as arguments
+  /// \param order   columns of what is rerotated_part, in the order of the arguments
+  /// \param change  the argument with the quaternion, and the derivative of f with its norm
+  void try_continued(jacobian_problem part, const std::vector<Eigen::Index>& order,
+                     const growth& change) {
+    const Eigen::Index stored = Eigen::Index(order.size());
+    const auto exact_at = [&](const vector& x, const jacobian_evaluation& truth) {
+      const matrix tangent = truth.jacobian.template cast<double>();
+      matrix result(tangent.rows(), stored);
+      std::size_t next = 0;
+      for (const jacobian_part& a : problem_.arguments) {
+        const matrix chart = chart_derivative(a, x, problem_.side, quaternion_order::wxyz);
+        result.middleCols(part.arguments[next].first, a.state_size()) =
+            tangent.middleCols(a.first, a.dimension) * (chart.transpose() * chart).inverse() *
+            chart.transpose();
+        next += a.type == kind::pose ? 2 : 1;
+      }
+      if (change) {
+        const auto [argument, by_norm] = change(x, tangent);
+        for (const jacobian_part& p : part.arguments) {
+          if (p.dimension == 4 && p.state == argument->state) {
+            result.middleCols(p.first, 4) += by_norm * x.segment(p.state, 4).transpose();
+          }
+        }
+      }
+      return result;
+    };
+    part.truth = [&](const vector& x) {
+      jacobian_evaluation there = problem_.truth(x);
+      there.jacobian = exact_at(x, there).template cast<long double>();
+      return there;
+    };
+    std::vector<jacobian_sample> samples = samples_;
+    for (jacobian_sample& s : samples) {
+      s.exact = exact_at(s.state, s.truth);
+      s.written.resize(s.raw.rows(), stored);
+      for (Eigen::Index k = 0; k < stored; ++k) {
+        s.written.col(k) = s.raw.col(order[std::size_t(k)]);
+      }
+      s.allowed += 1e-12 * largest_entry(s.exact);
+      s.is_wrong = largest_entry(s.written - s.exact) > s.allowed;
+    }
+    for (const jacobian_slip& slip : jacobian_slip_search(part, samples).found()) {
+      accept(slip.name, slip.block + ", by stored numbers");
+    }
+  }
+
+  /// Slips in one factor of a chain: the function depends on some arguments through an
+  /// intermediate one, J = A Z, and the slip is in A or in Z.
+  void try_chains() {
+    for (const intermediate& z : intermediates()) {
+      std::vector<bool> is_column(std::size_t(samples_[0].exact.cols()), false);
+      for (const jacobian_part* a : z.arguments) {
+        std::fill_n(is_column.begin() + a->first, a->dimension, true);
+      }
+      bool has_wrong_elsewhere = false;
+      for (Eigen::Index k = first_; k <= last_; ++k) {
+        has_wrong_elsewhere = has_wrong_elsewhere || !is_column[std::size_t(k)];
+      }
+      if (has_wrong_elsewhere) {
+        continue;
+      }
+      std::vector<jacobian_sample> inner, outer;
+      bool is_chain = true, has_outer = true;
+      for (const jacobian_sample& s : samples_) {
+        const jacobian_evaluation middle = z.evaluate(s.state);
+        const matrix factor = middle.jacobian.template cast<double>();
+        matrix exact = s.exact, written = s.written;
+        for (Eigen::Index k = 0; k < exact.cols(); ++k) {
+          if (!is_column[std::size_t(k)]) {
+            exact.col(k).setZero();
+            written.col(k).setZero();
+          }
+        }
+        const Eigen::LDLT<matrix> normal(factor * factor.transpose());
+        const auto divided = [&](const matrix& m) {
+          return matrix(normal.solve(factor * m.transpose()).transpose());
+        };
+        const auto is_product = [&](const matrix& m, const matrix& a) {
+          return largest_entry(m - a * factor) <= s.allowed + 1e-9 * largest_entry(m);
+        };
+        const matrix a = divided(exact), b = divided(written);
+        is_chain = is_chain && is_product(exact, a);
+        has_outer = has_outer && is_product(written, b);
+        if (!is_chain) {
+          break;
+        }
+        jacobian_sample sample = s;
+        sample.allowed += 1e-10 * (largest_entry(s.exact) + largest_entry(s.written));
+        sample.exact = factor;
+        sample.written = written;
+        sample.outer = a;
+        sample.truth = middle;
+        inner.push_back(sample);
+        sample.outer.resize(0, 0);
+        sample.exact = a;
+        sample.written = b;
+        sample.raw = b;
+        sample.is_wrong = largest_entry(a - b) > sample.allowed;
+        sample.state.resize(s.state.size() + middle.value.size());
+        sample.state << s.state, middle.value;
+        sample.truth = s.truth;
+        outer.push_back(sample);
+      }
+      if (!is_chain) {
+        continue;
+      }
+      jacobian_problem part = problem_;
+      part.written = nullptr;
+      if (has_outer && std::any_of(outer.begin(), outer.end(),
+                                   [](const jacobian_sample& s) { return s.is_wrong; })) {
+        part.truth = [&](const vector& x) {
+          const Eigen::Index size = samples_[0].state.size();
+          const vector state = z.set(x.head(size), x.tail(x.size() - size));
+          jacobian_evaluation there = problem_.truth(state);
+          const matrix factor = z.evaluate(state).jacobian.template cast<double>();
+          matrix exact = there.jacobian.template cast<double>();
+          for (Eigen::Index k = 0; k < exact.cols(); ++k) {
+            if (!is_column[std::size_t(k)]) {
+              exact.col(k).setZero();
+            }
+          }
+          const Eigen::LDLT<matrix> normal(factor * factor.transpose());
+          there.jacobian =
+              normal.solve(factor * exact.transpose()).transpose().template cast<long double>();
+          return there;
+        };
+        part.arguments = {z.part};
+        part.arguments[0].name = "(" + z.part.name + ")";
+        part.arguments[0].state = samples_[0].state.size();
+        part.context = problem_.arguments;
+        append(jacobian_slip_search(part, outer).found());
+      }
+      part.arguments = problem_.arguments;
+      part.context.clear();
+      part.results = {z.part};
+      part.results[0].name = "(" + z.part.name + ")";
+      part.truth = z.evaluate;
+      append(jacobian_slip_search(part, inner).found());
+    }
+  }
+
+  void append(const std::vector<jacobian_slip>& more) {
+    for (const jacobian_slip& s : more) {
+      accept(s.name, s.block + ", inherited through the chain");
+    }
+  }
+};
+
+DUET_ABI_END
+} // namespace duet::detail

@@ -1,0 +1,671 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/compare.hpp>
+#include <duet/comparison/jacobian_slips.hpp>
+#include <duet/comparison/numeric_derivative.hpp>
+#include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/progress.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/derivative/argument.hpp>
+#include <duet/derivative/frame.hpp>
+#include <duet/derivative/manifold.hpp>
+#include <duet/dual/dual.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/quaternion/quaternion_order.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iomanip>
+#include <limits>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Checks a handwritten Jacobian, in `double` only, and names its slip.
+
+namespace duet {
+
+/// Settings of `judge_jacobian`.
+struct jacobian_options {
+  /// Number of random inputs, half of them near special ones, in addition to the special ones and
+  /// the caller's.
+  std::size_t samples = 200;
+  std::uint64_t seed = 1; ///< seed of the random inputs; the same seed gives the same result
+  /// Side on which rotations and poses, of arguments and results, are perturbed.
+  perturbation side = perturbation::right;
+  /// Order of the numbers of quaternions, if the Jacobian has columns for stored numbers.
+  quaternion_order order = quaternion_order::wxyz;
+  double tolerance = 1000; ///< allowed error of an entry, in units of the last place of the largest
+  progress_callback report = {}; ///< callback after every input; may end the run
+};
+
+/// Result of `judge_jacobian`.
+struct jacobian_judgement {
+  std::string label{};                 ///< label passed to `judge_jacobian`
+  verdict outcome = verdict::agrees;   ///< worst verdict of all samples
+  std::size_t samples = 0;             ///< number of inputs tried
+  std::array<std::size_t, 5> counts{}; ///< number of samples of every verdict
+  double worst_error = 0;              ///< largest error of an entry, of the largest entry
+  std::string worst_input{};           ///< input with that error
+  /// Every single slip that explains all samples; empty if none does.
+  std::vector<jacobian_slip> slips{};
+  std::string simplest_input{};  ///< simplest input with the worst verdict
+  Eigen::Index row = 0;          ///< row of the largest error there
+  Eigen::Index column = 0;       ///< column of the largest error there
+  Eigen::MatrixXd derivative{};  ///< right Jacobian there, in tangent coordinates
+  Eigen::MatrixXd handwritten{}; ///< handwritten Jacobian there, in tangent coordinates
+
+  /// True if the Jacobian agrees.
+  [[nodiscard]] explicit operator bool() const { return outcome == verdict::agrees; }
+};
+
+/// A paragraph for people: verdict, slips, and both matrices at the simplest input.
+[[nodiscard]] inline std::string to_text(const jacobian_judgement& j) {
+  auto out = detail::plain_stream(3);
+  out << j.label << ": ";
+  for (const verdict v :
+       {verdict::disagrees, verdict::not_finite, verdict::loses_precision, verdict::inconclusive}) {
+    if (const std::size_t count = j.counts[std::size_t(v)]; count > 0) {
+      out << to_text(v) << " at " << count << ", ";
+    }
+  }
+  out << "agrees at " << j.counts[0] << " of " << j.samples << " inputs\n";
+  if (j.worst_error > 0) {
+    out << "  worst error: " << j.worst_error << " of the largest entry, at " << j.worst_input
+        << "\n";
+  }
+  for (const jacobian_slip& s : j.slips) {
+    out << "  slip: " << s.name << ", in " << s.block << "\n";
+  }
+  if (j.outcome == verdict::disagrees && j.slips.empty()) {
+    out << "  no single slip explains it\n";
+  }
+  if (j.outcome != verdict::agrees) {
+    counterexample entry;
+    entry.automatic = {j.derivative(j.row, j.column)};
+    entry.closed_form = {j.handwritten(j.row, j.column)};
+    const auto [right, wrong] = detail::sides_text(entry);
+    out << "  simplest input: " << j.simplest_input << "\n    entry (" << j.row << ", " << j.column
+        << "): " << right << ", handwritten " << wrong << "\n";
+    for (const auto& [name, matrix] :
+         {std::pair("derivative", &j.derivative), std::pair("handwritten", &j.handwritten)}) {
+      out << "    " << name << ":\n" << std::setprecision(4);
+      for (Eigen::Index i = 0; i < matrix->rows(); ++i) {
+        out << "    ";
+        for (Eigen::Index k = 0; k < matrix->cols(); ++k) {
+          const double x = (*matrix)(i, k);
+          out << std::setw(matrix->cols() > 9 ? 10 : 11) << (std::isnan(x) ? std::abs(x) : x + 0.);
+        }
+        out << "\n";
+      }
+    }
+  }
+  return out.str();
+}
+
+namespace detail {
+DUET_ABI_BEGIN
+
+/// Describes an argument or result of type X and its elements.
+///
+/// - `append(list, name)`: appends its parts
+/// - `save(x, state, next)`: writes its state
+/// - `load<T>(state, next)`: it over T, of unit norm in that precision
+template <class X>
+struct jacobian_argument {
+  static_assert(!std::is_same_v<X, X>,
+                "duet: judge_jacobian: arguments and results are numbers, Eigen vectors of fixed "
+                "size, rotations, poses, and arrays and tuples of these");
+};
+
+inline void append_part(std::vector<jacobian_part>& list, jacobian_part::kind type,
+                        const std::string& name, Eigen::Index dimension) {
+  list.push_back({type, name, list.empty() ? 0 : list.back().state + list.back().state_size(),
+                  tangent_size(list), dimension});
+}
+
+template <class X>
+  requires(Real<X> || Arithmetic<X>)
+struct jacobian_argument<X> {
+  static void append(std::vector<jacobian_part>& list, const std::string& name) {
+    append_part(list, jacobian_part::kind::number, name, 1);
+  }
+  static void save(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
+    state[next++] = static_cast<double>(x);
+  }
+  template <class T>
+  static T load(const Eigen::VectorXd& state, Eigen::Index& next) {
+    return T(state[next++]);
+  }
+};
+
+template <EigenMatrix X>
+  requires(X::SizeAtCompileTime > 0)
+struct jacobian_argument<X> {
+  static void append(std::vector<jacobian_part>& list, const std::string& name) {
+    append_part(list, jacobian_part::kind::vector, name, X::SizeAtCompileTime);
+  }
+  static void save(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      state[next++] = static_cast<double>(x(i));
+    }
+  }
+  template <class T>
+  static auto load(const Eigen::VectorXd& state, Eigen::Index& next) {
+    Eigen::Matrix<T, X::RowsAtCompileTime, X::ColsAtCompileTime> x;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      x(i) = T(state[next++]);
+    }
+    return x;
+  }
+};
+
+template <class S>
+  requires(!contains_tag<S, screw_tag>())
+struct jacobian_argument<quaternion<S>> {
+  static void append(std::vector<jacobian_part>& list, const std::string& name) {
+    append_part(list, jacobian_part::kind::rotation, name, 3);
+  }
+  static void save(const quaternion<S>& q, Eigen::VectorXd& state, Eigen::Index& next) {
+    for (const S& x : {q.w(), q.x(), q.y(), q.z()}) {
+      state[next++] = static_cast<double>(x);
+    }
+  }
+  template <class T>
+  static quaternion<T> load(const Eigen::VectorXd& state, Eigen::Index& next) {
+    next += 4;
+    return normalized(quaternion<T>(T(state[next - 4]), T(state[next - 3]), T(state[next - 2]),
+                                    T(state[next - 1])));
+  }
+};
+
+template <class S>
+struct jacobian_argument<quaternion<dual<S, 1, screw_tag>>> {
+  static void append(std::vector<jacobian_part>& list, const std::string& name) {
+    append_part(list, jacobian_part::kind::pose, name, 6);
+  }
+  static void save(const dual_quaternion<S>& a, Eigen::VectorXd& state, Eigen::Index& next) {
+    jacobian_argument<quaternion<S>>::save(rotation(a), state, next);
+    jacobian_argument<vector3<S>>::save(translation(a), state, next);
+  }
+  template <class T>
+  static dual_quaternion<T> load(const Eigen::VectorXd& state, Eigen::Index& next) {
+    const auto q = jacobian_argument<quaternion<S>>::template load<T>(state, next);
+    return pose(q, jacobian_argument<vector3<S>>::template load<T>(state, next));
+  }
+};
+
+template <class X, std::size_t N>
+struct jacobian_argument<std::array<X, N>> {
+  static void append(std::vector<jacobian_part>& list, const std::string& name) {
+    for (std::size_t i = 0; i < N; ++i) {
+      jacobian_argument<X>::append(list, message(name, "[", i, "]"));
+    }
+  }
+  static void save(const std::array<X, N>& x, Eigen::VectorXd& state, Eigen::Index& next) {
+    for (const X& each : x) {
+      jacobian_argument<X>::save(each, state, next);
+    }
+  }
+  template <class T>
+  static auto load(const Eigen::VectorXd& state, Eigen::Index& next) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) {
+      return std::array{
+          ((void)I, jacobian_argument<X>::template load<T>(state, next))...}; // in order: braces
+    }
+    (std::make_index_sequence<N>{});
+  }
+};
+
+template <class... X>
+struct jacobian_argument<std::tuple<X...>> {
+  static void append(std::vector<jacobian_part>& list, const std::string& name) {
+    std::size_t i = 0;
+    (jacobian_argument<X>::append(list, message(name, "[", i++, "]")), ...);
+  }
+  static void save(const std::tuple<X...>& x, Eigen::VectorXd& state, Eigen::Index& next) {
+    std::apply([&](const X&... each) { (jacobian_argument<X>::save(each, state, next), ...); }, x);
+  }
+  template <class T>
+  static auto load(const Eigen::VectorXd& state, Eigen::Index& next) {
+    return std::tuple{jacobian_argument<X>::template load<T>(state, next)...};
+  }
+};
+
+template <class X>
+[[nodiscard]] Eigen::VectorXd saved(const X& x, const std::vector<jacobian_part>& parts) {
+  Eigen::VectorXd state(stored_size(parts));
+  Eigen::Index next = 0;
+  jacobian_argument<X>::save(x, state, next);
+  return state;
+}
+
+/// f and its derivative with respect to tangent coordinates of its arguments, by dual numbers if f
+/// takes them, else by extrapolated central differences.
+template <class F, class Arguments, class Frame>
+class jacobian_truth {
+  using tag = derivative_tag<F>;
+  template <class T>
+  using arguments = decltype(jacobian_argument<Arguments>::template load<T>(
+      std::declval<const Eigen::VectorXd&>(), std::declval<Eigen::Index&>()));
+  template <class T>
+  using lifted = decltype(manifold<arguments<T>>::plus(
+      std::declval<const arguments<T>&>(),
+      std::declval<const Eigen::Matrix<dual<T, 1, tag>, manifold<Arguments>::dimension, 1>&>(),
+      Frame{}));
+  static constexpr int size = manifold<Arguments>::dimension;
+
+public:
+  /// The scalar in which f is evaluated; `void` if f does not take dual numbers: a function that is
+  /// no template, which Eigen's conversions would let pass as one.
+  using scalar = std::conditional_t < std::is_pointer_v<F> || requires { &F::operator(); }
+  , void, std::conditional_t < takes<F, lifted<long double>>, long double,
+      std::conditional_t < takes<F, lifted<double>>, double, void >>>
+      ;
+
+  [[nodiscard]] static jacobian_evaluation at(const F& f, const Eigen::VectorXd& state,
+                                              const std::vector<jacobian_part>& results) {
+    using T = std::conditional_t<std::is_void_v<scalar>, double, scalar>;
+    Eigen::Index next = 0;
+    const auto x = jacobian_argument<Arguments>::template load<T>(state, next);
+    const auto y = result_of_call(std::apply(f, x));
+    using Y = std::decay_t<decltype(y)>;
+    jacobian_evaluation out{saved(y, results), long_matrix(tangent_size(results), size), 0};
+    const auto set_column = [&](int k, const auto& rate) {
+      const auto column = manifold<Y>::velocity(y, rate, Frame{});
+      for (Eigen::Index i = 0; i < column.size(); ++i) {
+        out.jacobian(i, k) = static_cast<long double>(column[i]);
+      }
+    };
+    for (int k = 0; k < size; ++k) {
+      if constexpr (std::is_void_v<scalar>) {
+        const auto along = [&](double h) {
+          Eigen::Matrix<double, size, 1> delta = Eigen::Matrix<double, size, 1>::Zero();
+          delta[k] = h;
+          return result_of_call(std::apply(f, manifold<Arguments>::plus(x, delta, Frame{})));
+        };
+        // From several first steps, as one alone may converge by chance where f is rough.
+        long_matrix columns(out.jacobian.rows(), 3);
+        int next_step = 0;
+        for (const double step : {.051, .073, .1}) {
+          const auto rate = central_difference_derivative(along, 0., step);
+          set_column(k, rate.derivative);
+          columns.col(next_step++) = out.jacobian.col(k);
+          out.error = std::max(out.error, rate.error);
+        }
+        const long_matrix spread = columns.rowwise().maxCoeff() - columns.rowwise().minCoeff();
+        out.error = std::max(out.error, double(spread.maxCoeff()));
+      } else {
+        Eigen::Matrix<dual<T, 1, tag>, size, 1> delta;
+        for (int i = 0; i < size; ++i) {
+          delta[i] = dual<T, 1, tag>(T(0), T(i == k ? 1 : 0));
+        }
+        const auto moved = result_of_call(
+            std::apply(f, manifold<std::decay_t<decltype(x)>>::plus(x, delta, Frame{})));
+        set_column(k, parts<tag>(moved, 1));
+      }
+    }
+    return out;
+  }
+};
+
+/// A matrix from what a handwritten Jacobian returns: an Eigen matrix, matrices side by side, or
+/// numbers row by row.
+template <class J>
+[[nodiscard]] Eigen::MatrixXd written_matrix(const J& jacobian, Eigen::Index rows) {
+  if constexpr (EigenMatrix<J>) {
+    return jacobian.template cast<double>();
+  } else {
+    Eigen::MatrixXd side_by_side;
+    bool has_matrices = false;
+    for_each_shaped(jacobian, [&](const auto& m) {
+      if constexpr (EigenMatrix<std::decay_t<decltype(m)>>) {
+        has_matrices = true;
+        side_by_side.conservativeResize(rows, side_by_side.cols() + m.cols());
+        require(m.rows() == rows, "duet: judge_jacobian: a matrix has ", m.rows(),
+                " rows, but the function has ", rows, " results");
+        side_by_side.rightCols(m.cols()) = m.template cast<double>();
+      }
+    });
+    if (has_matrices) {
+      return side_by_side;
+    }
+    const std::vector<double> numbers = components_of<double>(jacobian);
+    require(rows > 0 && Eigen::Index(numbers.size()) % rows == 0,
+            "duet: judge_jacobian: the Jacobian has ", numbers.size(), " entries for ", rows,
+            " rows");
+    return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+        numbers.data(), rows, Eigen::Index(numbers.size()) / rows);
+  }
+}
+
+/// Judges the samples of a Jacobian. Common to all functions.
+class jacobian_judge {
+public:
+  jacobian_judge(const jacobian_problem& problem, const jacobian_options& options)
+      : problem_(problem), options_(options) {}
+
+  /// The function and its Jacobian at a state.
+  ///
+  /// \throws invalid_input if the handwritten matrix has another size
+  [[nodiscard]] jacobian_sample sample_at(const Eigen::VectorXd& state) const {
+    jacobian_sample s;
+    s.state = state;
+    s.truth = problem_.truth(state);
+    s.exact = s.truth.jacobian.template cast<double>();
+    s.raw = problem_.written(state);
+    const Eigen::Index columns = tangent_size(problem_.arguments),
+                       stored = stored_size(problem_.arguments);
+    require(s.raw.rows() == s.exact.rows() && (s.raw.cols() == columns || s.raw.cols() == stored),
+            "duet: judge_jacobian: the Jacobian is ", s.raw.rows(), " x ", s.raw.cols(),
+            " (expected ", s.exact.rows(), " x ", columns,
+            stored == columns ? "" : message(", or ", stored, " columns for stored numbers"), ")");
+    s.written = to_tangent(problem_, state, s.raw);
+    return s;
+  }
+
+  /// Verdict on a sample; sets its allowed error.
+  [[nodiscard]] verdict judged(jacobian_sample& s) const {
+    for (Eigen::Index i = 0; i < s.exact.size(); ++i) {
+      if (std::isfinite(s.exact(i)) != std::isfinite(s.written(i))) {
+        return verdict::not_finite;
+      }
+    }
+    constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
+    const double scale = largest_entry(s.exact), error = error_of(s);
+    s.allowed = options_.tolerance * half_ulp * scale;
+    if (s.truth.error > 0) { // differences have about eleven digits
+      constexpr double digits = 1e-8;
+      s.allowed = std::max(s.allowed, digits * scale);
+      const verdict result = error <= s.allowed            ? verdict::agrees
+                             : error <= 10 * s.truth.error ? verdict::inconclusive
+                                                           : verdict::disagrees;
+      s.allowed = std::max(s.allowed, 10 * s.truth.error);
+      return result;
+    }
+    if (error > s.allowed && error < 1e-4 * scale) {
+      s.allowed += options_.tolerance * half_ulp * sensitivity(s);
+    }
+    return error <= s.allowed ? verdict::agrees : verdict::disagrees;
+  }
+
+  /// True if the largest error of a sample is round-off of the handwritten code: somewhere towards
+  /// another state it is irregular, different for inputs that are almost equal. That of a slip is
+  /// smooth.
+  [[nodiscard]] bool is_rounding(const jacobian_sample& s, const Eigen::VectorXd& other) const {
+    const auto [row, column] = position_of(s);
+    if (is_irregular(s.state, row, column)) {
+      return true;
+    }
+    for (double step = 0x1p-50; step < 1; step *= 4) {
+      const Eigen::VectorXd away = step * (other - s.state);
+      if (is_irregular(s.state + away, row, column) || is_rough(s.state, away, row, column)) {
+        return true;
+      }
+    }
+    return false;
+  }
+  /// True if the error of an entry is no smooth function of inputs on a line, unless it vanishes.
+  [[nodiscard]] bool is_rough(const Eigen::VectorXd& state, const Eigen::VectorXd& away,
+                              Eigen::Index row, Eigen::Index column) const {
+    std::array<double, 8> errors{};
+    double size = 0;
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      const jacobian_sample s = sample_at(state + (1 + .01 * double(k)) * away);
+      if (error_of(s) <= 1e-15 * options_.tolerance * largest_entry(s.exact)) {
+        return false;
+      }
+      errors[k] = double(s.written(row, column) - s.truth.jacobian(row, column));
+      size = std::max(size, std::abs(errors[k]));
+    }
+    double bend = 0;
+    for (std::size_t k = 2; k < errors.size(); ++k) {
+      bend = std::max(bend, std::abs(errors[k] - 2 * errors[k - 1] + errors[k - 2]));
+    }
+    return bend > .03 * size;
+  }
+  /// True if the error of an entry differs between inputs that are almost equal.
+  [[nodiscard]] bool is_irregular(const Eigen::VectorXd& state, Eigen::Index row,
+                                  Eigen::Index column) const {
+    double least = INFINITY, most = -INFINITY, size = 0, scale = 0;
+    for (int k = 0; k < 5; ++k) {
+      Eigen::VectorXd moved = state;
+      for (Eigen::Index i = 0; i < moved.size(); ++i) {
+        moved[i] *= 1 + 1e-10 * k * (double((i + k) % 3) - .9);
+      }
+      const jacobian_sample s = sample_at(moved);
+      const double error = double(s.written(row, column) - s.truth.jacobian(row, column));
+      least = std::min(least, error);
+      most = std::max(most, error);
+      size = std::max(size, std::abs(error));
+      scale = std::max(scale, largest_entry(s.exact));
+    }
+    return most - least > .05 * size && size > 1e-15 * scale;
+  }
+
+  /// Row and column of the largest error.
+  [[nodiscard]] static std::pair<Eigen::Index, Eigen::Index> position_of(const jacobian_sample& s) {
+    Eigen::Index row = 0, column = 0;
+    double largest = -1;
+    for (Eigen::Index i = 0; i < s.exact.rows(); ++i) {
+      for (Eigen::Index k = 0; k < s.exact.cols(); ++k) {
+        const bool is_bad = std::isfinite(s.exact(i, k)) != std::isfinite(s.written(i, k));
+        const double error = is_bad ? INFINITY : std::abs(s.written(i, k) - s.exact(i, k));
+        if (error > largest) {
+          largest = error;
+          row = i;
+          column = k;
+        }
+      }
+    }
+    return {row, column};
+  }
+
+  /// The largest error of a finite entry.
+  [[nodiscard]] static double error_of(const jacobian_sample& s) {
+    double largest = 0;
+    for (Eigen::Index i = 0; i < s.exact.size(); ++i) {
+      const double error = double(std::abs(s.written(i) - s.truth.jacobian(i)));
+      largest = error > largest ? error : largest;
+    }
+    return largest;
+  }
+
+private:
+  /// Change of the Jacobian per relative change of the state; of both sides the smaller.
+  [[nodiscard]] double sensitivity(const jacobian_sample& s) const {
+    constexpr double step = 0x1p-20;
+    const double size = std::max(s.state.cwiseAbs().maxCoeff(), 1e-30);
+    double sum = 0;
+    for (Eigen::Index i = 0; i < s.state.size(); ++i) {
+      double change = INFINITY;
+      for (const double h : {step * size, -step * size}) {
+        Eigen::VectorXd moved = s.state;
+        moved[i] += h;
+        const Eigen::MatrixXd there = problem_.truth(moved).jacobian.template cast<double>();
+        change = std::min(change, largest_entry(there - s.exact));
+      }
+      sum += std::isfinite(change) ? change / step : 0;
+    }
+    return sum;
+  }
+
+  const jacobian_problem& problem_;
+  const jacobian_options& options_;
+};
+
+/// \param inputs  with `describe` and `contains` of coordinates, which `state_of` makes a state
+template <class Inputs, class StateOf>
+[[nodiscard]] jacobian_judgement
+judged_jacobian(const std::string& label, const jacobian_problem& problem,
+                const std::vector<coordinates>& points, const Inputs& inputs,
+                const StateOf& state_of, const jacobian_options& options) {
+  const jacobian_judge judge(problem, options);
+  jacobian_judgement result;
+  result.label = label;
+  result.samples = points.size();
+  std::vector<jacobian_sample> samples;
+  std::vector<verdict> verdicts;
+  std::vector<std::size_t> wrong; // the largest error first
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    samples.push_back(judge.sample_at(state_of(points[n])));
+    verdicts.push_back(judge.judged(samples.back()));
+    if (verdicts.back() == verdict::disagrees) {
+      wrong.push_back(n);
+    }
+    const double error = judge.error_of(samples[n]) / largest_entry(samples[n].exact);
+    if (error > result.worst_error && std::isfinite(error)) {
+      result.worst_error = error;
+      result.worst_input = inputs.describe(points[n]);
+    }
+    const progress now{n + 1, points.size()};
+    if (options.report && !options.report(now) && now.done < now.count) {
+      raise(cancelled(now));
+    }
+  }
+  std::sort(wrong.begin(), wrong.end(), [&](std::size_t a, std::size_t b) {
+    const double x = judge.error_of(samples[a]) / samples[a].allowed,
+                 y = judge.error_of(samples[b]) / samples[b].allowed;
+    return x == y ? a < b : x > y;
+  });
+  // Round-off is distinguished from slips, beginning with the largest error, until one is a slip;
+  // others then by what they are alone.
+  const auto is_rounding = [&](std::size_t n) {
+    return samples[n].truth.error == 0 && judge.is_rounding(samples[n], samples.back().state);
+  };
+  std::size_t first_slip = 0;
+  while (first_slip < wrong.size() && is_rounding(wrong[first_slip])) {
+    verdicts[wrong[first_slip++]] = verdict::loses_precision;
+  }
+  if (first_slip < wrong.size()) {
+    std::vector<jacobian_sample> used;
+    for (std::size_t n = 0; n < samples.size(); ++n) {
+      if (verdicts[n] == verdict::disagrees && n != wrong[first_slip] &&
+          samples[n].truth.error == 0) {
+        const auto [row, column] = judge.position_of(samples[n]);
+        if (judge.is_irregular(samples[n].state, row, column)) {
+          verdicts[n] = verdict::loses_precision;
+        }
+      }
+      samples[n].is_wrong = verdicts[n] == verdict::disagrees;
+      if (verdicts[n] == verdict::agrees || verdicts[n] == verdict::disagrees) {
+        used.push_back(samples[n]);
+      }
+    }
+    result.slips = jacobian_slip_search(problem, std::move(used)).found();
+  }
+  for (const verdict v : verdicts) {
+    ++result.counts[std::size_t(v)];
+    result.outcome = std::max(result.outcome, v);
+  }
+  if (result.outcome != verdict::agrees) {
+    const std::size_t worst =
+        result.outcome == verdict::disagrees
+            ? wrong[first_slip]
+            : std::size_t(std::find(verdicts.begin(), verdicts.end(), result.outcome) -
+                          verdicts.begin());
+    const coordinates simplest = simplified(
+        points[worst], [&](const coordinates& point) { return inputs.contains(point); },
+        [&](const coordinates& point) {
+          jacobian_sample s = judge.sample_at(state_of(point));
+          const verdict v = judge.judged(s);
+          const bool is_disagreement =
+              result.outcome == verdict::disagrees || result.outcome == verdict::loses_precision;
+          return is_disagreement ? v == verdict::disagrees &&
+                                       judge.error_of(s) > 1e-6 * judge.error_of(samples[worst])
+                                 : v == result.outcome;
+        });
+    const jacobian_sample s = judge.sample_at(state_of(simplest));
+    result.simplest_input = inputs.describe(simplest);
+    std::tie(result.row, result.column) = judge.position_of(s);
+    result.derivative = s.exact;
+    result.handwritten = s.written;
+  }
+  return result;
+}
+
+DUET_ABI_END
+} // namespace detail
+
+/// Judges a handwritten Jacobian, code over `double` alone, at special and random inputs, and names
+/// the slip if it is wrong.
+///
+/// The truth is the derivative of f by dual numbers, over `long double` where f takes any scalar;
+/// for a function over `double` alone by extrapolated central differences. Arguments and results
+/// are numbers, Eigen vectors, rotations, poses, and arrays and tuples of them. Rotations and poses
+/// have tangent coordinates: small rotation vectors and twists [v; ω] on `options.side`.
+///
+/// A slip is named if it alone explains the matrices at all inputs, also at special ones; all that
+/// do are listed. Two slips, random errors and other functions are not named. Round-off
+/// is distinguished from slips as it differs between inputs that are almost equal: it counts as
+/// `loses_precision`. With differences, an error below their estimated error is `inconclusive`.
+///
+/// \param label     name of the judgement in the report
+/// \param f         the function of the arguments, best a template over their scalar
+/// \param jacobian  the handwritten Jacobian, a function of the same arguments over `double`: an
+///   Eigen matrix, a tuple or array of matrices side by side, or numbers row by row. Its columns
+///   are tangent coordinates or, if there are that many, stored numbers: four of a rotation, in
+///   `options.order`, and seven of a pose, translation first.
+/// \param inputs    a `sampler` of the arguments
+/// \throws invalid_input if the matrix has another size
+/// \throws cancelled if `options.report` rerotated_part `false`
+///
+/// Example: `judge_jacobian("rotated point", [](const auto& q, const auto& p) { return rotate(q,
+/// p);
+/// }, my_jacobian, sampler(rotations{}, vectors<3>{1}).named("q", "p"))`
+template <class F, class J, class... Domains>
+[[nodiscard]] jacobian_judgement
+judge_jacobian(const std::string& label, const F& f, const J& jacobian,
+               const sampler<Domains...>& inputs, const jacobian_options& options = {}) {
+  using arguments = decltype(inputs.template make<double>(std::declval<const coordinates&>()));
+  static_assert(detail::takes<J, arguments>,
+                "duet: judge_jacobian: the Jacobian must take one argument of each domain of the "
+                "sampler, over double");
+  using right = detail::jacobian_truth<F, arguments, body_frame>;
+  using left = detail::jacobian_truth<F, arguments, spatial_frame>;
+  static_assert(!std::is_void_v<typename right::scalar> || detail::takes<F, arguments>,
+                "duet: judge_jacobian: the function must take one argument of each domain of the "
+                "sampler");
+  detail::jacobian_problem problem;
+  problem.side = options.side;
+  problem.order = options.order;
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (detail::jacobian_argument<std::tuple_element_t<I, arguments>>::append(problem.arguments,
+                                                                           inputs.names()[I]),
+     ...);
+  }
+  (std::make_index_sequence<sizeof...(Domains)>{});
+  using result = std::decay_t<decltype(detail::result_of_call(
+      std::apply(f, std::declval<const arguments&>())))>;
+  detail::jacobian_argument<result>::append(problem.results, "f");
+  problem.truth = [&](const Eigen::VectorXd& state) {
+    return options.side == perturbation::right ? right::at(f, state, problem.results)
+                                               : left::at(f, state, problem.results);
+  };
+  problem.written = [&](const Eigen::VectorXd& state) {
+    Eigen::Index next = 0;
+    return detail::written_matrix(
+        detail::result_of_call(std::apply(
+            jacobian, detail::jacobian_argument<arguments>::template load<double>(state, next))),
+        detail::tangent_size(problem.results));
+  };
+  return detail::judged_jacobian(
+      label, problem, inputs.points(options.samples, options.seed), inputs,
+      [&](const coordinates& point) {
+        return detail::saved(inputs.template make<double>(point), problem.arguments);
+      },
+      options);
+}
+
+} // namespace duet

@@ -1,0 +1,423 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/jacobian_problem.hpp>
+#include <duet/comparison/slips_of_blocks.hpp>
+#include <duet/core/constants.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Slips of evaluation: at other points, of one summand, or right in some region only.
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Hypotheses that evaluate the derivative at other points.
+class slips_at_points : protected slips_of_blocks {
+protected:
+  using slips_of_blocks::slips_of_blocks;
+
+  /// Changes of the arguments at which the handwritten Jacobian may have been evaluated.
+  struct other_point {
+    std::string name;
+    std::function<vector(const jacobian_sample&)> state;
+    std::function<double(const jacobian_sample&)> factor{};
+  };
+
+  static void set_rotation(vector& state, const jacobian_part& part, const quaternion<double>& q) {
+    store_quaternion(q, state.data() + part.state, quaternion_order::wxyz);
+  }
+
+  [[nodiscard]] std::vector<other_point> other_points() const {
+    std::vector<other_point> list;
+    const auto add = [&](std::string name, auto change) {
+      list.push_back({std::move(name), [change = std::move(change)](const jacobian_sample& s) {
+                        vector state = s.state;
+                        change(state);
+                        return state;
+                      }});
+    };
+    for (const jacobian_part& a : problem_.arguments) {
+      const Eigen::Index size = a.state_size();
+      if (a.is_motion()) {
+        const auto add_rotation = [&](const std::string& name, auto change) {
+          add(name, [&a, change](vector& x) { set_rotation(x, a, change(rotation_at(a, x))); });
+        };
+        add_rotation(message("evaluated with ", a.name, " = identity (right only there)"),
+                     [](const auto&) { return quaternion<double>(1); });
+        add_rotation(message("conjugate rotation of ", a.name),
+                     [](const auto& q) { return conj(q); });
+        add_rotation(message("half the angle of ", a.name), [](const auto& q) {
+          return from_rotation_vector(Eigen::Vector3d(rotation_vector(q) / 2));
+        });
+        add_rotation(message("twice the angle of ", a.name),
+                     [](const auto& q) { return quaternion<double>(q * q); });
+        add_rotation(message("w last for w first in ", a.name),
+                     [](const auto& q) { return quaternion<double>(q.z(), q.w(), q.x(), q.y()); });
+        add_rotation(message("w first for w last in ", a.name),
+                     [](const auto& q) { return quaternion<double>(q.x(), q.y(), q.z(), q.w()); });
+      }
+      if (a.type == kind::pose) {
+        add(message("evaluated with ", a.name, " = identity (right only there)"), [&a](vector& x) {
+          set_rotation(x, a, quaternion<double>(1));
+          x.segment<3>(a.state + 4).setZero();
+        });
+        add(message("inverse of ", a.name), [&a](vector& x) {
+          const quaternion<double> q = rotation_at(a, x);
+          x.segment<3>(a.state + 4) =
+              -(rotation_matrix(q).transpose() * x.segment<3>(a.state + 4)).eval();
+          set_rotation(x, a, conj(q));
+        });
+      }
+      if (!a.is_motion() || a.type == kind::pose) {
+        const Eigen::Index first = a.type == kind::pose ? a.state + 4 : a.state,
+                           count = a.type == kind::pose ? 3 : size;
+        const std::string name = a.name + (a.type == kind::pose ? ".translation" : "");
+        for (const auto& [text, factor] :
+             {std::pair("evaluated with 0 for ", 0.), std::pair("sign of ", -1.),
+              std::pair("half of ", .5), std::pair("twice ", 2.),
+              std::pair("degrees for radians of ", 180 / constant::pi<double>()),
+              std::pair("radians for degrees of ", constant::pi<double>() / 180)}) {
+          add(text + name,
+              [first, count, factor = factor](vector& x) { x.segment(first, count) *= factor; });
+        }
+        for (Eigen::Index i = 0; i < count && count > 1; ++i) {
+          for (Eigen::Index k = 0; k < count; ++k) {
+            if (k > i) {
+              add(message("indices ", i, " and ", k, " exchanged in ", name),
+                  [first, i, k](vector& x) { std::swap(x[first + i], x[first + k]); });
+            }
+            if (k != i) {
+              add(message("wrong index: ", name, "[", k, "] for ", name, "[", i, "]"),
+                  [first, i, k](vector& x) { x[first + i] = x[first + k]; });
+            }
+          }
+          add(message("sign of ", name, "[", i, "]"),
+              [first, i](vector& x) { x[first + i] = -x[first + i]; });
+        }
+        if (count == 1) {
+          add(message("1 - ", a.name, " for ", a.name),
+              [first](vector& x) { x[first] = 1 - x[first]; });
+          for (const int power : {0, 1, -1}) {
+            add(message("evaluated with 1 for ", a.name,
+                        power == 0   ? ""
+                        : power == 1 ? ", then multiplied by it"
+                                     : ", then divided by it"),
+                [first](vector& x) { x[first] = 1; });
+            list.back().factor = [first, power](const jacobian_sample& s) {
+              return std::pow(s.state[first], power);
+            };
+          }
+        }
+      }
+      for (const jacobian_part& b : problem_.arguments) {
+        if (&a == &b) {
+          continue;
+        }
+        if (a.type == b.type && a.dimension == b.dimension) {
+          add(message("another state: ", b.name, " for ", a.name),
+              [&a, &b, size](vector& x) { x.segment(a.state, size) = x.segment(b.state, size); });
+          if (&a < &b) {
+            add(message(a.name, " and ", b.name, " exchanged"), [&a, &b, size](vector& x) {
+              x.segment(a.state, size).swap(x.segment(b.state, size));
+            });
+          }
+        }
+        if (a.is_motion() && b.is_motion()) {
+          for (const bool is_inverse : {false, true}) {
+            const auto factor = [&b, is_inverse](const vector& x) {
+              return is_inverse ? conj(rotation_at(b, x)) : rotation_at(b, x);
+            };
+            add(message("another point: ", a.name, " times ", b.name, is_inverse ? "^-1" : "",
+                        " for ", a.name),
+                [&a, factor](vector& x) {
+                  set_rotation(x, a, quaternion<double>(rotation_at(a, x) * factor(x)));
+                });
+            add(message("another point: ", b.name, is_inverse ? "^-1" : "", " times ", a.name,
+                        " for ", a.name),
+                [&a, factor](vector& x) {
+                  set_rotation(x, a, quaternion<double>(factor(x) * rotation_at(a, x)));
+                });
+          }
+        }
+      }
+      // Vectors and translations in the axes of another rotation, or from another point.
+      if (a.vector_state() >= 0) {
+        const std::string name = a.name + (a.type == kind::pose ? ".translation" : "");
+        for (const jacobian_part& b : problem_.arguments) {
+          if (b.is_motion()) {
+            for (const bool is_inverse : {false, true}) {
+              add(message("offset in other axes: ", name, " in those of ", b.name,
+                          is_inverse ? "^-1" : ""),
+                  [&a, &b, is_inverse](vector& x) {
+                    const Eigen::Matrix3d r = rotation_matrix(rotation_at(b, x));
+                    const Eigen::Vector3d v = x.segment<3>(a.vector_state());
+                    x.segment<3>(a.vector_state()) =
+                        (is_inverse ? Eigen::Matrix3d(r.transpose()) : r) * v;
+                  });
+            }
+          }
+          if (&b != &a && b.vector_state() >= 0) {
+            for (const double sign : {1., -1.}) {
+              add(message("moment arm about another point: ", name, sign > 0 ? " plus " : " less ",
+                          b.name),
+                  [&a, &b, sign](vector& x) {
+                    x.segment<3>(a.vector_state()) += sign * x.segment<3>(b.vector_state());
+                  });
+            }
+          }
+        }
+      }
+    }
+    return list;
+  }
+
+  /// The derivative at another point, in the rectangles in which that may be what is written.
+  void try_other_points() {
+    for (const other_point& point : other_points()) {
+      std::vector<const scope*> alive;
+      for (const scope& at : scopes_) {
+        alive.push_back(&at);
+      }
+      for (const jacobian_sample& s : samples_) {
+        const matrix there = (point.factor ? point.factor(s) : 1) * derivative_at(point.state(s));
+        std::erase_if(alive, [&](const scope* at) { return !fits(s, *at, of(there, *at)); });
+        if (alive.empty()) {
+          break;
+        }
+      }
+      if (!alive.empty()) {
+        accept(point.name, alive.front()->name);
+      }
+    }
+  }
+
+  /// Parts of a sum: what does not depend on an argument, what is odd and what is even in it; for
+  /// single components of vectors what is odd and what is even.
+  void try_parts_of_sums() {
+    for (const jacobian_part& a : problem_.arguments) {
+      if (a.is_motion()) {
+        try_parts_by(a.name, [&](const vector& state, double factor) {
+          vector x = state;
+          set_rotation(x, a, factor == 0 ? quaternion<double>(1) : conj(rotation_at(a, x)));
+          return x;
+        });
+      }
+      if (a.type == kind::rotation) {
+        continue;
+      }
+      const Eigen::Index first = a.type == kind::pose ? a.state + 4 : a.state,
+                         count = a.type == kind::pose ? 3 : a.dimension;
+      const std::string name = a.name + (a.type == kind::pose ? ".translation" : "");
+      try_parts_by(name, [&](const vector& state, double factor) {
+        vector x = state;
+        x.segment(first, count) *= factor;
+        return x;
+      });
+      for (Eigen::Index k = 0; k < count && count > 1; ++k) {
+        try_parts_by(message(name, "[", k, "]"), [&](const vector& state, double factor) {
+          vector x = state;
+          x[first + k] *= factor;
+          return x;
+        });
+      }
+    }
+  }
+
+  /// \param changed  (state, factor): the state with an argument times 0 or -1
+  template <class Changed>
+  void try_parts_by(const std::string& argument, const Changed& changed) {
+    static constexpr std::pair<const char*, double> changes[] = {{"sign of", -2},
+                                                                 {"missing:", -1},
+                                                                 {"twice", 1},
+                                                                 {"half of", -.5},
+                                                                 {"wrong coefficient of", NAN}};
+    for (int part = 0; part < 3; ++part) {
+      std::vector<std::pair<const std::pair<const char*, double>*, const scope*>> alive;
+      for (const auto& change : changes) {
+        for (const scope& at : scopes_) {
+          // A coefficient of its own for every sample needs entries to confirm it.
+          if (!std::isnan(change.second) ||
+              (at.rows * at.columns >= 9 && samples_[0].outer.size() == 0)) {
+            alive.emplace_back(&change, &at);
+          }
+        }
+      }
+      const auto at_factor = [&](const jacobian_sample& s, double factor) -> matrix {
+        return derivative_at(changed(s.state, factor));
+      };
+      for (const jacobian_sample& s : samples_) {
+        const matrix nothing = at_factor(s, 0), opposite = at_factor(s, -1);
+        const matrix summand = part == 0   ? nothing
+                               : part == 1 ? matrix((s.exact - opposite) / 2)
+                                           : matrix((s.exact + opposite) / 2 - nothing);
+        std::erase_if(alive, [&](const auto& pair) {
+          const auto& [change, at] = pair;
+          double factor = change->second;
+          const matrix some = of(summand, *at);
+          if (std::isnan(factor)) {
+            const double square = some.squaredNorm();
+            factor = square > 0
+                         ? (of(s.written, *at) - of(s.exact, *at)).cwiseProduct(some).sum() / square
+                         : 0;
+          }
+          // The part of an even function is what is left of a difference.
+          const double round_off = 4e-16 * std::abs(factor) * largest_entry(s.exact) /
+                                   std::max(largest_entry(s.written), largest_entry(s.exact));
+          return !fits(s, *at, of(s.exact, *at) + factor * some, 1e-9 + round_off);
+        });
+        if (alive.empty()) {
+          break;
+        }
+      }
+      const bool is_multiple = std::any_of(alive.begin(), alive.end(), [](const auto& pair) {
+        return !std::isnan(pair.first->second);
+      });
+      for (const auto& [change, at] : alive) {
+        if (is_multiple && std::isnan(change->second)) {
+          continue;
+        }
+        accept(message(change->first, " one summand: the part ",
+                       part == 0   ? "that does not depend on "
+                       : part == 1 ? "that is odd in "
+                                   : "that is even in ",
+                       argument),
+               at->name);
+      }
+    }
+  }
+
+  /// Properties of an input, by which right and wrong samples may be distinguished.
+  struct feature {
+    std::string name;
+    double value;
+    bool is_angle;
+    bool has_sign; ///< of a quaternion, else a length
+  };
+
+  [[nodiscard]] std::vector<feature> features_of(const jacobian_sample& s) const {
+    std::vector<feature> list;
+    std::vector<Eigen::Vector3d> axes;
+    const auto add = [&](const std::vector<jacobian_part>& parts, const vector& state) {
+      for (const jacobian_part& p : parts) {
+        if (p.is_motion()) {
+          const quaternion<double> q = rotation_at(p, state);
+          const Eigen::Vector3d v(q.x(), q.y(), q.z());
+          list.push_back({message("angle of ", p.name), 2 * std::atan2(v.norm(), std::abs(q.w())),
+                          true, false});
+          list.push_back({message("scalar part of ", p.name), q.w(), false, true});
+          axes.push_back(v);
+        }
+        if (p.vector_state() >= 0) {
+          const Eigen::Vector3d v = state.segment<3>(p.vector_state());
+          list.push_back({message("length of ", p.name), v.norm(), true, false});
+          axes.push_back(v);
+        } else if (p.type == kind::number) {
+          list.push_back({message("size of ", p.name), std::abs(state[p.state]), true, false});
+          list.push_back({message("sign of ", p.name), state[p.state], false, true});
+        }
+      }
+    };
+    add(problem_.arguments, s.state);
+    add(problem_.results, s.truth.value);
+    const std::vector<motion> all = motions();
+    for (const motion& m : all) {
+      if (m.other != nullptr) {
+        const quaternion<double> q =
+            conj(rotation_at(*m.other, s.state)) * rotation_at(*m.part, s.state);
+        list.push_back({message("angle of ", m.name),
+                        2 * std::atan2(std::hypot(q.x(), q.y(), q.z()), std::abs(q.w())), true,
+                        false});
+        list.push_back({message("scalar part of ", m.name), q.w(), false, true});
+      }
+    }
+    double apart = 0;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+      for (std::size_t k = i + 1; k < axes.size(); ++k) {
+        apart = std::max(apart, axes[i].cross(axes[k]).norm());
+      }
+    }
+    if (axes.size() > 1) {
+      list.push_back({"commuting", apart, false, false});
+    }
+    return list;
+  }
+
+  /// Regions of wrong inputs: a branch for small angles or near a half turn, one sheet of the
+  /// double cover, everywhere but at the identity or for commuting rotations.
+  void try_regions() {
+    std::vector<std::vector<feature>> features;
+    for (const jacobian_sample& s : samples_) {
+      features.push_back(features_of(s));
+    }
+    const double pi = constant::pi<double>();
+    // Two slips may vanish at the same inputs, so that one block must contain all that is wrong.
+    const bool is_one_block =
+        scopes_.front().argument != nullptr && scopes_.front().result != nullptr;
+    for (std::size_t f = 0; f < features[0].size() && is_one_block; ++f) {
+      double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
+      for (std::size_t n = 0; n < samples_.size(); ++n) {
+        const std::size_t w = samples_[n].is_wrong ? 1 : 0;
+        least[w] = std::min(least[w], features[n][f].value);
+        most[w] = std::max(most[w], features[n][f].value);
+      }
+      double above = INFINITY, below = -INFINITY; // right ones beyond the wrong ones
+      bool has_between = false;
+      for (std::size_t n = 0; n < samples_.size(); ++n) {
+        const double x = features[n][f].value;
+        if (!samples_[n].is_wrong) {
+          above = x > most[1] ? std::min(above, x) : above;
+          below = x < least[1] ? std::max(below, x) : below;
+          has_between = has_between || (x >= least[1] && x <= most[1]);
+        }
+      }
+      const feature& about = features[0][f];
+      if (most[0] == -INFINITY) {
+        continue;
+      }
+      if (about.has_sign) {
+        if ((most[1] < 0 && least[0] >= 0) || (least[1] > 0 && most[0] <= 0)) {
+          accept(message(about.name.substr(0, 4) == "sign"
+                             ? "right for one sign only of "
+                             : "right on one sheet of the double cover only: ",
+                         about.name, most[1] < 0 ? " < 0" : " > 0", " is wrong"),
+                 scopes_.front().name);
+        }
+      } else if (about.is_angle && !has_between && most[1] < .5 && above < INFINITY) {
+        accept(message("only in the branch of small values: ", about.name, " up to ",
+                       to_text(float(most[1])), " wrong, from ", to_text(float(above)), " right"),
+               scopes_.front().name);
+      } else if (about.is_angle && about.name.substr(0, 5) == "angle" && !has_between &&
+                 least[1] > pi - .5 && below > -INFINITY) {
+        accept(message("only in the branch beside a half turn: ", about.name, " from ",
+                       to_text(float(least[1])), " wrong, up to ", to_text(float(below)), " right"),
+               scopes_.front().name);
+      } else if (about.is_angle && most[0] < least[1] && most[0] < 1e-3 &&
+                 about.name.substr(0, 5) == "angle") {
+        accept(
+            message("right only at the identity: ", about.name, " up to ", to_text(float(most[0]))),
+            scopes_.front().name);
+      } else if (about.name == "commuting" && most[0] < least[1] && most[0] < 1e-3) {
+        accept("right only for commuting rotations: where all axes are parallel",
+               scopes_.front().name);
+      }
+    }
+  }
+};
+
+DUET_ABI_END
+} // namespace duet::detail

@@ -1,0 +1,634 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/jacobian_problem.hpp>
+#include <duet/core/constants.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Slips that change a block of a Jacobian by matrix algebra: signs, frames, moment arms.
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Hypotheses about what the handwritten matrix is, within a rectangle of entries that contains all
+/// wrong ones, as a function of the truth. One is accepted if it is right at all samples.
+class slips_of_blocks {
+protected:
+  using matrix = Eigen::MatrixXd;
+
+  using vector = Eigen::VectorXd;
+
+  using kind = jacobian_part::kind;
+
+  /// \param samples  with at least one that is wrong; the wrong ones are searched first
+  slips_of_blocks(const jacobian_problem& problem, std::vector<jacobian_sample> samples)
+      : problem_(problem), samples_(std::move(samples)) {
+    std::stable_partition(samples_.begin(), samples_.end(),
+                          [](const jacobian_sample& s) { return s.is_wrong; });
+    double worst = 0;
+    const auto error_of = [](const jacobian_sample& s) {
+      return largest_entry(s.written - s.exact) / largest_entry(s.exact);
+    };
+    if (samples_[0].outer.size() == 0) {
+      for (const jacobian_sample& s : samples_) {
+        worst = s.is_wrong ? std::max(worst, error_of(s)) : worst;
+      }
+      for (jacobian_sample& s : samples_) {
+        s.little_error =
+            s.is_wrong && error_of(s) < 1e-3 * worst ? largest_entry(s.written - s.exact) : 0;
+      }
+    }
+    find_wrong_entries();
+    find_scopes();
+  }
+
+  /// A rectangle of entries.
+  struct scope {
+    std::string name;
+    Eigen::Index row, rows, column, columns;
+    const jacobian_part* argument; ///< nullptr if several
+    const jacobian_part* result;
+  };
+
+  /// Writes what the entries of a rectangle are by a hypothesis; false if it does not apply.
+  using hypothesis = std::function<bool(const jacobian_sample&, const scope&, matrix&)>;
+
+  static matrix of(const matrix& m, const scope& s) {
+    return m.block(s.row, s.column, s.rows, s.columns);
+  }
+
+  void find_wrong_entries() {
+    first_row_ = first_ = std::numeric_limits<Eigen::Index>::max();
+    for (const jacobian_sample& s : samples_) {
+      const bool has_factor = s.outer.size() > 0; // rows are not those of the written matrix
+      const matrix exact = has_factor ? matrix(s.outer * s.exact) : s.exact;
+      for (Eigen::Index i = 0; s.is_wrong && i < exact.rows(); ++i) {
+        for (Eigen::Index k = 0; k < exact.cols(); ++k) {
+          if (!(std::abs(s.written(i, k) - exact(i, k)) <= s.allowed)) {
+            first_row_ = has_factor ? first_row_ : std::min(first_row_, i);
+            last_row_ = has_factor ? last_row_ : std::max(last_row_, i);
+            first_ = std::min(first_, k);
+            last_ = std::max(last_, k);
+          }
+        }
+      }
+    }
+  }
+
+  void add_scope(const std::string& name, Eigen::Index row, Eigen::Index rows, Eigen::Index column,
+                 Eigen::Index columns, const jacobian_part* argument, const jacobian_part* result) {
+    const bool is_known = std::any_of(scopes_.begin(), scopes_.end(), [&](const scope& s) {
+      return s.row == row && s.rows == rows && s.column == column && s.columns == columns;
+    });
+    if (row <= first_row_ && last_row_ < row + rows && column <= first_ &&
+        last_ < column + columns && !is_known) {
+      scopes_.push_back({name, row, rows, column, columns, argument, result});
+    }
+  }
+
+  /// All rectangles of the structure that contain the wrong entries, the least first.
+  void find_scopes() {
+    const auto halves = [](const jacobian_part& part) {
+      std::vector<std::pair<std::string, Eigen::Index>> list;
+      if (part.dimension == 6) {
+        const bool is_pose = part.type == kind::pose;
+        list = {{part.name + (is_pose ? ".translation" : "[0..2]"), part.first},
+                {part.name + (is_pose ? ".rotation" : "[3..5]"), part.first + 3}};
+      } else if (part.type == kind::vector && part.dimension == 4) {
+        list = {{part.name + "[1..3]", part.first + 1}};
+      }
+      return list;
+    };
+    for (const jacobian_part& r : problem_.results) {
+      for (const jacobian_part& a : problem_.arguments) {
+        const std::string block = message("d ", r.name, " / d ", a.name);
+        for (Eigen::Index i = 0; i < r.dimension; ++i) {
+          for (Eigen::Index k = 0; k < a.dimension; ++k) {
+            add_scope(message("entry (", i, ", ", k, ") of ", block), r.first + i, 1, a.first + k,
+                      1, &a, &r);
+          }
+          for (const auto& [half, first] : halves(a)) {
+            add_scope(message("row ", i, " of d ", r.name, " / d ", half), r.first + i, 1, first, 3,
+                      &a, &r);
+          }
+          add_scope(message("row ", i, " of ", block), r.first + i, 1, a.first, a.dimension, &a,
+                    &r);
+        }
+        for (Eigen::Index k = 0; k < a.dimension; ++k) {
+          for (const auto& [half, first] : halves(r)) {
+            add_scope(message("column ", k, " of d ", half, " / d ", a.name), first, 3, a.first + k,
+                      1, &a, &r);
+          }
+          add_scope(message("column ", k, " of ", block), r.first, r.dimension, a.first + k, 1, &a,
+                    &r);
+        }
+        for (const auto& [row, first_row] : halves(r)) {
+          for (const auto& [column, first] : halves(a)) {
+            add_scope(message("d ", row, " / d ", column), first_row, 3, first, 3, &a, &r);
+          }
+          add_scope(message("d ", row, " / d ", a.name), first_row, 3, a.first, a.dimension, &a,
+                    &r);
+        }
+        for (const auto& [column, first] : halves(a)) {
+          add_scope(message("d ", r.name, " / d ", column), r.first, r.dimension, first, 3, &a, &r);
+        }
+        add_scope(block, r.first, r.dimension, a.first, a.dimension, &a, &r);
+      }
+    }
+    const Eigen::Index rows = tangent_size(problem_.results),
+                       columns = tangent_size(problem_.arguments);
+    for (const jacobian_part& r : problem_.results) {
+      for (Eigen::Index i = 0; i < r.dimension; ++i) {
+        add_scope(message("row ", i, " of d ", r.name), r.first + i, 1, 0, columns, nullptr, &r);
+      }
+      for (const auto& [half, first] : halves(r)) {
+        add_scope(message("all of d ", half), first, 3, 0, columns, nullptr, &r);
+      }
+      add_scope(message("all of d ", r.name), r.first, r.dimension, 0, columns, nullptr, &r);
+    }
+    for (const jacobian_part& a : problem_.arguments) {
+      for (Eigen::Index k = 0; k < a.dimension; ++k) {
+        add_scope(message("column ", k, " of d / d ", a.name), 0, rows, a.first + k, 1, &a,
+                  nullptr);
+      }
+      for (const auto& [half, first] : halves(a)) {
+        add_scope(message("all of d / d ", half), 0, rows, first, 3, &a, nullptr);
+      }
+      add_scope(message("all of d / d ", a.name), 0, rows, a.first, a.dimension, &a, nullptr);
+    }
+    add_scope("the whole matrix", 0, rows, 0, columns, nullptr, nullptr);
+  }
+
+  [[nodiscard]] static bool fits(const jacobian_sample& s, const scope& at, const matrix& candidate,
+                                 double relative = 1e-9) {
+    if (s.outer.size() > 0) {
+      matrix changed = s.exact;
+      changed.block(at.row, at.column, at.rows, at.columns) = candidate;
+      const matrix product = s.outer * changed;
+      return largest_entry(s.written - product) <=
+             s.allowed + s.little_error +
+                 relative * std::max(largest_entry(s.written), largest_entry(product));
+    }
+    const double tolerance =
+        s.allowed + s.little_error +
+        relative * std::max(largest_entry(of(s.exact, at)), largest_entry(candidate));
+    return largest_entry(of(s.written, at) - candidate) <= tolerance; // false if NaN
+  }
+
+  /// The derivative at another state; NaN where the function refuses it.
+  [[nodiscard]] matrix derivative_at(const vector& state) const {
+    matrix result = matrix::Constant(samples_[0].exact.rows(), samples_[0].exact.cols(), NAN);
+    catching<void>([&] { result = problem_.truth(state).jacobian.template cast<double>(); }, [] {});
+    return result;
+  }
+
+  /// Some wrong samples, special inputs and random ones, the largest errors first.
+  [[nodiscard]] std::vector<const jacobian_sample*> some_wrong_samples() const {
+    std::size_t wrong = 0;
+    while (wrong < samples_.size() && samples_[wrong].is_wrong) {
+      ++wrong;
+    }
+    std::vector<const jacobian_sample*> list;
+    const std::size_t count = std::min<std::size_t>(wrong, 30);
+    for (std::size_t n = 0; n < count; ++n) {
+      list.push_back(&samples_[wrong - 1 - n * wrong / count]);
+    }
+    const auto error = [](const jacobian_sample* x) {
+      return largest_entry(x->written - x->exact);
+    };
+    std::sort(list.begin(), list.end(), [&](const jacobian_sample* x, const jacobian_sample* y) {
+      return error(x) > error(y);
+    });
+    return list;
+  }
+
+  /// Lists a slip. Of those that say in the same block the same with other words, as the sign of
+  /// all and the sign of what is odd in an argument, only the first.
+  void accept(const std::string& name, const std::string& block) {
+    const auto start = [](const std::string& text) {
+      const std::size_t part = text.find(": the part ");
+      return part == text.npos ? text : text.substr(0, part);
+    };
+    const auto is_of = [&](const char* first, const std::string& later, const jacobian_slip& s) {
+      return s.name.substr(0, std::strlen(first)) == first && name.substr(0, later.size()) == later;
+    };
+    const bool is_known = std::any_of(slips_.begin(), slips_.end(), [&](const jacobian_slip& s) {
+      return s.name == name ||
+             (s.block == block &&
+              (start(s.name) == start(name) || is_of("sign", "sign of ", s) ||
+               is_of("missing", "missing: one", s) || is_of("half", "half of ", s) ||
+               is_of("half", "twice ", s) || is_of("half", "scaled by a constant", s)));
+    });
+    if (!is_known) {
+      slips_.push_back({name, block});
+    }
+  }
+
+  /// Accepts a hypothesis for the least rectangle in which it is right at all samples.
+  bool attempt(const std::string& name, const hypothesis& propose) {
+    matrix candidate;
+    for (const scope& at : scopes_) {
+      if (std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+            return propose(s, at, candidate) && fits(s, at, candidate);
+          })) {
+        accept(name, at.name);
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Attempts a change of the entries of a rectangle alone.
+  template <class Change>
+  bool attempt_change(const std::string& name, const Change& change) {
+    return attempt(name, [&](const jacobian_sample& s, const scope& at, matrix& out) {
+      return change(of(s.exact, at), out);
+    });
+  }
+
+  void try_algebra() {
+    attempt_change("sign", [](const matrix& m, matrix& out) {
+      out = -m;
+      return true;
+    });
+    attempt_change("missing: zero", [](const matrix& m, matrix& out) {
+      out = matrix::Zero(m.rows(), m.cols());
+      return true;
+    });
+    attempt_change("transposed (column-major data in a row-major array)",
+                   [](const matrix& m, matrix& out) {
+                     out = m.transpose();
+                     return m.rows() == m.cols() && m.rows() > 1;
+                   });
+    attempt_change("transposed, with the sign changed", [](const matrix& m, matrix& out) {
+      out = -m.transpose();
+      return m.rows() == m.cols() && m.rows() > 1;
+    });
+    attempt_change("Jacobian of the inverse", [](const matrix& m, matrix& out) {
+      if (m.rows() != m.cols() || m.rows() == 1) {
+        return false;
+      }
+      const Eigen::FullPivLU<matrix> lu(m);
+      out = lu.inverse();
+      return lu.isInvertible();
+    });
+    attempt_change("column-major data in a row-major array", [](const matrix& m, matrix& out) {
+      out.resize(m.rows(), m.cols());
+      for (Eigen::Index i = 0; i < m.size(); ++i) {
+        out(i / m.cols(), i % m.cols()) = m(i % m.rows(), i / m.rows());
+      }
+      return m.rows() > 1 && m.cols() > 1 && m.rows() != m.cols();
+    });
+    attempt_change("row-major data in a column-major array", [](const matrix& m, matrix& out) {
+      out.resize(m.rows(), m.cols());
+      for (Eigen::Index i = 0; i < m.size(); ++i) {
+        out(i % m.rows(), i / m.rows()) = m(i / m.cols(), i % m.cols());
+      }
+      return m.rows() > 1 && m.cols() > 1 && m.rows() != m.cols();
+    });
+    attempt_change("columns [omega; v] for [v; omega]", [](const matrix& m, matrix& out) {
+      if (m.cols() != 6) {
+        return false;
+      }
+      out.resize(m.rows(), 6);
+      out << m.rightCols(3), m.leftCols(3);
+      return true;
+    });
+    attempt_change("rows [omega; v] for [v; omega]", [](const matrix& m, matrix& out) {
+      if (m.rows() != 6) {
+        return false;
+      }
+      out.resize(6, m.cols());
+      out << m.bottomRows(3), m.topRows(3);
+      return true;
+    });
+    attempt_change("rows and columns [omega; v] for [v; omega]", [](const matrix& m, matrix& out) {
+      if (m.rows() != 6 || m.cols() != 6) {
+        return false;
+      }
+      out.resize(6, 6);
+      out << m.bottomRightCorner(3, 3), m.bottomLeftCorner(3, 3), m.topRightCorner(3, 3),
+          m.topLeftCorner(3, 3);
+      return true;
+    });
+    const double degree = constant::pi<double>() / 180;
+    for (const auto& [name, factor] : {std::pair("half angle for full angle: factor 1/2", .5),
+                                       std::pair("half angle for full angle: factor 2", 2.),
+                                       std::pair("degrees: factor pi/180", degree),
+                                       std::pair("degrees: factor 180/pi", 1 / degree)}) {
+      attempt_change(name, [factor = factor](const matrix& m, matrix& out) {
+        out = factor * m;
+        return true;
+      });
+    }
+    std::vector<jacobian_part> parts = problem_.arguments;
+    parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
+    for (const jacobian_part& a : parts) {
+      for (const int power : {1, -1, 2, -2}) {
+        if (a.type == kind::number) {
+          attempt(message("scaled by ", a.name, power == 1 ? "" : message("^", power)),
+                  [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                    out = std::pow(s.state[a.state], power) * of(s.exact, at);
+                    return true;
+                  });
+        }
+      }
+    }
+    // A constant factor, taken from the largest entry of the first wrong sample.
+    for (const scope& at : scopes_) {
+      if (samples_[0].outer.size() > 0) {
+        break;
+      }
+      const matrix exact = of(samples_[0].exact, at), written = of(samples_[0].written, at);
+      Eigen::Index i = 0, k = 0;
+      if (exact.cwiseAbs().maxCoeff(&i, &k) > 0) {
+        const double factor = written(i, k) / exact(i, k);
+        const bool is_named = std::abs(std::abs(factor) - 1) < 1e-9 || factor == 0;
+        if (!is_named && attempt_change(message("scaled by a constant, ", to_text(float(factor))),
+                                        [&](const matrix& m, matrix& out) {
+                                          out = factor * m;
+                                          return true;
+                                        })) {
+          break;
+        }
+      }
+    }
+  }
+
+  /// A rotation or pose, or one relative to another, at a sample.
+  struct motion {
+    std::string name;
+    const jacobian_part* part;            ///< of an argument or result
+    const jacobian_part* other = nullptr; ///< the rotation relative to this one
+    bool is_result = false;
+  };
+
+  [[nodiscard]] std::vector<motion> motions() const {
+    std::vector<motion> list;
+    for (const jacobian_part& a : problem_.arguments) {
+      if (a.is_motion()) {
+        list.push_back({a.name, &a});
+      }
+    }
+    const std::size_t count = list.size();
+    for (const jacobian_part& r : problem_.results) {
+      if (r.is_motion()) {
+        list.push_back({r.name, &r, nullptr, true});
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = i + 1; k < count; ++k) {
+        list.push_back({message(list[i].name, "^-1 ", list[k].name), list[k].part, list[i].part});
+      }
+    }
+    return list;
+  }
+
+  [[nodiscard]] static const vector& state_of(const jacobian_sample& s, const motion& m) {
+    return m.is_result ? s.truth.value : s.state;
+  }
+
+  [[nodiscard]] static Eigen::Matrix3d rotation_of(const jacobian_sample& s, const motion& m) {
+    const Eigen::Matrix3d r = rotation_matrix(rotation_at(*m.part, state_of(s, m)));
+    return m.other != nullptr
+               ? Eigen::Matrix3d(rotation_matrix(rotation_at(*m.other, s.state)).transpose() * r)
+               : r;
+  }
+
+  /// Adjoint matrix of size 3 or 6; false for other sizes.
+  [[nodiscard]] static bool adjoint(const jacobian_sample& s, const motion& m, Eigen::Index size,
+                                    matrix& out) {
+    const Eigen::Matrix3d r = rotation_of(s, m);
+    if (size == 3) {
+      out = r;
+    } else if (size == 6) {
+      out = matrix::Zero(6, 6);
+      out.topLeftCorner<3, 3>() = out.bottomRightCorner<3, 3>() = r;
+      if (m.part->type == kind::pose) {
+        Eigen::Vector3d t = state_of(s, m).segment<3>(m.part->state + 4);
+        if (m.other != nullptr && m.other->type == kind::pose) {
+          t = rotation_matrix(rotation_at(*m.other, s.state)).transpose() *
+              (t - s.state.segment<3>(m.other->state + 4));
+        }
+        out.topRightCorner<3, 3>() = cross_matrix(t) * r;
+      }
+    }
+    return size == 3 || size == 6;
+  }
+
+  [[nodiscard]] static matrix power_of(const matrix& m, int power) {
+    const matrix base = power < 0 ? matrix(m.inverse()) : m;
+    return std::abs(power) == 2 ? matrix(base * base) : base;
+  }
+
+  void try_frames() {
+    matrix factor;
+    for (const motion& m : motions()) {
+      const bool is_relative = m.other != nullptr;
+      for (const int power : {1, -1, 2, -2}) {
+        const bool is_right = problem_.side == perturbation::right;
+        const std::string other =
+            is_right ? "left perturbation for right" : "right perturbation for left";
+        const std::string which =
+            message("Ad(", m.name, ")", power == 1 ? "" : message("^", power));
+        const auto right = [&](const jacobian_sample& s, const scope& at, matrix& out) {
+          if (!adjoint(s, m, at.columns, factor)) {
+            return false;
+          }
+          out = of(s.exact, at) * power_of(factor, power);
+          return true;
+        };
+        const auto left = [&](const jacobian_sample& s, const scope& at, matrix& out) {
+          if (!adjoint(s, m, at.rows, factor)) {
+            return false;
+          }
+          out = power_of(factor, power) * of(s.exact, at);
+          return true;
+        };
+        const bool is_own_argument = !is_relative && !m.is_result && power == (is_right ? -1 : 1);
+        attempt(message("missing or inverted adjoint: multiplied by ", which, " from the right",
+                        is_own_argument ? message(" (of ", m.name, ": ", other, ")") : ""),
+                right);
+        const bool is_own_result = m.is_result && power == (is_right ? 1 : -1);
+        attempt(message("other axes or a missing or inverted adjoint: multiplied by ", which,
+                        " from the left",
+                        is_own_result ? message(" (of ", m.name, ": ", other, ")")
+                        : power == 1  ? " (spatial for body axes)"
+                        : power == -1 ? " (body for spatial axes)"
+                                      : ""),
+                left);
+      }
+    }
+    try_exponential_jacobians();
+    try_moment_arms();
+  }
+
+  /// Vectors that may be rotation vectors: of rotations and vectors of three components.
+  void try_exponential_jacobians() {
+    struct source {
+      std::string name;
+      const jacobian_part* part;
+      bool is_result;
+    };
+    std::vector<source> sources;
+    for (const bool is_result : {false, true}) {
+      for (const jacobian_part& p : is_result ? problem_.results : problem_.arguments) {
+        if (p.is_motion() || (p.type == kind::vector && (p.dimension == 3 || p.dimension == 6))) {
+          sources.push_back({p.name, &p, is_result});
+        }
+      }
+    }
+    for (const source& from : sources) {
+      for (const double sign : {1., -1.}) {
+        for (const bool is_inverse : {false, true}) {
+          for (const bool is_left : {false, true}) {
+            for (const double half : {1., .5}) {
+              if (half == .5 && !from.part->is_motion()) {
+                continue;
+              }
+              const auto factor = [&](const jacobian_sample& s) -> matrix {
+                const vector& state = from.is_result ? s.truth.value : s.state;
+                const Eigen::Vector3d phi =
+                    (from.part->is_motion()
+                         ? Eigen::Vector3d(rotation_vector(rotation_at(*from.part, state)))
+                         : Eigen::Vector3d(
+                               state.segment<3>(from.part->state + from.part->dimension - 3))) *
+                    sign * half;
+                return is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi);
+              };
+              const std::string name = message(
+                  "right only at the identity of ", from.name, ": multiplied by the ",
+                  sign > 0 ? "left" : "right", " Jacobian of exp", is_inverse ? ", inverse," : "",
+                  half == 1 ? "" : " at half the angle", " from the ", is_left ? "left" : "right");
+              attempt(name, [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                if ((is_left ? at.rows : at.columns) != 3) {
+                  return false;
+                }
+                out = is_left ? matrix(factor(s) * of(s.exact, at))
+                              : matrix(of(s.exact, at) * factor(s));
+                return true;
+              });
+            }
+          }
+        }
+      }
+    }
+  }
+
+  /// Columns of rotation that contain a moment about a wrong point: J_w + J_v p^ for a vector p of
+  /// the arguments, or a constant one.
+  void try_moment_arms() {
+    const std::vector<motion> rotations = motions();
+    for (const jacobian_part& rotated_part : problem_.arguments) {
+      if (!rotated_part.is_motion()) {
+        continue;
+      }
+      const Eigen::Index omega = rotated_part.first + rotated_part.dimension - 3;
+      for (const jacobian_part& moved : problem_.arguments) {
+        if (moved.vector_state() < 0 ||
+            (rotated_part.type == kind::pose && &moved != &rotated_part)) {
+          continue;
+        }
+        for (std::size_t axes = 0; axes < 1 + 2 * rotations.size(); ++axes) {
+          const auto force = [&](const jacobian_sample& s, const scope& at) -> matrix {
+            const matrix v = s.exact.block(at.row, moved.first, at.rows, 3);
+            if (axes == 0) {
+              return v;
+            }
+            const Eigen::Matrix3d r = rotation_of(s, rotations[(axes - 1) / 2]);
+            return axes % 2 == 1 ? matrix(v * r) : matrix(v * r.transpose());
+          };
+          const auto covers = [&](const scope& at) {
+            return at.column == omega && at.columns == 3;
+          };
+          for (const jacobian_part& arm : problem_.arguments) {
+            if (arm.vector_state() < 0) {
+              continue;
+            }
+            for (const double sign : {1., -1., 2., -2.}) {
+              for (const bool is_other_side : {false, true}) {
+                attempt(message("moment arm about another point: off by ", arm.name,
+                                arm.type == kind::pose ? ".translation" : "",
+                                is_other_side ? ", and the other side of perturbation" : ""),
+                        [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                          if (!covers(at)) {
+                            return false;
+                          }
+                          out = of(s.exact, at);
+                          if (is_other_side) {
+                            const Eigen::Matrix3d r =
+                                rotation_matrix(rotation_at(rotated_part, s.state));
+                            out *= problem_.side == perturbation::right ? r.transpose() : r;
+                          }
+                          out += force(s, at) *
+                                 cross_matrix(sign * s.state.segment<3>(arm.vector_state()));
+                          return true;
+                        });
+              }
+            }
+          }
+          for (const scope& at : scopes_) { // a constant arm, by linear least squares
+            if (!covers(at) || samples_[0].outer.size() > 0) {
+              continue;
+            }
+            const std::size_t used = std::min<std::size_t>(samples_.size(), 8);
+            matrix a(Eigen::Index(used) * at.rows * 3, 3);
+            vector b(a.rows());
+            for (std::size_t n = 0; n < used; ++n) {
+              const matrix f = force(samples_[n], at);
+              const matrix difference = of(samples_[n].written, at) - of(samples_[n].exact, at);
+              for (Eigen::Index i = 0; i < at.rows; ++i) {
+                const Eigen::Index row = (Eigen::Index(n) * at.rows + i) * 3;
+                // f p^ = (f x p): row vector f times the cross matrix of p
+                a.middleRows(row, 3) = cross_matrix(Eigen::Vector3d(f.row(i)));
+                b.segment(row, 3) = difference.row(i);
+              }
+            }
+            const Eigen::Vector3d arm = a.colPivHouseholderQr().solve(b);
+            if (arm.allFinite() && arm.norm() > 1e-9) {
+              attempt(message("moment arm about another point: off by the constant (",
+                              to_text(float(arm[0])), ", ", to_text(float(arm[1])), ", ",
+                              to_text(float(arm[2])), ")"),
+                      [&](const jacobian_sample& s, const scope& other, matrix& out) {
+                        if (&other != &at) {
+                          return false;
+                        }
+                        out = of(s.exact, at) + force(s, at) * cross_matrix(arm);
+                        return true;
+                      });
+            }
+          }
+        }
+      }
+    }
+  }
+
+  const jacobian_problem& problem_;
+
+  std::vector<jacobian_sample> samples_;
+
+  Eigen::Index first_row_ = 0, last_row_ = -1, first_ = 0, last_ = -1; ///< of the wrong entries
+  std::vector<scope> scopes_;
+
+  std::vector<jacobian_slip> slips_;
+};
+
+DUET_ABI_END
+} // namespace duet::detail

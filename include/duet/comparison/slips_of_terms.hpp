@@ -1,0 +1,497 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/comparison/jacobian_problem.hpp>
+#include <duet/comparison/slips_at_points.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <vector>
+
+/// \file
+/// Slips of single columns, entries and terms, and of the numbers that represent rotations.
+
+namespace duet::detail {
+DUET_ABI_BEGIN
+
+/// Hypotheses about columns, terms of sums, and stored numbers.
+class slips_of_terms : protected slips_at_points {
+protected:
+  using slips_at_points::slips_at_points;
+
+  /// Columns that contain other columns, and entries of rows that contain other entries.
+  void try_columns() {
+    for (const scope& at : scopes_) {
+      std::vector<Eigen::Index> from;
+      bool is_injective = true, is_identity = true;
+      for (Eigen::Index k = 0; k < at.columns; ++k) {
+        Eigen::Index source = -1;
+        for (Eigen::Index n = 0; n < samples_[0].exact.cols() && source < 0; ++n) {
+          // Tried in order of distance, the column itself first.
+          const Eigen::Index column = (at.column + k + n) % samples_[0].exact.cols();
+          const bool is_source =
+              std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+                const double tolerance =
+                    s.allowed + s.little_error +
+                    1e-9 * largest_entry(s.exact.block(at.row, column, at.rows, 1));
+                return largest_entry(s.written.block(at.row, at.column + k, at.rows, 1) -
+                                     s.exact.block(at.row, column, at.rows, 1)) <= tolerance;
+              });
+          source = is_source ? column : -1;
+        }
+        is_injective = is_injective && source >= 0 &&
+                       std::find(from.begin(), from.end(), source) == from.end();
+        is_identity = is_identity && source == at.column + k;
+        from.push_back(source);
+      }
+      const bool has_all = std::none_of(from.begin(), from.end(), [](auto c) { return c < 0; });
+      if (has_all && !is_identity) {
+        std::string list;
+        for (const Eigen::Index c : from) {
+          list += (list.empty() ? "" : ", ") + std::to_string(c);
+        }
+        accept(message(at.columns == 1 ? "wrong index: column "
+                       : is_injective  ? "permuted or shifted: columns "
+                                       : "wrong index: columns ",
+                       list, " of the matrix"),
+               at.name);
+        return;
+      }
+    }
+    // Rows that contain other rows.
+    for (const scope& at : scopes_) {
+      std::string list;
+      bool has_all = true;
+      for (Eigen::Index i = 0; i < at.rows && has_all; ++i) {
+        Eigen::Index source = -1;
+        for (Eigen::Index n = 0; n < samples_[0].exact.rows() && source < 0; ++n) {
+          const Eigen::Index row = (at.row + i + n) % samples_[0].exact.rows();
+          const bool is_source =
+              std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+                const matrix other = s.exact.block(row, at.column, 1, at.columns);
+                return largest_entry(s.written.block(at.row + i, at.column, 1, at.columns) -
+                                     other) <=
+                       s.allowed + s.little_error + 1e-9 * largest_entry(other);
+              });
+          source = is_source ? row : -1;
+        }
+        has_all = source >= 0;
+        list += (list.empty() ? "" : ", ") + std::to_string(source);
+      }
+      if (has_all && at.columns > 1) {
+        accept(message(at.rows == 1 ? "wrong index: row " : "permuted or wrong rows: ", list,
+                       " of the matrix"),
+               at.name);
+        return;
+      }
+    }
+    // Shifted, with zeros at the end.
+    for (const int shift : {1, -1, 3, -3}) {
+      attempt_change(message("shifted by ", shift, " columns"), [&](const matrix& m, matrix& out) {
+        const Eigen::Index kept = m.cols() - std::abs(shift);
+        out = matrix::Zero(m.rows(), m.cols());
+        if (kept > 0) {
+          out.middleCols(std::max(shift, 0), kept) = m.middleCols(std::max(-shift, 0), kept);
+        }
+        return kept > 0;
+      });
+    }
+  }
+
+  /// A term that contains a wrong constant: the error is a constant matrix.
+  void try_constants() {
+    for (const scope& at : scopes_) {
+      const matrix first = of(samples_[0].written, at) - of(samples_[0].exact, at);
+      if (std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+            return fits(s, at, of(s.exact, at) + first);
+          })) {
+        accept("one summand: off by a constant", at.name);
+        return;
+      }
+    }
+  }
+
+  /// Vectors of three components that a term may contain: of arguments and results, also in other
+  /// axes and from other points, of rotations their imaginary part.
+  struct named_vector {
+    std::string name;
+    Eigen::Vector3d value;
+  };
+
+  [[nodiscard]] std::vector<named_vector> vectors_of(const jacobian_sample& s) const {
+    std::vector<named_vector> list;
+    std::vector<jacobian_part> parts = problem_.arguments;
+    parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
+    for (const jacobian_part& a : parts) {
+      if (a.is_motion() || (a.type == kind::vector && a.dimension == 4)) {
+        list.push_back({"the vector part of " + a.name, s.state.segment<3>(a.state + 1)});
+      }
+      if (a.vector_state() >= 0) {
+        list.push_back({a.name + (a.type == kind::pose ? ".translation" : ""),
+                        s.state.segment<3>(a.vector_state())});
+      }
+    }
+    for (const jacobian_part& r : problem_.results) {
+      if (r.type == kind::vector && r.dimension == 3) {
+        list.push_back({r.name, s.truth.value.segment<3>(r.state)});
+      }
+    }
+    const std::size_t count = list.size();
+    for (const jacobian_part& m : parts) {
+      if (m.is_motion()) {
+        const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, s.state));
+        for (std::size_t i = 0; i < count; ++i) {
+          const named_vector v = list[i];
+          list.push_back({message("(", m.name, " ", v.name, ")"), r * v.value});
+          list.push_back({message("(", m.name, "^-1 ", v.name, ")"), r.transpose() * v.value});
+        }
+      }
+    }
+    return list;
+  }
+
+  /// Errors of a row or column of three entries, or of 3 x 3, that are a constant multiple of a
+  /// vector a, a x b, of the cross matrix of a, of a b^T, (a.b) 1, a rotation, or their products
+  /// with one number.
+  void try_summands() {
+    struct term {
+      std::string name;
+      matrix value;
+    };
+    const auto terms_of = [&](const jacobian_sample& s, const scope& at) {
+      std::vector<term> list;
+      const std::vector<named_vector> v = vectors_of(s);
+      const bool is_row = at.rows == 1;
+      if (at.rows * at.columns == 3) {
+        const auto add = [&](const std::string& name, const Eigen::Vector3d& x) {
+          list.push_back({name, is_row ? matrix(x.transpose()) : matrix(x)});
+        };
+        for (std::size_t a = 0; a < v.size(); ++a) {
+          add(v[a].name, v[a].value);
+          for (std::size_t b = a + 1; b < v.size(); ++b) {
+            add(message(v[a].name, " x ", v[b].name), v[a].value.cross(v[b].value));
+          }
+        }
+      } else if (at.rows == 3 && at.columns == 3) {
+        list.push_back({"the identity matrix", matrix::Identity(3, 3)});
+        for (std::size_t a = 0; a < v.size(); ++a) {
+          list.push_back({"the cross matrix of " + v[a].name, cross_matrix(v[a].value)});
+          for (std::size_t b = 0; b < v.size(); ++b) {
+            list.push_back(
+                {message(v[a].name, " ", v[b].name, "^T"), v[a].value * v[b].value.transpose()});
+            if (b >= a) {
+              list.push_back({message("(", v[a].name, " . ", v[b].name, ") 1"),
+                              v[a].value.dot(v[b].value) * matrix::Identity(3, 3)});
+            }
+          }
+        }
+        for (const motion& m : motions()) {
+          const Eigen::Matrix3d r = rotation_of(s, m);
+          list.push_back({"the rotation matrix of " + m.name, r});
+          for (const named_vector& x : v) {
+            list.push_back(
+                {message("the rotation matrix of ", m.name, " times the cross matrix of ", x.name),
+                 r * cross_matrix(x.value)});
+          }
+        }
+      }
+      return list;
+    };
+    for (const scope& at : scopes_) {
+      if (at.rows * at.columns != 3 && (at.rows != 3 || at.columns != 3)) {
+        continue;
+      }
+      const std::vector<const jacobian_sample*> used = some_wrong_samples();
+      std::vector<std::vector<term>> terms;
+      std::vector<numbers> factors;
+      for (const jacobian_sample* s : used) {
+        terms.push_back(terms_of(*s, at));
+        factors.push_back(numbers_of(*s));
+      }
+      if (terms.size() < 4) {
+        return;
+      }
+      if (getenv("DBG"))
+        fprintf(stderr, "scope %s used %zu terms %zu\n", at.name.c_str(), used.size(),
+                terms[0].size());
+      for (std::size_t t = 0; t < terms[0].size(); ++t) {
+        for (std::size_t f = 0; f < factors[0].values.size(); ++f) {
+          double factor = NAN;
+          bool is_constant = true;
+          for (std::size_t n = 0; n < terms.size() && is_constant; ++n) {
+            const matrix error = of(used[n]->written, at) - of(used[n]->exact, at);
+            const matrix value = terms[n][t].value * factors[n].values[f];
+            if (n == 0) {
+              factor = error.cwiseProduct(value).sum() / value.squaredNorm();
+            }
+            is_constant = largest_entry(error - factor * value) <= 4 * used[n]->allowed +
+                                                                       used[n]->little_error +
+                                                                       1e-9 * largest_entry(error);
+          }
+          if (is_constant && std::abs(factor) > 1e-9) {
+            accept(message("sign of one summand, or one missing or of wrong factor: a multiple of ",
+                           f > 0 ? factors[0].names[f] + " " : "", terms[0][t].name),
+                   at.name);
+            return;
+          }
+        }
+      }
+    }
+  }
+
+  /// Columns for stored numbers that follow another convention.
+  void try_charts() {
+    for (const jacobian_part& a : problem_.arguments) {
+      if (!a.is_motion() || samples_[0].raw.cols() == samples_[0].exact.cols()) {
+        continue;
+      }
+      const Eigen::Index q = a.type == kind::pose ? 3 : 0; // index of the quaternion
+      const bool is_w_first = problem_.order == quaternion_order::wxyz;
+      using reading = std::function<matrix(const jacobian_sample&, const matrix&)>;
+      const auto try_reading = [&](const std::string& name, const reading& read) {
+        if (std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+              matrix written = s.written;
+              written.middleCols(a.first, a.dimension) =
+                  read(s, s.raw.middleCols(a.state, a.state_size()));
+              return largest_entry(written - s.exact) <=
+                     s.allowed + s.little_error + 1e-9 * largest_entry(s.exact);
+            })) {
+          accept(name, message("all of d / d ", a.name));
+        }
+      };
+      const auto charted = [&](const jacobian_sample& s, const matrix& m, quaternion_order order,
+                               perturbation side) -> matrix {
+        return m * chart_derivative(a, s.state, side, order);
+      };
+      try_reading(is_w_first ? "w last for w first" : "w first for w last",
+                  [&](const jacobian_sample& s, const matrix& m) {
+                    return charted(s, m,
+                                   is_w_first ? quaternion_order::xyzw : quaternion_order::wxyz,
+                                   problem_.side);
+                  });
+      try_reading("conjugate rotation", [&](const jacobian_sample& s, matrix m) {
+        m.middleCols(q + (is_w_first ? 1 : 0), 3) *= -1;
+        return charted(s, m, problem_.order, problem_.side);
+      });
+      for (const bool is_first : {true, false}) {
+        for (const double factor : {1., 2., .5}) {
+          try_reading("missing chart factor L(q)/2: derivatives by tangent coordinates in columns "
+                      "of the quaternion",
+                      [&](const jacobian_sample&, const matrix& m) -> matrix {
+                        matrix out(m.rows(), a.dimension);
+                        if (q > 0) {
+                          out.leftCols(3) = m.leftCols(3);
+                        }
+                        out.rightCols(3) = factor * m.middleCols(q + (is_first ? 0 : 1), 3);
+                        return out;
+                      });
+        }
+      }
+      if (q > 0) {
+        try_reading("[q; t] for [t; q]", [&](const jacobian_sample& s, const matrix& m) -> matrix {
+          matrix moved(m.rows(), 7);
+          moved << m.rightCols(3), m.leftCols(4);
+          return charted(s, moved, problem_.order, problem_.side);
+        });
+      }
+    }
+  }
+
+  /// Numbers that a term may contain: states and components of vectors in other axes.
+  struct numbers {
+    std::vector<std::string> names;
+    std::vector<double> values;
+  };
+
+  [[nodiscard]] numbers numbers_of(const jacobian_sample& s) const {
+    numbers n;
+    n.names = {"1"};
+    n.values = {1};
+    const auto add = [&](const std::string& name, const Eigen::Ref<const vector>& v) {
+      for (Eigen::Index i = 0; i < v.size(); ++i) {
+        n.names.push_back(v.size() == 1 ? name : message(name, "[", i, "]"));
+        n.values.push_back(v[i]);
+      }
+    };
+    std::vector<jacobian_part> parts = problem_.arguments;
+    parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
+    for (const jacobian_part& a : parts) {
+      if (a.is_motion()) {
+        const quaternion<double> q = rotation_at(a, s.state);
+        add(a.name, Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
+      }
+      if (a.type == kind::pose) {
+        add(a.name + ".translation", s.state.segment<3>(a.state + 4));
+      } else if (!a.is_motion()) {
+        add(a.name, s.state.segment(a.state, a.dimension));
+      }
+    }
+    for (const jacobian_part& r : problem_.results) {
+      if (!r.is_motion() && n.values.size() < 30) {
+        add(r.name, s.truth.value.segment(r.state, r.dimension));
+      }
+    }
+    for (const motion& m : motions()) {
+      for (const jacobian_part& v : problem_.arguments) {
+        if (v.vector_state() >= 0 && !m.is_result && m.other == nullptr && n.values.size() < 34) {
+          const Eigen::Vector3d x = s.state.segment<3>(v.vector_state());
+          const Eigen::Matrix3d r = rotation_of(s, m);
+          add(message("(", m.name, " ", v.name, ")"), r * x);
+          add(message("(", m.name, "^-1 ", v.name, ")"), r.transpose() * x);
+          if (m.part->type == kind::pose && m.part != &v) {
+            const Eigen::Vector3d t = s.state.segment<3>(m.part->state + 4);
+            add(message("(", m.name, " ", v.name, " + t)"), r * x + t);
+            add(message("(", m.name, "^-1 (", v.name, " - t))"), r.transpose() * (x - t));
+          }
+        }
+      }
+    }
+    return n;
+  }
+
+  /// A single entry: another entry, or one wrong term that is a product of few numbers.
+  void try_entry() {
+    const Eigen::Index i = first_row_, k = first_;
+    const scope& at = scopes_.front();
+    const auto all = [&](const auto& predicate) {
+      return std::all_of(samples_.begin(), samples_.end(), predicate);
+    };
+    for (Eigen::Index r = 0; r < samples_[0].exact.rows(); ++r) {
+      for (Eigen::Index c = 0; c < samples_[0].exact.cols(); ++c) {
+        for (const double sign : {1., -1.}) {
+          if ((r != i || c != k) && all([&](const jacobian_sample& s) {
+                return fits(s, at, matrix::Constant(1, 1, sign * s.exact(r, c)));
+              })) {
+            accept(message("wrong index: ", sign < 0 ? "minus " : "", "entry (", r, ", ", c,
+                           ") of the matrix"),
+                   at.name);
+          }
+        }
+      }
+    }
+    // Written entries that are c a/b or c a/b^2 times the right ones; errors that are c m, c m/d or
+    // c m (a - b), where m is a product of at most three numbers.
+    const std::vector<const jacobian_sample*> used = some_wrong_samples();
+    std::vector<std::vector<double>> values;
+    std::vector<double> errors, tolerances;
+    numbers names;
+    for (const jacobian_sample* s : used) {
+      names = numbers_of(*s);
+      values.push_back(names.values);
+      errors.push_back(s->written(i, k) - s->exact(i, k));
+      tolerances.push_back(s->allowed + s->little_error +
+                           1e-9 * (std::abs(s->exact(i, k)) + std::abs(errors.back())));
+    }
+    if (values.size() < 4) {
+      return;
+    }
+    const std::size_t count = names.names.size();
+    std::vector<double> ratio(values.size());
+    // Of the errors, or of the entries as written.
+    const auto is_constant = [&](const auto& term, bool is_entry = false) {
+      const auto number = [&](std::size_t n) {
+        return is_entry ? used[n]->written(i, k) : errors[n];
+      };
+      const double first = term(values[0]);
+      const double factor = number(0) / first;
+      if (!std::isfinite(factor)) {
+        return false;
+      }
+      for (std::size_t n = 1; n < values.size(); ++n) {
+        if (!(std::abs(number(n) - factor * term(values[n])) <= 4 * tolerances[n])) {
+          return false;
+        }
+      }
+      return true;
+    };
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = 0; b < count; ++b) {
+        for (const bool is_square : {false, true}) {
+          std::size_t n = 0;
+          if (a != b && (a > 0 || b > 0) &&
+              is_constant(
+                  [&](const auto& v) {
+                    const double factor = v[a] / (is_square ? v[b] * v[b] : v[b]);
+                    return used[n++]->exact(i, k) * factor;
+                  },
+                  true)) {
+            accept(message("wrong factor: times ", names.names[a],
+                           b > 0 ? message("/", names.names[b], is_square ? "^2" : "") : ""),
+                   at.name);
+            return;
+          }
+        }
+      }
+    }
+    for (std::size_t a = 0; a < count; ++a) {
+      for (std::size_t b = a; b < count; ++b) {
+        const auto pair = [&](const std::vector<double>& v) { return v[a] * v[b]; };
+        for (std::size_t c = b; c < count; ++c) {
+          if (is_constant([&](const auto& v) { return pair(v) * v[c]; })) {
+            accept_term(names, {a, b, c}, {}, at.name);
+            return;
+          }
+        }
+        for (std::size_t c = 1; c < count; ++c) {
+          if (is_constant([&](const auto& v) { return pair(v) / v[c]; }) ||
+              is_constant([&](const auto& v) { return pair(v) / (v[c] * v[c]); })) {
+            accept_term(names, {a, b}, {c}, at.name);
+            return;
+          }
+        }
+      }
+    }
+    for (std::size_t c = 1; c < count; ++c) {
+      for (std::size_t d = c + 1; d < count; ++d) {
+        for (std::size_t a = 0; a < count; ++a) {
+          for (std::size_t b = a; b < count; ++b) {
+            for (const double sign : {-1., 1.}) {
+              if (is_constant([&](const auto& v) { return v[a] * v[b] * (v[c] + sign * v[d]); })) {
+                accept(sign < 0 ? message("wrong index in one summand: ", names.names[d], " for ",
+                                          names.names[c], " or the reverse")
+                                : message("sign of one summand and wrong index: ", names.names[c],
+                                          " + ", names.names[d]),
+                       at.name);
+                return;
+              }
+            }
+          }
+          for (std::size_t b = 1; b < count; ++b) {
+            if (is_constant([&](const auto& v) { return v[a] * (v[c] - v[d]) / v[b]; }) ||
+                is_constant([&](const auto& v) { return v[a] * (v[c] - v[d]) / (v[b] * v[b]); })) {
+              accept(message("wrong index in one summand: ", names.names[d], " for ",
+                             names.names[c], " or the reverse"),
+                     at.name);
+              return;
+            }
+          }
+        }
+      }
+    }
+  }
+
+  void accept_term(const numbers& n, const std::vector<std::size_t>& above,
+                   const std::vector<std::size_t>& below, const std::string& block) {
+    std::string text;
+    for (const std::size_t f : above) {
+      text += f == 0 ? "" : (text.empty() ? "" : " ") + n.names[f];
+    }
+    text = text.empty() ? "1" : text;
+    for (const std::size_t f : below) {
+      text += "/" + n.names[f];
+    }
+    accept(message("sign of one summand, or one missing or of wrong factor: a multiple of ", text),
+           block);
+  }
+};
+
+DUET_ABI_END
+} // namespace duet::detail

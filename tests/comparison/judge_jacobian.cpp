@@ -1,0 +1,395 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/comparison/judge_jacobian.hpp>
+#include <duet/comparison/poses.hpp>
+#include <duet/duet.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace test_comparison_judge_jacobian {
+namespace {
+
+using namespace duet;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using rotation_type = quaternion<double>;
+using pose_type = dual_quaternion<double>;
+
+Matrix3d hat(const Vector3d& v) {
+  return (Matrix3d() << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0).finished();
+}
+
+/// One or two slips of a handwritten Jacobian; 0 for a right one.
+struct slip {
+  int first = 0, second = 0;
+  bool operator==(int k) const { return k != 0 && (first == k || second == k); }
+};
+
+bool has(const jacobian_judgement& j, const std::string& name, const std::string& block) {
+  return std::any_of(j.slips.begin(), j.slips.end(), [&](const jacobian_slip& s) {
+    return s.name.find(name) != s.name.npos && s.block.find(block) != s.block.npos;
+  });
+}
+
+struct expected {
+  int slip;
+  const char* name;
+  const char* block;
+};
+
+/// \param judge  the judgement on the Jacobian with given slips
+template <class Judge>
+void check_slips(const Judge& judge, const std::vector<expected>& single,
+                 const std::vector<slip>& pairs) {
+  const jacobian_judgement right = judge(slip{});
+  CAPTURE(to_text(right));
+  CHECK(right);
+  CHECK(right.counts[0] == right.samples);
+  for (const expected& e : single) {
+    const jacobian_judgement j = judge(slip{e.slip});
+    CAPTURE(e.slip);
+    CAPTURE(to_text(j));
+    CHECK(j.outcome == verdict::disagrees);
+    CHECK(has(j, e.name, e.block));
+  }
+  for (const slip& s : pairs) {
+    const jacobian_judgement j = judge(s);
+    CAPTURE(s.first);
+    CAPTURE(s.second);
+    CAPTURE(to_text(j));
+    CHECK(j.outcome == verdict::disagrees);
+    CHECK(j.slips.empty());
+    CHECK(to_text(j).find("no single slip explains it") != std::string::npos);
+  }
+}
+
+} // namespace
+
+TEST_CASE("a pinhole camera: slips in blocks, and in factors of the chain") {
+  const auto f = [](const auto& q, const auto& t, const auto& p, const auto& a) {
+    const auto r = rotate(q, p);
+    using S = std::decay_t<decltype(a * (r[0] + t[0]))>;
+    const S x = r[0] + t[0], y = r[1] + t[1], z = r[2] + t[2];
+    return Eigen::Matrix<S, 2, 1>(a * x / z, a * y / z);
+  };
+  const auto inputs = sampler(rotations{}, vectors<3>{1}, vectors<3>{2}, real_numbers{1, 3})
+                          .named("q", "t", "p", "a")
+                          .where([](const auto& q, const auto& t, const auto& p, double) {
+                            return std::abs(rotate(q, p)[2] + t[2]) > .2;
+                          });
+  const auto judge = [&](slip s) {
+    return judge_jacobian(
+        "camera", f,
+        [s](const rotation_type& q, const Vector3d& t, const Vector3d& p, double a) {
+          const Matrix3d r = rotation_matrix(q);
+          const Vector3d x = r * p + t;
+          Eigen::Matrix<double, 2, 3> by_point;
+          by_point << a / x[2], 0, -a * x[0] / (x[2] * x[2]), 0, a / x[2],
+              -a * x[1] / (x[2] * x[2]);
+          by_point(0, 2) *= s == 1 ? -1 : 1;
+          by_point(1, 2) *= s == 2 ? x[2] : 1;
+          by_point(0, 2) = s == 3 ? by_point(1, 2) : by_point(0, 2);
+          const Matrix3d by_rotation = s == 4    ? Matrix3d(r * hat(p))
+                                       : s == 5  ? Matrix3d(-hat(p) * r)
+                                       : s == 6  ? Matrix3d(-hat(r * p))
+                                       : s == 7  ? Matrix3d(-hat(x))
+                                       : s == 8  ? Matrix3d(-r.transpose() * hat(p))
+                                       : s == 9  ? Matrix3d(-r * hat(p + t))
+                                       : s == 10 ? Matrix3d(-hat(p))
+                                                 : Matrix3d(-r * hat(p));
+          const Matrix3d by_p = s == 11 ? Matrix3d(r.transpose()) : r,
+                         by_t = s == 12 ? r : Matrix3d(Matrix3d::Identity());
+          Eigen::Matrix<double, 2, 10> j;
+          j << by_point * by_rotation * (s == 13 ? .5 : 1), by_point * by_t, by_point * by_p,
+              Vector2d(x[0] / x[2], x[1] / x[2]) * (s == 14 ? a : 1);
+          if (s == 15) {
+            j.leftCols<3>().swap(j.middleCols<3>(3));
+          }
+          return j;
+        },
+        inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "sign", "entry (0, 2) of d f / d (q p + t)"},
+               {2, "wrong factor: times (q p + t)[2]", "entry (1, 2) of d f / d (q p + t)"},
+               {3, "wrong index: entry (1, 2)", "entry (0, 2) of d f / d (q p + t)"},
+               {4, "sign", "d f / d q"},
+               {5, "offset in other axes: p in those of q", "d (q p) / d q"},
+               {6, "left perturbation for right", "d f / d q"},
+               {7, "moment arm about another point: off by t, and the other side", "d f / d q"},
+               {8, "conjugate rotation of q", "d (q p) / d q"},
+               {9, "moment arm about another point: off by t", "d f / d q"},
+               {10, "evaluated with q = identity", "d (q p) / d q"},
+               {11, "Ad(q)^-2", "d f / d p"},
+               {12, "multiplied by Ad(q) from the right", "d f / d t"},
+               {13, "half angle for full angle: factor 1/2", "d f / d q"},
+               {14, "scaled by a", "d f / d a"},
+               {15, "permuted or shifted: columns 3, 4, 5, 0, 1, 2", "d f"}},
+              {{1, 4}, {6, 11}, {13, 14}});
+}
+
+TEST_CASE("rotation between two rotations: branches, sheets and Jacobians of exp") {
+  const auto f = [](const auto& a, const auto& b) { return rotation_vector(conj(a) * b); };
+  const auto inputs = sampler(rotations{3.1}, rotations{3.1})
+                          .named("a", "b")
+                          .where([](const auto& a, const auto& b) {
+                            return rotation_vector(conj(a) * b).norm() < 3.1;
+                          });
+  const auto judge = [&](slip s) {
+    return judge_jacobian("difference", f,
+                          [s](const rotation_type& a, const rotation_type& b) {
+                            const Vector3d e = rotation_vector(conj(a) * b);
+                            const Matrix3d one = Matrix3d::Identity(),
+                                           right = right_jacobian_inverse(e),
+                                           left = left_jacobian_inverse(e);
+                            const double angle = e.norm();
+                            Eigen::Matrix<double, 3, 6> j;
+                            j << (s == 1   ? Matrix3d(-one)
+                                  : s == 2 ? Matrix3d(left)
+                                  : s == 3 ? Matrix3d(-left * rotation_matrix(a).transpose())
+                                           : Matrix3d(-left)),
+                                (s == 4                            ? left
+                                 : s == 5                          ? Matrix3d(right.inverse())
+                                 : s == 6 && angle < 1e-3          ? Matrix3d(one - .5 * hat(e))
+                                 : s == 7                          ? Matrix3d(one + .5 * hat(e))
+                                 : s == 8 && (conj(a) * b).w() < 0 ? Matrix3d(-right)
+                                 : s == 9 && angle > 3             ? Matrix3d(right + .1 * one)
+                                 : s == 10                         ? Matrix3d(one)
+                                                                   : right);
+                            return j;
+                          },
+                          inputs, {.samples = 60});
+  };
+  check_slips(judge,
+              {{1, "right only at the identity", "d f / d a"},
+               {2, "sign", "d f / d a"},
+               {3, "left perturbation for right", "d f / d a"},
+               {4, "transposed", "d f / d b"},
+               {5, "Jacobian of the inverse", "d f / d b"},
+               {6, "branch of small values: angle of a^-1 b", "d f / d b"},
+               {7, "right only at the identity: angle of a^-1 b", "d f / d b"},
+               {8, "sheet of the double cover", "d f / d b"},
+               {9, "branch beside a half turn: angle of a^-1 b", "d f / d b"},
+               {10, "right only at the identity", "d f / d b"}},
+              {{2, 4}, {1, 8}});
+}
+
+TEST_CASE("pose between two poses: blocks of adjoints") {
+  const auto f = [](const auto& a, const auto& b) { return conj(a) * b; };
+  const auto inputs = sampler(poses{}, poses{}).named("A", "B");
+  const auto judge = [&](slip s) {
+    return judge_jacobian(
+        "relative pose", f,
+        [s](const pose_type& a, const pose_type& b) {
+          MatrixXd by_a = -Ad(pose_type(conj(b) * a));
+          const MatrixXd exact = by_a;
+          if (s == 1) {
+            by_a = exact.inverse();
+          } else if (s == 2) {
+            by_a.topRightCorner<3, 3>().setZero();
+          } else if (s == 3) {
+            by_a.topRightCorner<3, 3>() *= -1;
+          } else if (s == 4) {
+            by_a << exact.bottomRightCorner<3, 3>(), exact.bottomLeftCorner<3, 3>(),
+                exact.topRightCorner<3, 3>(), exact.topLeftCorner<3, 3>();
+          } else if (s == 5) {
+            by_a = -Ad(a);
+          } else if (s == 6) {
+            by_a.row(4) *= -1;
+          }
+          return std::tuple(by_a, MatrixXd(MatrixXd::Identity(6, 6) * (s == 7 ? -1 : 1)));
+        },
+        inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "Jacobian of the inverse", "d f / d A"},
+               {2, "missing: zero", "d f.translation / d A.rotation"},
+               {3, "sign", "d f.translation / d A.rotation"},
+               {4, "rows and columns [omega; v] for [v; omega]", "d f / d A"},
+               {5, "evaluated with B = identity", "d f / d A"},
+               {6, "sign", "row 4 of d f / d A"},
+               {7, "sign", "d f / d B"}},
+              {{3, 7}});
+}
+
+TEST_CASE("integrated rotation: time steps") {
+  const auto f = [](const auto& q, const auto& w, const auto& h) {
+    using S = std::decay_t<decltype(w[0] * h)>;
+    return q * from_rotation_vector(vector3<S>(w[0] * h, w[1] * h, w[2] * h));
+  };
+  const auto inputs = sampler(rotations{}, vectors<3>{2}, real_numbers{.1, 1}).named("q", "w", "h");
+  const auto judge = [&](slip s) {
+    return judge_jacobian("integration", f,
+                          [s](const rotation_type& q, const Vector3d& w, double h) {
+                            const Vector3d r = w * h;
+                            const Matrix3d moved = rotation_matrix(from_rotation_vector(r)),
+                                           right = right_jacobian(r);
+                            Eigen::Matrix<double, 3, 7> j;
+                            j << (s == 1 ? moved : Matrix3d(moved.transpose())),
+                                (s == 2   ? right
+                                 : s == 3 ? Matrix3d(left_jacobian(r) * h)
+                                 : s == 4 ? Matrix3d(Matrix3d::Identity() * h)
+                                 : s == 5 ? Matrix3d(right_jacobian(w) * h)
+                                          : Matrix3d(right * h)),
+                                (s == 6 ? Vector3d(rotation_matrix(q) * w) : w);
+                            return j;
+                          },
+                          inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "transposed", "d f / d q"},
+               {2, "scaled by h^-1", "d f / d w"},
+               {3, "transposed", "d f / d w"},
+               {4, "evaluated with 0 for w", "d f / d w"},
+               {5, "evaluated with 1 for h, then multiplied by it", "d f / d w"},
+               {6, "spatial for body axes", "d f / d h"}},
+              {{3, 6}});
+}
+
+TEST_CASE("derivatives by stored numbers of rotations and poses, in both orders and sides") {
+  const auto f = [](const auto& a, const auto& p) { return transform_point(a, p); };
+  const auto inputs = sampler(poses{}, vectors<3>{1}).named("A", "p");
+  for (const bool is_usual : {true, false}) {
+    const auto order = is_usual ? quaternion_order::wxyz : quaternion_order::xyzw;
+    const auto side = is_usual ? perturbation::right : perturbation::left;
+    const auto judge = [&](slip s) {
+      return judge_jacobian(
+          "moved point", f,
+          [&](const pose_type& a, const Vector3d& p) {
+            const rotation_type q = rotation(a);
+            const Vector3d v(q.x(), q.y(), q.z());
+            const double sign = s == 2 ? -1 : 1;
+            const Vector3d by_w = 2 * q.w() * p + 2 * (s == 3 ? -1 : 1) * v.cross(p);
+            Matrix3d by_v = -2 * p * v.transpose() + 2 * v.dot(p) * Matrix3d::Identity() +
+                            2 * v * p.transpose() - 2 * sign * q.w() * hat(p);
+            by_v(0, 1) *= s == 1 ? -1 : 1;
+            Eigen::Matrix<double, 3, 10> j;
+            if ((order == quaternion_order::wxyz) != (s == 4)) {
+              j << Matrix3d::Identity(), by_w, by_v, rotation_matrix(q);
+            } else {
+              j << Matrix3d::Identity(), by_v, by_w, rotation_matrix(q);
+            }
+            if (s == 5) {
+              j.middleCols<4>(3) << (side == perturbation::right
+                                         ? Matrix3d(-rotation_matrix(q) * hat(p))
+                                         : Matrix3d(-hat(rotation_matrix(q) * p + translation(a)))),
+                  Vector3d::Zero();
+              j.leftCols<3>() =
+                  side == perturbation::right ? rotation_matrix(q) : Matrix3d(Matrix3d::Identity());
+            }
+            return j;
+          },
+          inputs, {.samples = 20, .side = side, .order = order});
+    };
+    check_slips(judge,
+                {{1, "sign", "entry (0, 2) of d f / d A, by stored numbers"},
+                 {2, "sign of A[0]", "d f / d A[1..3], by stored numbers"},
+                 {3, "the vector part of A x p", "column 0 of d f / d A, by stored numbers"},
+                 {4, order == quaternion_order::wxyz ? "w last for w first" : "w first for w last",
+                  "d / d A"},
+                 {5, "missing chart factor", "d / d A"}},
+                {{3, 4}});
+  }
+}
+
+TEST_CASE("round-off of code over double is told from slips, also beside one") {
+  const auto f = [](const auto& r) { return from_rotation_vector(r); };
+  const auto inputs = sampler(vectors<3>{3}).named("r");
+  const auto naive = [](double sign) {
+    return [sign](const Vector3d& r) {
+      const double t = r.norm();
+      return Matrix3d(Matrix3d::Identity() - sign * (1 - std::cos(t)) / (t * t) * hat(r) +
+                      (t - std::sin(t)) / (t * t * t) * hat(r) * hat(r));
+    };
+  };
+  const auto without_zero = inputs.without({0, 0, 0});
+  const auto j = judge_jacobian("naive", f, naive(1), without_zero);
+  CHECK(j.outcome == verdict::loses_precision);
+  CHECK(j.counts[4] == 0);
+  CHECK(j.slips.empty());
+  CHECK(judge_jacobian("at 0", f, naive(1), inputs).outcome == verdict::not_finite);
+  CHECK(has(judge_jacobian("left", f, naive(-1), without_zero), "transposed", "d f / d r"));
+  const auto exact = [](const Vector3d& r) { return Matrix3d(right_jacobian(r)); };
+  CHECK(judge_jacobian("exact", f, exact, inputs));
+  const auto left = [](const Vector3d& r) { return Matrix3d(left_jacobian(r)); };
+  CHECK(judge_jacobian("left", f, left, inputs, {.side = perturbation::left}));
+}
+
+TEST_CASE("functions over double alone are differentiated by differences") {
+  const auto f = [](const Vector3d& r) -> rotation_type { return from_rotation_vector(r); };
+  const auto inputs = sampler(vectors<3>{3}).named("r");
+  const auto exact = [](const Vector3d& r) { return Matrix3d(right_jacobian(r)); };
+  CHECK(judge_jacobian("exact", f, exact, inputs));
+  const auto left = [](const Vector3d& r) { return Matrix3d(left_jacobian(r)); };
+  CHECK(has(judge_jacobian("left", f, left, inputs), "transposed", "d f / d r"));
+  // Noise of 1e-7 hides a relative error of 1e-7.
+  const auto rough = [](double x) { return std::floor(std::sin(x) * 1e7) / 1e7; };
+  const auto slope = [](double x) { return std::array{std::cos(x) * (1 + 1e-7)}; };
+  const auto j = judge_jacobian("rough", rough, slope, sampler(real_numbers{-1, 1}));
+  CHECK(j.outcome == verdict::inconclusive);
+  CHECK(to_text(j).find("inconclusive at") != std::string::npos);
+  const auto wrong = [](double x) { return std::array{-std::cos(x)}; };
+  CHECK(judge_jacobian("rough", rough, wrong, sampler(real_numbers{-1, 1})).outcome ==
+        verdict::disagrees);
+}
+
+TEST_CASE("what a Jacobian returns: matrices side by side, numbers row by row, wrong sizes") {
+  const auto f = [](const auto& q, const auto& p) { return rotate(q, p); };
+  const auto inputs = sampler(rotations{}, vectors<3>{1}).named("q", "p");
+  const auto numbers = [](bool is_row_major) {
+    return [is_row_major](const rotation_type& q, const Vector3d& p) {
+      Eigen::Matrix<double, 3, 6> m;
+      m << -rotation_matrix(q) * hat(p), rotation_matrix(q);
+      std::array<double, 18> a{};
+      for (std::size_t i = 0; i < 18; ++i) {
+        a[i] = is_row_major ? m(Eigen::Index(i / 6), Eigen::Index(i % 6)) : m(Eigen::Index(i));
+      }
+      return a;
+    };
+  };
+  CHECK(judge_jacobian("numbers", f, numbers(true), inputs));
+  CHECK(has(judge_jacobian("numbers", f, numbers(false), inputs),
+            "column-major data in a row-major array", "all of d f"));
+  const auto square = [](const rotation_type&, const Vector3d&) { return Matrix3d(); };
+  CHECK_THROWS_WITH_AS((void)judge_jacobian("size", f, square, inputs),
+                       "duet: judge_jacobian: the Jacobian is 3 x 3 (expected 3 x 6, or 7 columns "
+                       "for stored numbers)",
+                       invalid_input);
+  int calls = 0;
+  const auto report = [&](const progress&) { return ++calls < 3; };
+  CHECK_THROWS_AS((void)judge_jacobian("cancelled", f, numbers(true), inputs, {.report = report}),
+                  cancelled);
+  CHECK(calls == 3);
+}
+
+TEST_CASE("a judgement as text") {
+  const auto f = [](const auto& q, const auto& p) { return rotate(q, p); };
+  const auto wrong = [](const rotation_type& q, const Vector3d& p) {
+    return std::tuple(Matrix3d(-rotation_matrix(q) * hat(p)),
+                      Matrix3d(rotation_matrix(q).transpose()));
+  };
+  const auto j =
+      judge_jacobian("point", f, wrong, sampler(rotations{}, vectors<3>{1}).named("q", "p"));
+  const std::string text = to_text(j);
+  CHECK(text.find("point: disagrees at ") == 0);
+  CHECK(text.find("  slip: transposed (column-major data in a row-major array), in d f / d p\n") !=
+        std::string::npos);
+  CHECK(text.find("  simplest input: q = rotation by (1, 0, 0), p = (0, 0, 0)\n"
+                  "    entry (1, 5): -0.8414709848, handwritten 0.8414709848\n"
+                  "    derivative:\n") != std::string::npos);
+  CHECK(j.simplest_input == "q = rotation by (1, 0, 0), p = (0, 0, 0)");
+  CHECK(j.row == 1);
+  CHECK(j.column == 5);
+}
+
+} // namespace test_comparison_judge_jacobian
