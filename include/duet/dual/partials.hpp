@@ -100,6 +100,14 @@ public:
     return result;
   }
 
+  /// result[i] = f(i)
+  template <class F>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr array_partials generated(F&& f) {
+    array_partials result;
+    unrolled<N>([&](int i) DUET_INLINE_LAMBDA { result.set(i, f(i)); });
+    return result;
+  }
+
   /// result[i] = f(rows[i]...)
   template <class F, class... Rows>
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr array_partials map(F&& f, const Rows&... rows) {
@@ -164,16 +172,22 @@ public:
   }
   [[nodiscard]] const packet& packet_at(int p) const { return packets_[p]; }
 
-  /// Partials of the i-th variable: 1 at i, else 0. Whole packets are stored, because a zero fill
-  /// followed by a scalar store stalls the load of the packet.
+  /// Partials of the i-th variable: 1 at i, else 0.
   [[nodiscard]] DUET_ALWAYS_INLINE static constexpr packed_partials unit(int i) {
+    return generated([i](int k) DUET_INLINE_LAMBDA { return T(k == i); });
+  }
+
+  /// result[i] = f(i). Whole packets are stored, because a zero fill followed by a scalar store
+  /// stalls the load of the packet.
+  template <class F>
+  [[nodiscard]] DUET_ALWAYS_INLINE static constexpr packed_partials generated(F&& f) {
     packed_partials result(uninitialised{});
     if (std::is_constant_evaluated()) {
-      result.fill_elements([i](int k) DUET_INLINE_LAMBDA { return T(k == i); });
+      result.fill_elements(f);
     } else {
       unrolled<count>([&](int p) DUET_INLINE_LAMBDA {
         result.packets_[p] = [&]<int... L>(std::integer_sequence<int, L...>) DUET_INLINE_LAMBDA {
-          return packet{T(p * width + L == i)...};
+          return packet{(p * width + L < N ? f(p * width + L) : T(0))...};
         }
         (std::make_integer_sequence<int, width>{});
       });
