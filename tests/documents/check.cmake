@@ -6,10 +6,11 @@
 #
 # A program that begins with duet/duet.hpp, as all do that can, is given it precompiled: nothing else
 # is, so that it must still include what else it needs. One that includes a header of duet/io or duet/robotics is
-# linked to the libraries; others must do without.
+# linked to the libraries, one that includes duet/interop/ceres to Ceres, without which it is left out; others must do
+# without.
 #
 # cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header> -Dlibraries=<files and flags>
-#   -Dfolder=<for programs> -P check.cmake
+#   -Dceres=<flags> -Dfolder=<for programs> -P check.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -52,6 +53,13 @@ while(TRUE)
   endif()
   if(code MATCHES "#include <duet/(io|robotics)[/.]")
     set(link ${libraries})
+  endif()
+  if(code MATCHES "#include <duet/interop/ceres")
+    if(NOT ceres)
+      message("program ${count} is left out: there is no Ceres")
+      continue()
+    endif()
+    set(link ${ceres})
   endif()
   execute_process(
     COMMAND ${compile} -Wall -Wextra -Werror ${include} ${program}.cpp -o ${program} ${link}

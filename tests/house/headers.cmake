@@ -12,6 +12,7 @@ file(MAKE_DIRECTORY ${folder})
 
 # One module for each header of duet, and one for all that they include from elsewhere.
 file(GLOB_RECURSE headers ${include}/duet/*.hpp ${include}/../src/*.hpp)
+list(FILTER headers EXCLUDE REGEX "/interop/ceres") # which need Ceres
 set(modules "")
 set(outside "")
 foreach(header IN LISTS headers)

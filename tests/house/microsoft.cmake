@@ -21,6 +21,7 @@ file(CREATE_LINK /usr/include/eigen3/Eigen ${folder}/Eigen SYMBOLIC)
 file(CREATE_LINK /usr/include/eigen3/unsupported ${folder}/unsupported SYMBOLIC)
 
 file(GLOB_RECURSE headers RELATIVE ${include} ${include}/duet/*.hpp)
+list(FILTER headers EXCLUDE REGEX "/interop/ceres") # which need Ceres
 list(TRANSFORM headers REPLACE "(.+)" "#include <\\1>")
 list(JOIN headers "\n" lines)
 file(WRITE ${folder}/everything.cpp "${lines}\n")

@@ -22,7 +22,7 @@ LAYERS = {
     "core": "", "dual": "core", "derivative": "dual Eigen", "quaternion": "derivative",
     "dual_quaternion": "quaternion boost/math", "comparison": "dual_quaternion", "expression": "dual_quaternion boost/mp11",
     "spline": "dual_quaternion", "kinematics": "dual_quaternion", "motion": "kinematics", "io": "kinematics spline expat.h assimp",
-    "robotics": "io motion", "interop": "comparison expression spline robotics boost"}
+    "robotics": "io motion", "interop": "comparison expression spline robotics boost ceres"}
 ALLOWED = {}
 for layer, used in LAYERS.items():
     ALLOWED[layer] = {layer}.union(*(ALLOWED.get(name, {name}) for name in used.split()))
@@ -92,7 +92,7 @@ def check_layer(header, layer):
     problem_if(layer not in LAYERS, f"{header} is in no layer")
     for include in includes[header] if layer in LAYERS else ():
         duet = re.match(r"<duet/([^/]*)/", include)
-        library = re.match(r"<((Eigen|boost|assimp)[/a-z0-9_]*|expat\.h(?=>$))", include)
+        library = re.match(r"<((Eigen|boost|assimp|ceres)[/a-z0-9_]*|expat\.h(?=>$))", include)
         if duet and duet[1] == "interop" != layer:
             problems.append(f"{header} includes {include}, but interop/ is for users alone")
         elif duet:
@@ -107,7 +107,7 @@ def check_layer(header, layer):
                        f"{header} includes {include}, which there is not in src/")
         else:
             problem_if(not STD_INCLUDE.fullmatch(include),
-                       f"{header} includes {include}, which is neither <duet/…>, nor Eigen, Boost, expat, Assimp or std")
+                       f"{header} includes {include}, which is neither <duet/…>, nor Eigen, Boost, Ceres, expat, Assimp or std")
 
 
 def reached_from(headers):
