@@ -23,8 +23,9 @@ namespace duet {
 /// Derivatives of the value and the rates of a curve with respect to the 2k − 2 knots that act on a
 /// span, control points fixed.
 ///
-/// Knots keep their order: the first of several equal knots moves down, the last up. A knot of
-/// multiplicity k − 1 or more, as at every clamped end, has no derivative: its columns are NaN.
+/// Knots keep their order: the first of several equal knots moves down, the last up. For order 3
+/// and more, a knot of multiplicity k − 1 or more, as at every clamped end, has no derivative: its
+/// columns are NaN.
 template <class T, int Order>
 struct knot_jacobian_result {
   static constexpr int dimension = manifold<quaternion<T>>::dimension;
