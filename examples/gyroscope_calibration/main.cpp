@@ -69,7 +69,7 @@ std::string picture_script(double seconds, double error, double bound) {
                 seconds, 1e6 * bound, 1e6 * std::abs(error));
   return "set multiplot layout 1,2 title " + example::title(text) +
          "\nset lmargin at screen .09\nset rmargin at screen .47\nset xlabel 'time / s'\n"
-         "set ylabel 'angular velocity about z of the sensor / (rad/s)'\n" +
+         "set ylabel 'angular velocity about z / (rad/s)'\n" +
          example::plot_command(
              "readings.csv",
              {{"1:4", "blue", "calibrated", 180, above_right, "lines lw 2"},
