@@ -32,202 +32,6 @@
 #include <vector>
 
 namespace duet::detail {
-DUET_ABI_BEGIN
-
-rank_revealing_svd::rank_revealing_svd(const Eigen::MatrixXd& a)
-    : u_(Eigen::MatrixXd::Identity(a.rows(), a.rows())),
-      v_(Eigen::MatrixXd::Identity(a.cols(), a.cols())) {
-  if (a.size() > 0) { // Eigen has no singular values of empty matrices
-    const Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
-        a, Eigen::ComputeFullU | Eigen::ComputeFullV);
-    u_ = svd.matrixU();
-    v_ = svd.matrixV();
-    s_ = svd.singularValues();
-  }
-  while (rank_ < s_.size() && s_[rank_] > rank_tolerance * s_[0]) {
-    ++rank_;
-  }
-}
-
-Eigen::VectorXd rank_revealing_svd::solve(const Eigen::VectorXd& b, Eigen::Index rank) const {
-  const Eigen::VectorXd y = u_.leftCols(rank).transpose() * b;
-  return v_.leftCols(rank) * y.cwiseQuotient(s_.head(rank));
-}
-
-Eigen::VectorXd rank_revealing_svd::damped_solve(const Eigen::VectorXd& b, double lambda) const {
-  const Eigen::VectorXd y = u_.leftCols(s_.size()).transpose() * b;
-  const auto damped = [&](double sigma, double x) { return sigma * x / (sigma * sigma + lambda); };
-  return v_.leftCols(s_.size()) * s_.binaryExpr(y, damped);
-}
-
-periodic_coordinates::periodic_coordinates(const closed_chain_mechanism& of)
-    : angles(std::size_t(of.size()), false) {
-  int i = 0;
-  for (const tree_joint& each : of.tree().joints()) {
-    if (each.mimic) {
-      continue;
-    }
-    const joint_kind kind = each.motion.kind;
-    if (kind == joint_kind::revolute || kind == joint_kind::continuous) {
-      angles[std::size_t(i)] = true;
-    } else if (kind == joint_kind::planar) {
-      angles[std::size_t(i) + 2] = true;
-    } else if (kind == joint_kind::spherical || kind == joint_kind::floating) {
-      vectors.push_back(kind == joint_kind::floating ? i + 3 : i);
-    }
-    i += each.motion.coordinates();
-  }
-  for (const tree_node& node : of.tree().table().nodes) {
-    const coordinate_source& source = of.tree().table().sources[std::size_t(node.coordinate)];
-    if (!node.is_ball &&
-        (node.step.is_translational || source.multiplier != std::round(source.multiplier))) {
-      angles[std::size_t(source.own)] = false; // links that mimic the coordinate would move
-    }
-  }
-}
-
-std::vector<int> all_but(int n, const std::vector<int>& these) {
-  std::vector<int> result;
-  for (const int i : these) {
-    require(0 <= i && i < n, "duet: closed_chain_mechanism: coordinate ", i,
-            " does not exist, the mechanism has ", n);
-  }
-  for (int i = 0; i < n; ++i) {
-    if (std::find(these.begin(), these.end(), i) == these.end()) {
-      result.push_back(i);
-    }
-  }
-  return result;
-}
-
-Eigen::MatrixXd unit_jacobian(const closed_chain_mechanism& of, const Eigen::VectorXd& q) {
-  return of.constraint_jacobian(q) * of.units().asDiagonal();
-}
-
-rank_revealing_svd linearised(const closed_chain_mechanism& of, const Eigen::VectorXd& q) {
-  return rank_revealing_svd(unit_jacobian(of, q));
-}
-
-Eigen::MatrixXd columns(const Eigen::MatrixXd& of, const std::vector<int>& these) {
-  Eigen::MatrixXd result(of.rows(), Eigen::Index(these.size()));
-  for (std::size_t i = 0; i < these.size(); ++i) {
-    result.col(Eigen::Index(i)) = of.col(these[i]);
-  }
-  return result;
-}
-
-loop_closure_solver::loop_closure_solver(const closed_chain_mechanism& of,
-                                         const Eigen::VectorXd& guess, const std::vector<int>& free,
-                                         int max_steps)
-    : of_(of), free_(free), q_(guess), f_(of.residuals(guess)), norm_(f_.norm()) {
-  for (int i = 0; i < max_steps && norm_ > 0 && step(); ++i) {
-  }
-}
-
-bool loop_closure_solver::has_closed() const {
-  return norm_ <= 1e-12 * std::max(1.0, q_.cwiseQuotient(of_.units()).norm());
-}
-
-bool loop_closure_solver::step() {
-  const Eigen::MatrixXd j = columns(unit_jacobian(of_, q_), free_);
-  const rank_revealing_svd svd(j);
-  for (int i = 0; i < 25; ++i) {
-    Eigen::VectorXd dx = -svd.damped_solve(f_, damping_ * norm_);
-    const double length = dx.norm();
-    if (!(length > 1e-16)) {
-      return false;
-    }
-    dx *= std::min(1.0, max_norm / length);
-    Eigen::VectorXd next = q_;
-    next(free_) += dx.cwiseProduct(of_.units()(free_));
-    const Eigen::VectorXd f = of_.residuals(next);
-    const double norm = f.norm();
-    if (norm < norm_) {
-      const double foreseen = norm_ * norm_ - (f_ + j * dx).squaredNorm();
-      const double gain = (norm_ * norm_ - norm * norm) / foreseen;
-      damping_ = std::max(1e-8, damping_ * (gain > .75 ? .1 : gain < .25 ? 4 : 1));
-      const bool goes_on = norm < (1 - 1e-5) * norm_;
-      q_ = next;
-      f_ = f;
-      norm_ = norm;
-      return goes_on;
-    }
-    if (norm_ < 1e-14) {
-      return false; // round-off
-    }
-    damping_ *= 10;
-  }
-  return false;
-}
-
-std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
-                                             const Eigen::VectorXd& q, const Eigen::MatrixXd& w,
-                                             const Eigen::MatrixXd& columns) {
-  const Eigen::Index n = columns.cols();
-  std::vector<Eigen::MatrixXd> result(std::size_t(w.cols()), Eigen::MatrixXd(n, n));
-  const auto second = [&](const Eigen::VectorXd& direction) {
-    Eigen::Matrix<along_line, Eigen::Dynamic, 1> x(q.size());
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      x[i] = q[i] + of.units()[i] * direction[i] * along_line::variable(0);
-    }
-    const auto f = of.residuals(x);
-    Eigen::VectorXd all(f.size());
-    for (Eigen::Index i = 0; i < f.size(); ++i) {
-      all[i] = f[i].derivative(2);
-    }
-    return Eigen::VectorXd(w.transpose() * all);
-  };
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = 0; i <= j; ++i) {
-      const Eigen::VectorXd along =
-          i == j ? second(columns.col(j)) : second(columns.col(i) + columns.col(j));
-      for (std::size_t k = 0; k < result.size(); ++k) {
-        result[k](i, j) = along[Eigen::Index(k)];
-      }
-    }
-  }
-  for (Eigen::MatrixXd& form : result) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      for (Eigen::Index i = 0; i < j; ++i) {
-        form(j, i) = form(i, j) = (form(i, j) - form(i, i) - form(j, j)) / 2;
-      }
-    }
-  }
-  return result;
-}
-
-Eigen::VectorXd random_direction(random_source& random, Eigen::Index n) {
-  Eigen::VectorXd result(n);
-  do {
-    for (double& x : result) {
-      x = random.normal();
-    }
-  } while (result.norm() < 1e-3);
-  return result.normalized();
-}
-
-std::optional<Eigen::VectorXd> common_zero(const std::vector<Eigen::MatrixXd>& forms,
-                                           Eigen::VectorXd v, double rounding) {
-  const auto count = Eigen::Index(forms.size());
-  Eigen::VectorXd f(count + 1);
-  Eigen::MatrixXd j(count + 1, v.size());
-  for (int i = 0; i < 40; ++i) {
-    for (Eigen::Index k = 0; k < count; ++k) {
-      j.row(k) = 2 * (forms[std::size_t(k)] * v).transpose();
-    }
-    j.row(count) = v.transpose();
-    f << j.topRows(count) * v / 2, (v.squaredNorm() - 1) / 2;
-    if (f.norm() < rounding) {
-      return v;
-    }
-    const rank_revealing_svd svd(j);
-    v -= svd.solve(f, svd.rank());
-  }
-  return std::nullopt;
-}
-
-DUET_ABI_END
-
 namespace {
 
 class assembly_search {
@@ -323,7 +127,7 @@ private:
     known_poses_.push_back(poses);
     assembly_configuration configuration{q, 0, 1, true};
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q), free_);
-    const Eigen::VectorXd s = rank_revealing_svd(j).singular_values();
+    const Eigen::VectorXd s = rank_revealing_svd(j).s;
     configuration.smallest_singular_value =
         s.size() == 0 || s.size() < j.cols() ? 0 : s[s.size() - 1];
     for (int i = 0; i < of_.size(); ++i) {
@@ -394,7 +198,7 @@ public:
       }
     }
     const Eigen::VectorXd spans =
-        rank_revealing_svd(kernel.transpose().lazyProduct(displacements)).singular_values();
+        rank_revealing_svd(kernel.transpose().lazyProduct(displacements)).s;
     return int((spans.array() > .1).count());
   }
 
@@ -542,9 +346,9 @@ mobility_result mobility(const closed_chain_mechanism& mechanism, const Eigen::V
   const int n = mechanism.size();
   mobility_result result;
   result.kutzbach = n - mechanism.equation_count();
-  result.instantaneous = n - int(at_start.rank());
+  result.instantaneous = n - int(at_start.rank);
   result.mobility = result.local = result.instantaneous;
-  if (at_start.rank() == mechanism.equation_count()) {
+  if (at_start.rank == mechanism.equation_count()) {
     return result;
   }
   if (result.instantaneous == 0) {
@@ -564,7 +368,7 @@ mobility_result mobility(const closed_chain_mechanism& mechanism, const Eigen::V
       const int dimension = around.dimension(*other, at_other.kernel());
       if (dimension > result.mobility) {
         result.mobility = dimension;
-        result.local = n - int(at_other.rank());
+        result.local = n - int(at_other.rank);
       }
     }
   }

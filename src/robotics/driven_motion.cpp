@@ -174,13 +174,13 @@ private:
                                                  const Eigen::VectorXd& before) const {
     curve_point result{x, {}, matrix(x), {}, 0};
     const rank_revealing_svd svd(result.matrix);
-    if (svd.rank() != x.size() - 1) {
+    if (svd.rank != x.size() - 1) {
       return std::nullopt;
     }
     result.tangent = svd.kernel();
     result.tangent *= result.tangent.dot(before) < 0 ? -1 : 1;
     result.image = svd.image();
-    result.min_singular_value = svd.rank() > 0 ? svd.singular_values()[svd.rank() - 1] : 1;
+    result.min_singular_value = svd.rank > 0 ? svd.s[svd.rank - 1] : 1;
     return result;
   }
 
@@ -198,7 +198,7 @@ private:
     for (int i = 0; i < 12; ++i) {
       const Eigen::VectorXd f = residuals(x);
       const rank_revealing_svd svd(matrix(x).leftCols(n));
-      if (svd.rank() < x.size() - 1) {
+      if (svd.rank < x.size() - 1) {
         return false;
       }
       const Eigen::VectorXd dx = -svd.solve(f, x.size() - 1);
@@ -298,7 +298,7 @@ private:
     const Eigen::MatrixXd& u = from.image;
     const Eigen::Index n = from.x.size(), r = u.cols();
     const rank_revealing_svd reduced(Eigen::MatrixXd(u.transpose().lazyProduct(from.matrix)));
-    const Eigen::VectorXd& s = reduced.singular_values();
+    const Eigen::VectorXd& s = reduced.s;
     Eigen::Index lost = 0; // rank that is lost, as far as visible from this point
     while (lost < r && s[r - 1 - lost] < 10 * within * s[0]) {
       ++lost;
@@ -307,7 +307,7 @@ private:
       return std::nullopt;
     }
     const Eigen::Index all = n + r * lost;
-    const Eigen::MatrixXd w0 = reduced.left().rightCols(lost);
+    const Eigen::MatrixXd w0 = reduced.u.rightCols(lost);
     Eigen::VectorXd x = from.x;
     Eigen::MatrixXd w = w0;
     for (int i = 0; i < 12; ++i) {
@@ -326,7 +326,7 @@ private:
         j.block(last, column, lost, r) = w0.transpose();
       }
       const rank_revealing_svd svd(j);
-      if (svd.rank() < all) {
+      if (svd.rank < all) {
         return std::nullopt; // branches touch
       }
       const Eigen::VectorXd step = -svd.solve(f, all);
@@ -398,7 +398,7 @@ private:
           form(0, 1);
     }
     const rank_revealing_svd svd(parts);
-    const Eigen::VectorXd form = svd.right().col(0);
+    const Eigen::VectorXd form = svd.v.col(0);
     const double cosine = -form[0] / std::hypot(form[1], form[2]);
     if (!(std::abs(cosine) < 1)) {
       return {};
@@ -407,7 +407,7 @@ private:
     std::vector<double> result;
     for (const double twice : {centre + half_width, centre - half_width}) {
       const Eigen::VectorXd rest = parts * Eigen::Vector3d(1, std::cos(twice), std::sin(twice));
-      if (rest.norm() < rank_revealing_svd::rank_tolerance * svd.singular_values()[0]) {
+      if (rest.norm() < rank_revealing_svd::rank_tolerance * svd.s[0]) {
         result.push_back(twice / 2);
       }
     }
@@ -591,7 +591,7 @@ driven_motion::driven_motion(closed_chain_mechanism mechanism, const Eigen::Vect
       dependent_(detail::all_but(mechanism_.size(), drives_)), options_(options),
       start_(mechanism_.assemble(q0, drives_)), solve_(solver(start_)) {
   const detail::rank_revealing_svd all = detail::linearised(mechanism_, start_);
-  const Eigen::Index free = mechanism_.size() - all.rank();
+  const Eigen::Index free = mechanism_.size() - all.rank;
   detail::require(free == Eigen::Index(drives_.size()), "duet: driven_motion: ", drives_.size(),
                   " driven coordinates (expected ", free, ", the degrees of freedom at the start)");
   require_accelerations();
@@ -607,7 +607,7 @@ driven_motion driven_motion::warm_started_at(const Eigen::VectorXd& u) const {
 Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
   const Eigen::MatrixXd j = detail::columns(detail::unit_jacobian(mechanism_, q), dependent_);
   const detail::rank_revealing_svd svd(j);
-  detail::require(svd.rank() == j.cols(), "duet: driven_motion: ", driven(),
+  detail::require(svd.rank == j.cols(), "duet: driven_motion: ", driven(),
                   " does not determine the rates of the other coordinates (dead point)");
   Eigen::MatrixXd result(j.cols(), j.rows());
   for (Eigen::Index i = 0; i < j.rows(); ++i) {

@@ -3,6 +3,7 @@
 #include "timed_curve.hpp"
 
 #include <duet/core/errors.hpp>
+#include <duet/spline/blocks.hpp>
 
 #include <Eigen/Core>
 
@@ -21,60 +22,50 @@ DUET_ABI_BEGIN
 namespace {
 
 /// Polynomial of degree at most nine in u, 0 ≤ u ≤ 1, by its powers.
-struct piece_polynomial {
-  std::array<double, 10> of{};
+using piece_polynomial = Eigen::Matrix<double, 10, 1>;
 
-  friend piece_polynomial operator+(piece_polynomial p, const piece_polynomial& q) {
-    for (std::size_t i = 0; i < 10; ++i) {
-      p.of[i] += q.of[i];
+[[nodiscard]] piece_polynomial polynomial(const std::array<double, 4>& powers) {
+  piece_polynomial result = piece_polynomial::Zero();
+  result.head<4>() = Eigen::Map<const Eigen::Vector4d>(powers.data());
+  return result;
+}
+[[nodiscard]] piece_polynomial product(const piece_polynomial& p, const piece_polynomial& q) {
+  piece_polynomial result = piece_polynomial::Zero();
+  for (Eigen::Index i = 0; i < 10; ++i) {
+    if (p[i] != 0) {
+      result.tail(10 - i) += p[i] * q.head(10 - i);
     }
-    return p;
   }
-  friend piece_polynomial operator*(double x, piece_polynomial p) {
-    for (double& each : p.of) {
-      each *= x;
-    }
-    return p;
-  }
-  friend piece_polynomial operator*(const piece_polynomial& p, const piece_polynomial& q) {
-    piece_polynomial result;
-    for (std::size_t i = 0; i < 10; ++i) {
-      for (std::size_t j = 0; p.of[i] != 0 && i + j < 10; ++j) {
-        result.of[i + j] += p.of[i] * q.of[j];
-      }
-    }
-    return result;
-  }
-};
+  return result;
+}
 
 /// Cubic polynomial by its Bernstein coefficients, with the amount by which the middle two have to
 /// be moved up and down to enclose another polynomial.
 struct cubic_approximation {
-  std::array<double, 4> at{};
+  Eigen::Vector4d at;
   double error = 0;
 
-  cubic_approximation() = default;
   /// Interpolates a polynomial at 0, 1/3, 2/3 and 1. The difference, with Bernstein coefficients
   /// e_j, e_0 = e_9 = 0, is u (1 − u) Σ 72 / (j (9 − j)) e_j B_{j−1}(u) with those of seventh
   /// degree, and the middle two coefficients are multiplied by 3 u (1 − u).
   explicit cubic_approximation(piece_polynomial p) {
     double end = 0, third = 0, two_thirds = 0;
-    for (std::size_t i = 10; i-- > 0;) {
-      end += p.of[i];
-      third = third / 3 + p.of[i];
-      two_thirds = two_thirds * 2 / 3 + p.of[i];
+    for (int i = 10; i-- > 0;) {
+      end += p[i];
+      third = third / 3 + p[i];
+      two_thirds = two_thirds * 2 / 3 + p[i];
     }
-    const double start = p.of[0];
-    at = {start, 3 * third - 1.5 * two_thirds + end / 3 - 5 * start / 6,
-          3 * two_thirds - 1.5 * third + start / 3 - 5 * end / 6, end};
-    p.of[0] = 0;
-    p.of[1] -= 3 * (at[1] - at[0]);
-    p.of[2] -= 3 * (at[0] - 2 * at[1] + at[2]);
-    p.of[3] -= at[3] - at[0] + 3 * (at[1] - at[2]);
-    for (std::size_t j = 1; j < 9; ++j) {
+    const double start = p[0];
+    at << start, 3 * third - 1.5 * two_thirds + end / 3 - 5 * start / 6,
+        3 * two_thirds - 1.5 * third + start / 3 - 5 * end / 6, end;
+    p[0] = 0;
+    p[1] -= 3 * (at[1] - at[0]);
+    p[2] -= 3 * (at[0] - 2 * at[1] + at[2]);
+    p[3] -= at[3] - at[0] + 3 * (at[1] - at[2]);
+    for (int j = 1; j < 9; ++j) {
       double sum = 0, share = 1; // binomial(j, i) / binomial(9, i)
-      for (std::size_t i = 0; i <= j; ++i) {
-        sum += share * p.of[i];
+      for (int i = 0; i <= j; ++i) {
+        sum += share * p[i];
         share *= double(j - i) / double(9 - i);
       }
       error = std::max(error, 24.0 / double(j * (9 - j)) * std::abs(sum));
@@ -156,20 +147,29 @@ std::array<double, 4> reference_parametrisation::powers(std::size_t k) const {
 
 namespace {
 
+/// Polynomial in τ − k, by the columns for its powers, of a squared path velocity in interval k.
+/// The latter is a quadratic B-spline whose outer coefficients are its values at the ends.
+Eigen::Matrix3d path_velocity_powers(std::size_t k, std::size_t intervals) {
+  const Eigen::Vector3d start = k == 0 ? Eigen::Vector3d(1, 0, 0) : Eigen::Vector3d(.5, .5, 0),
+                        middle = Eigen::Vector3d::UnitY(),
+                        end = k + 1 == intervals ? Eigen::Vector3d(0, 0, 1)
+                                                 : Eigen::Vector3d(0, .5, .5);
+  Eigen::Matrix3d result;
+  result << start, 2 * (middle - start), start - 2 * middle + end;
+  return result;
+}
+
 /// Bernstein coefficients of p u² for cubic polynomials u and p given by theirs; those of p are
 /// linear forms.
-std::array<linear_form, 10> times_square(const std::array<linear_form, 4>& p,
-                                         const std::array<double, 4>& u) {
+linear_forms<10> times_square(const linear_forms<4>& p, const Eigen::Array4d& u) {
   constexpr std::array<double, 4> of_3{1, 3, 3, 1}; // binomial coefficients
   constexpr std::array<double, 10> of_9{1, 9, 36, 84, 126, 126, 84, 36, 9, 1};
-  std::array<linear_form, 10> result{};
+  linear_forms<10> result = linear_forms<10>::Zero();
   for (std::size_t a = 0; a < 4; ++a) {
     for (std::size_t b = 0; b < 4; ++b) {
       for (std::size_t r = 0; r < 4; ++r) {
-        const double factor = of_3[a] * of_3[b] * of_3[r] / of_9[a + b + r] * u[a] * u[b];
-        for (std::size_t i = 0; i < 3; ++i) {
-          result[a + b + r][i] += factor * p[r][i];
-        }
+        result.col(Eigen::Index(a + b + r)) += of_3[a] * of_3[b] * of_3[r] / of_9[a + b + r] *
+                                               u[int(a)] * u[int(b)] * p.col(Eigen::Index(r));
       }
     }
   }
@@ -177,18 +177,6 @@ std::array<linear_form, 10> times_square(const std::array<linear_form, 4>& p,
 }
 
 } // namespace
-
-std::array<linear_form, 3> path_velocity_powers(std::size_t k, std::size_t intervals) {
-  const linear_form start = k == 0 ? linear_form{1, 0, 0} : linear_form{.5, .5, 0};
-  const linear_form end = k + 1 == intervals ? linear_form{0, 0, 1} : linear_form{0, .5, .5};
-  std::array<linear_form, 3> result{start, {}, {}};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double middle = i == 1 ? 1 : 0;
-    result[1][i] = 2 * (middle - start[i]);
-    result[2][i] = start[i] - 2 * middle + end[i];
-  }
-  return result;
-}
 
 path_velocity_constraints::path_velocity_constraints(const std::vector<joint_cubic>& curve,
                                                      const std::vector<reference_piece>& path,
@@ -198,78 +186,71 @@ path_velocity_constraints::path_velocity_constraints(const std::vector<joint_cub
                                                      const Eigen::VectorXd& jerk) {
   pieces.reserve(path.size());
   joints.reserve(path.size() * std::size_t(velocity.size()));
-  for (const reference_piece& piece : path) {
-    add(curve[piece.edge], piece, intervals, velocity, acceleration, jerk);
-  }
-}
-
-void path_velocity_constraints::add(const joint_cubic& q, const reference_piece& piece,
-                                    std::size_t intervals, const Eigen::VectorXd& velocity,
-                                    const Eigen::VectorXd& acceleration,
-                                    const Eigen::VectorXd& jerk) {
-  using polynomial = piece_polynomial;
-  const double l = piece.length, f = piece.from;
-  // With x = s − start: q' = p_0 + p_1 x + p_2 x² / 2, q'' = p_1 + p_2 x, q''' = p_2.
-  const std::array<Eigen::VectorXd, 3> p{q.first(piece.start), q.second(piece.start),
-                                         Eigen::VectorXd(6 * q.c3)};
-  const polynomial offset{{0, piece.a * l, piece.b * l * l, piece.c * l * l * l}};
-  const polynomial slope{{piece.a, 2 * piece.b * l, 3 * piece.c * l * l}};
-  const polynomial bend{{2 * piece.b, 6 * piece.c * l}};
-  const polynomial half_square = .5 * (offset * offset);
-
-  // Factors of p_0, p_1 and p_2; those of accelerations and jerks for each coefficient.
-  const std::array rates{cubic_approximation(slope), cubic_approximation(offset * slope),
-                         cubic_approximation(half_square * slope)};
-  std::array<std::array<cubic_approximation, 3>, 3> changes, jerks;
-  piece_bounds bounds{piece.interval, l, {}, {}};
-  const auto b = path_velocity_powers(piece.interval, intervals);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double start = b[0][i] + f * (b[1][i] + f * b[2][i]);
-    const double rise = b[1][i] + 2 * f * b[2][i], curvature = b[2][i];
-    bounds.squared_velocity[0][i] = start;
-    bounds.squared_velocity[1][i] = start + rise * l / 3;
-    bounds.squared_velocity[2][i] = start + l * (2 * rise + l * curvature) / 3;
-    bounds.squared_velocity[3][i] = start + l * (rise + l * curvature);
-    const polynomial squared_velocity{{start, rise * l, curvature * l * l}};
-    const polynomial half_rise{{rise / 2, curvature * l}};
-    const polynomial square = slope * slope * squared_velocity;
-    const polynomial change = bend * squared_velocity + slope * half_rise;
-    const polynomial both = 3 * (slope * change);
-    const polynomial third =
-        6 * piece.c * squared_velocity + 3 * (bend * half_rise) + curvature * slope;
-    changes[i] = {cubic_approximation(change), cubic_approximation(square + offset * change),
-                  cubic_approximation(offset * square + half_square * change)};
-    jerks[i] = {cubic_approximation(third), cubic_approximation(both + offset * third),
-                cubic_approximation(slope * square + offset * both + half_square * third)};
-  }
-  std::array<double, 4> largest_rate{};
-  for (Eigen::Index j = 0; j < velocity.size(); ++j) {
-    joint_bounds rows;
-    double beyond = 0;
-    std::array<double, 4> rate{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double factor = p[k][j], size = std::abs(factor);
-      for (std::size_t r = 0; r < 4; ++r) {
-        rate[r] += factor * rates[k].at[r];
-      }
-      beyond += size * rates[k].error;
-      for (std::size_t i = 0; i < 3; ++i) {
-        for (std::size_t r = 0; r < 4; ++r) {
-          rows.acceleration[r][i] += factor * changes[i][k].at[r] / acceleration[j];
-          rows.jerk[r][i] += factor * jerks[i][k].at[r] / jerk[j];
-        }
-        rows.beyond_acceleration[i] += size * changes[i][k].error / acceleration[j];
-        rows.beyond_jerk[i] += size * jerks[i][k].error / jerk[j];
-      }
+  for (const auto& [edge, interval, f, l, begin, a, b, c] : path) {
+    // With x = s − start: q' = p_0 + p_1 x + p_2 x² / 2, q'' = p_1 + p_2 x, q''' = p_2.
+    const joint_cubic& q = curve[edge];
+    Eigen::Matrix<double, Eigen::Dynamic, 3> p(velocity.size(), 3);
+    p << q.first(begin), q.second(begin), 6 * q.c3;
+    const auto offset = polynomial({0, a * l, b * l * l, c * l * l * l}),
+               slope = polynomial({a, 2 * b * l, 3 * c * l * l}),
+               bend = polynomial({2 * b, 6 * c * l}),
+               half_square = piece_polynomial(.5 * product(offset, offset));
+    // Factors of p_0, p_1 and p_2; those of accelerations and jerks for each coefficient.
+    Eigen::Matrix<double, 4, 3> rates;
+    Eigen::Vector3d rate_errors;
+    std::array<linear_forms<4>, 3> changes, jerks;
+    Eigen::Matrix3d change_errors, jerk_errors;
+    const auto set_rate = [&](int k, const piece_polynomial& of) {
+      const cubic_approximation cubic(of);
+      rates.col(k) = cubic.at;
+      rate_errors[k] = cubic.error;
+    };
+    set_rate(0, slope);
+    set_rate(1, product(offset, slope));
+    set_rate(2, product(half_square, slope));
+    piece_bounds bounds{interval, l};
+    const Eigen::Matrix3d powers = path_velocity_powers(interval, intervals);
+    for (int i = 0; i < 3; ++i) {
+      const double curvature = powers(i, 2), rise = powers(i, 1) + 2 * f * curvature,
+                   start = powers(i, 0) + f * (powers(i, 1) + f * curvature);
+      bounds.squared_velocity.row(i) << start, start + rise * l / 3,
+          start + l * (2 * rise + l * curvature) / 3, start + l * (rise + l * curvature);
+      const auto squared_velocity = polynomial({start, rise * l, curvature * l * l}),
+                 half_rise = polynomial({rise / 2, curvature * l}),
+                 square = product(product(slope, slope), squared_velocity);
+      const piece_polynomial change = product(bend, squared_velocity) + product(slope, half_rise),
+                             both = 3 * product(slope, change),
+                             third = 6 * c * squared_velocity + 3 * product(bend, half_rise) +
+                                     curvature * slope;
+      const auto set = [i](auto& forms, auto& errors, std::size_t k, const piece_polynomial& of) {
+        const cubic_approximation cubic(of);
+        forms[k].row(i) = cubic.at.transpose();
+        errors(i, Eigen::Index(k)) = cubic.error;
+      };
+      set(changes, change_errors, 0, change);
+      set(changes, change_errors, 1, square + product(offset, change));
+      set(changes, change_errors, 2, product(offset, square) + product(half_square, change));
+      set(jerks, jerk_errors, 0, third);
+      set(jerks, jerk_errors, 1, both + product(offset, third));
+      set(jerks, jerk_errors, 2,
+          product(slope, square) + product(offset, both) + product(half_square, third));
     }
-    for (std::size_t r = 0; r < 4; ++r) {
-      const double size = std::abs(rate[r]) + (r == 1 || r == 2 ? beyond : 0);
-      largest_rate[r] = std::max(largest_rate[r], size / velocity[j]);
+    Eigen::Array4d largest_rate = Eigen::Array4d::Zero();
+    for (Eigen::Index j = 0; j < velocity.size(); ++j) {
+      const Eigen::Vector3d factors = p.row(j), sizes = factors.cwiseAbs();
+      Eigen::Array4d rate = (rates * factors).cwiseAbs();
+      rate.segment<2>(1) += sizes.dot(rate_errors);
+      largest_rate = largest_rate.max(rate / velocity[j]);
+      const auto sum = [&](const std::array<linear_forms<4>, 3>& of) {
+        return factors[0] * of[0] + factors[1] * of[1] + factors[2] * of[2];
+      };
+      joints.push_back({sum(changes) / acceleration[j], sum(jerks) / jerk[j],
+                        change_errors * sizes / acceleration[j], jerk_errors * sizes / jerk[j]});
     }
-    joints.push_back(rows);
+    bounds.square_rate = times_square(bounds.squared_velocity, largest_rate);
+    bounds.middle = bounds.squared_velocity * Eigen::Vector4d(1, 3, 3, 1) / 8;
+    pieces.push_back(bounds);
   }
-  bounds.square_rate = times_square(bounds.squared_velocity, largest_rate);
-  pieces.push_back(bounds);
 }
 
 namespace {
@@ -280,65 +261,10 @@ namespace {
 struct barrier_constraint {
   int order;
   std::optional<std::size_t> joint; ///< joint, if the constraint is of a single joint
-  std::size_t first;
+  Eigen::Index first;
   double limit, beyond, x;
-  const linear_form &limit_by, &beyond_by, &x_by;
-};
-
-/// Gradient of a function of the coefficients, and the band of its Hessian: (i, i), (i, i + 1) and
-/// (i, i + 2).
-struct barrier_newton_model {
-  std::vector<double> gradient;
-  std::vector<linear_form> matrix;
-
-  explicit barrier_newton_model(std::size_t n) : gradient(n), matrix(n) {}
-  /// Adds a function f of a linear form of the coefficients, given f' and f''.
-  void add(std::size_t first, const linear_form& by, double derivative, double curvature) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      gradient[first + i] += derivative * by[i];
-      for (std::size_t j = i; j < 3; ++j) {
-        matrix[first + i][j - i] += curvature * by[i] * by[j];
-      }
-    }
-  }
-  /// Keeps coefficient i constant.
-  void fix(std::size_t i) {
-    gradient[i] = 0;
-    matrix[i] = {1, 0, 0};
-    for (std::size_t k = 1; k < 3 && k <= i; ++k) {
-      matrix[i - k][k] = 0;
-    }
-  }
-  /// Newton step to the minimum of the model, by a factorisation L D Lᵀ of the matrix,
-  /// which is overwritten.
-  [[nodiscard]] std::vector<double> solution() {
-    const std::size_t n = gradient.size();
-    matrix[n - 1][1] = matrix[n - 1][2] = matrix[n - 2][2] = 0;
-    std::vector<double> x(n + 2);
-    for (std::size_t i = 0; i < n; ++i) {
-      auto& [d, one, two] = matrix[i];
-      x[i] -= gradient[i];
-      if (i + 1 < n) {
-        matrix[i + 1][0] -= one * one / d;
-        matrix[i + 1][1] -= one * two / d;
-      }
-      if (i + 2 < n) {
-        matrix[i + 2][0] -= two * two / d;
-      }
-      one /= d;
-      two /= d;
-      x[i + 1] -= one * x[i];
-      x[i + 2] -= two * x[i];
-    }
-    x.resize(n);
-    for (std::size_t i = n; i-- > 0;) {
-      x[i] /= matrix[i][0];
-      for (std::size_t k = 1; k < 3 && i + k < n; ++k) {
-        x[i] -= matrix[i][k] * x[i + k];
-      }
-    }
-    return x;
-  }
+  const Eigen::Vector3d &limit_by, &beyond_by;
+  const double* x_by;
 };
 
 /// Minimum-time squared path velocity b = τ̇² within limits by a primal log-barrier
@@ -356,18 +282,18 @@ public:
   /// \param bounds  constraints; must outlive the search
   /// \param ends    squared path velocities required at the ends, where joint velocities satisfy
   /// their limits; 0: free
-  explicit log_barrier_solver(const path_velocity_constraints& bounds,
-                              const std::array<double, 2>& ends = {0, 0})
-      : bounds_(bounds), ends_(ends), squared_velocity_(bounds.pieces.back().first + 3, 1.0) {
+  log_barrier_solver(const path_velocity_constraints& bounds, const Eigen::Array2d& ends)
+      : bounds_(bounds), ends_(ends),
+        squares_(Eigen::VectorXd::Ones(Eigen::Index(bounds.pieces.back().first) + 3)) {
     double stretch = 0;
-    for_each_bound(squared_velocity_, [&](const barrier_constraint& b) {
+    for_each_bound(squares_, [&](const barrier_constraint& b) {
       stretch = std::max(stretch, std::pow((std::abs(b.x) + b.beyond) / b.limit, 1.0 / b.order));
     });
     double slow = .7 / (stretch * stretch);
     for (const double end : ends_) {
       slow = end > 0 ? std::min(slow, end) : slow;
     }
-    std::fill(squared_velocity_.begin(), squared_velocity_.end(), slow);
+    squares_.fill(slow);
     is_attained_ = {ends_[0] == slow, ends_[1] == slow};
   }
 
@@ -379,27 +305,21 @@ public:
   /// it is attained or free
   [[nodiscard]] std::array<double, 2> find_feasible_start() {
     double count = 0; // number of logarithms: for a convex set the fraction missing is count / lift
-    for_each_bound(squared_velocity_, [&](const barrier_constraint&) { count += 2; });
-    const auto missing = [&] {
-      double result = 0;
-      for (std::size_t e = 0; e < 2; ++e) {
-        result = std::max(result, is_slow(e) ? 1 - squared_velocity_[end_of(e)] / ends_[e] : 0);
-      }
-      return result;
-    };
-    for (double lift = count / 64;
-         are_ends_slow() && lift < 1e9 * count && count > .01 * lift * missing(); lift *= 4) {
+    for_each_bound(squares_, [&](const barrier_constraint&) { count += 2; });
+    const auto fraction = [&](int e) { return is_slow(e) ? squares_[end_of(e)] / ends_[e] : 1; };
+    for (double lift = count / 64; are_ends_slow() && lift < 1e9 * count &&
+                                   count > .01 * lift * (1 - std::min(fraction(0), fraction(1)));
+         lift *= 4) {
       for (int steps = 0; steps < 60 && are_ends_slow() && step({0, lift}) > .1; ++steps) {
       }
     }
-    return {is_slow(0) ? squared_velocity_.front() / ends_[0] : 1,
-            is_slow(1) ? squared_velocity_.back() / ends_[1] : 1};
+    return {fraction(0), fraction(1)};
   }
 
   /// Joint whose acceleration and jerk limits are the nearest, summed over the path.
   [[nodiscard]] std::size_t nearest_joint() const {
     std::vector<double> sums(bounds_.joints.size() / bounds_.pieces.size());
-    for_each_bound(squared_velocity_, [&](const barrier_constraint& b) {
+    for_each_bound(squares_, [&](const barrier_constraint& b) {
       if (b.joint) {
         sums[*b.joint] += b.limit / (b.limit - b.beyond - std::abs(b.x));
       }
@@ -410,22 +330,20 @@ public:
   /// Coefficients of a nearly minimum-time squared path velocity: the margins to the limits that
   /// the barrier leaves cost about 10 / accuracy of the time. Ends that were not attained stay near
   /// their values.
-  [[nodiscard]] const std::vector<double>& solve(double accuracy) {
+  [[nodiscard]] const Eigen::VectorXd& solve(double accuracy) {
     if (are_ends_slow()) {
-      for (double& each : squared_velocity_) {
-        each *= .95;
-      }
-      for (std::size_t e = 0; e < 2; ++e) {
-        ends_[e] = ends_[e] > 0 ? squared_velocity_[end_of(e)] : 0;
+      squares_ *= .95;
+      for (int e = 0; e < 2; ++e) {
+        ends_[e] = ends_[e] > 0 ? squares_[end_of(e)] : 0;
       }
       is_attained_ = {true, true};
     }
-    const double unit = double(bounds_.pieces.size()) / time(squared_velocity_);
+    const double unit = double(bounds_.pieces.size()) / time(squares_);
     for (double weight = 40 * unit; weight < accuracy * unit; weight *= 4) {
       for (int steps = 0; steps < 60 && step({weight, 0}) > .1; ++steps) {
       }
     }
-    return squared_velocity_;
+    return squares_;
   }
 
 private:
@@ -434,80 +352,57 @@ private:
     double time, lift;
   };
 
-  [[nodiscard]] std::size_t end_of(std::size_t e) const {
-    return e == 0 ? 0 : squared_velocity_.size() - 1;
-  }
-  [[nodiscard]] bool is_slow(std::size_t e) const { return ends_[e] > 0 && !is_attained_[e]; }
+  [[nodiscard]] Eigen::Index end_of(int e) const { return e == 0 ? 0 : squares_.size() - 1; }
+  [[nodiscard]] bool is_slow(int e) const { return ends_[e] > 0 && !is_attained_[std::size_t(e)]; }
   [[nodiscard]] bool are_ends_slow() const { return is_slow(0) || is_slow(1); }
 
-  void for_each_bound(const std::vector<double>& squared_velocity, const auto& f) const {
-    static constexpr linear_form zero{};
+  void for_each_bound(const Eigen::VectorXd& squares, const auto& f) const {
+    const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
     const joint_bounds* joint = bounds_.joints.data();
     const std::size_t joints = bounds_.joints.size() / bounds_.pieces.size();
     for (const piece_bounds& piece : bounds_.pieces) {
-      const double* c = &squared_velocity[piece.first];
-      const linear_form row = middle_of(piece);
-      const double m = times(row, c), scale = 1 / (m * std::sqrt(m));
-      std::array<double, 4> limit;
-      std::array<linear_form, 4> limit_by;
-      for (std::size_t r = 0; r < 4; ++r) {
-        const double p = times(piece.squared_velocity[r], c);
+      const auto first = Eigen::Index(piece.first);
+      const Eigen::Vector3d c = squares.segment<3>(first);
+      const double m = piece.middle.dot(c), scale = 1 / (m * std::sqrt(m));
+      Eigen::Vector4d limit;
+      std::array<Eigen::Vector3d, 4> limit_by;
+      for (int r = 0; r < 4; ++r) {
+        const double p = piece.squared_velocity.col(r).dot(c);
         limit[r] = (3 * m - p) * scale / 2;
-        for (std::size_t i = 0; i < 3; ++i) {
-          limit_by[r][i] = (1.5 * (p / m - 1) * row[i] - piece.squared_velocity[r][i]) * scale / 2;
-        }
+        limit_by[std::size_t(r)] =
+            (1.5 * (p / m - 1) * piece.middle - piece.squared_velocity.col(r)) * scale / 2;
       }
       const bool is_first = &piece == &bounds_.pieces.front();
       const bool is_last = &piece == &bounds_.pieces.back();
       // At ends with a required velocity nothing remains to be optimised.
-      for (std::size_t r = is_first && ends_[0] > 0; r + (is_last && ends_[1] > 0) < 10; ++r) {
-        f(barrier_constraint{2,
-                             {},
-                             piece.first,
-                             1,
-                             0,
-                             times(piece.square_rate[r], c),
-                             zero,
-                             zero,
-                             piece.square_rate[r]});
+      for (int r = is_first && ends_[0] > 0; r + (is_last && ends_[1] > 0) < 10; ++r) {
+        const auto by = piece.square_rate.col(r);
+        f(barrier_constraint{2, {}, first, 1, 0, by.dot(c), zero, zero, by.data()});
       }
       for (std::size_t j = 0; j < joints; ++j, ++joint) {
-        const double change = times(joint->beyond_acceleration, c);
-        const double jerk = times(joint->beyond_jerk, c);
-        for (std::size_t r = 0; r < 4; ++r) {
+        const double change = joint->beyond_acceleration.dot(c), jerk = joint->beyond_jerk.dot(c);
+        for (int r = 0; r < 4; ++r) {
           const bool is_end = r == 0 || r == 3;
-          f(barrier_constraint{2, j, piece.first, 1, is_end ? 0 : change,
-                               times(joint->acceleration[r], c), zero,
-                               is_end ? zero : joint->beyond_acceleration, joint->acceleration[r]});
-          f(barrier_constraint{3, j, piece.first, limit[r], is_end ? 0 : jerk,
-                               times(joint->jerk[r], c), limit_by[r],
-                               is_end ? zero : joint->beyond_jerk, joint->jerk[r]});
+          const auto by = joint->acceleration.col(r), jerk_by = joint->jerk.col(r);
+          f(barrier_constraint{2, j, first, 1, is_end ? 0 : change, by.dot(c), zero,
+                               is_end ? zero : joint->beyond_acceleration, by.data()});
+          f(barrier_constraint{3, j, first, limit[r], is_end ? 0 : jerk, jerk_by.dot(c),
+                               limit_by[std::size_t(r)], is_end ? zero : joint->beyond_jerk,
+                               jerk_by.data()});
         }
       }
     }
   }
-  [[nodiscard]] static linear_form middle_of(const piece_bounds& piece) {
-    linear_form result;
-    for (std::size_t i = 0; i < 3; ++i) {
-      result[i] = (piece.squared_velocity[0][i] +
-                   3 * (piece.squared_velocity[1][i] + piece.squared_velocity[2][i]) +
-                   piece.squared_velocity[3][i]) /
-                  8;
-    }
-    return result;
-  }
-  void for_each_middle(const std::vector<double>& squared_velocity, const auto& f) const {
-    for (const piece_bounds& piece : bounds_.pieces) {
-      const linear_form row = middle_of(piece);
-      f(piece, row, times(row, &squared_velocity[piece.first]));
-    }
+  /// Value of b in the middle of a segment.
+  [[nodiscard]] static double middle_of(const piece_bounds& piece, const Eigen::VectorXd& squares) {
+    return piece.middle.dot(squares.segment<3>(Eigen::Index(piece.first)));
   }
 
-  [[nodiscard]] double time(const std::vector<double>& squared_velocity) const {
+  [[nodiscard]] double time(const Eigen::VectorXd& squares) const {
     double result = 0;
-    for_each_middle(squared_velocity, [&](const piece_bounds& piece, const linear_form&, double m) {
-      result += piece.length / std::sqrt(m);
-    });
+    for (const piece_bounds& piece : bounds_.pieces) {
+      result += piece.length / std::sqrt(middle_of(piece, squares));
+    }
     return result;
   }
   /// Weight of log(b) per limit proportional to 1 / √b, half a logarithm each: otherwise the
@@ -517,11 +412,10 @@ private:
   }
 
   /// Objective with its barrier terms; infinite outside the feasible set.
-  [[nodiscard]] double value(const std::vector<double>& squared_velocity,
-                             barrier_weights weights) const {
-    double sum = weights.time * time(squared_velocity), product = 1;
-    for (std::size_t e = 0; e < 2; ++e) {
-      sum -= is_slow(e) ? weights.lift * squared_velocity[end_of(e)] / ends_[e] : 0;
+  [[nodiscard]] double value(const Eigen::VectorXd& squares, barrier_weights weights) const {
+    double sum = weights.time * time(squares), product = 1;
+    for (int e = 0; e < 2; ++e) {
+      sum -= is_slow(e) ? weights.lift * squares[end_of(e)] / ends_[e] : 0;
     }
     bool is_inside = true;
     const auto take = [&](double factor) {
@@ -532,83 +426,90 @@ private:
         product = 1;
       }
     };
-    std::for_each(squared_velocity.begin(), squared_velocity.end(), take);
-    for_each_bound(squared_velocity, [&](const barrier_constraint& b) {
+    std::for_each(squares.begin(), squares.end(), take);
+    for_each_bound(squares, [&](const barrier_constraint& b) {
       const double limit = b.limit - b.beyond;
       is_inside = is_inside && limit > 0;
       take((limit - b.x) * (limit + b.x));
     });
-    for_each_middle(squared_velocity, [&](const piece_bounds&, const linear_form&, double m) {
-      sum -= rooted_limits() * std::log(m);
-    });
+    for (const piece_bounds& piece : bounds_.pieces) {
+      sum -= rooted_limits() * std::log(middle_of(piece, squares));
+    }
     return is_inside ? sum - std::log(product) : std::numeric_limits<double>::infinity();
-  }
-
-  [[nodiscard]] barrier_newton_model model_of(barrier_weights weights) const {
-    barrier_newton_model result(squared_velocity_.size());
-    for (std::size_t i = 0; i < squared_velocity_.size(); ++i) {
-      const double inverse = 1 / squared_velocity_[i];
-      result.gradient[i] -= inverse;
-      result.matrix[i][0] += inverse * inverse;
-    }
-    for_each_bound(squared_velocity_, [&](const barrier_constraint& b) {
-      const double limit = b.limit - b.beyond;
-      for (const int sign : {-1, 1}) {
-        const double inverse = 1 / (limit + sign * b.x);
-        linear_form by;
-        for (std::size_t i = 0; i < 3; ++i) {
-          by[i] = b.limit_by[i] - b.beyond_by[i] + sign * b.x_by[i];
-        }
-        result.add(b.first, by, -inverse, inverse * inverse);
-      }
-    });
-    for_each_middle(squared_velocity_,
-                    [&](const piece_bounds& piece, const linear_form& row, double m) {
-                      const double by_time = weights.time * piece.length / (2 * m * std::sqrt(m));
-                      result.add(piece.first, row, -by_time - rooted_limits() / m,
-                                 (1.5 * by_time + rooted_limits() / m) / m);
-                    });
-    for (std::size_t e = 0; e < 2; ++e) {
-      if (is_slow(e)) {
-        result.gradient[end_of(e)] -= weights.lift / ends_[e];
-      } else if (ends_[e] > 0) {
-        result.fix(end_of(e));
-      }
-    }
-    return result;
   }
 
   /// Takes one Newton step with a backtracking line search.
   ///
   /// \return twice the decrease that the model predicts; 0 if no step is found
   double step(barrier_weights weights) {
-    barrier_newton_model model = model_of(weights);
-    const std::vector<double> gradient = model.gradient, newton_step = model.solution();
-    double decrease = 0;
-    for (std::size_t i = 0; i < newton_step.size(); ++i) {
-      decrease -= gradient[i] * newton_step[i];
+    Eigen::VectorXd gradient = -squares_.cwiseInverse();
+    block_band_matrix<double, 1, 2> hessian;
+    hessian.set_zero(std::size_t(squares_.size()));
+    const auto entry = [&](Eigen::Index i, Eigen::Index j) -> double& {
+      return hessian.at(std::size_t(i), std::size_t(j))(0, 0);
+    };
+    for (Eigen::Index i = 0; i < squares_.size(); ++i) {
+      entry(i, i) = gradient[i] * gradient[i];
     }
+    // Adds a function f of a linear form of the coefficients, given f' and f''.
+    const auto add = [&](Eigen::Index first, const Eigen::Vector3d& by, double derivative,
+                         double curvature) {
+      gradient.segment<3>(first) += derivative * by;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        for (Eigen::Index j = 0; j <= i; ++j) {
+          entry(first + i, first + j) += curvature * by[i] * by[j];
+        }
+      }
+    };
+    for_each_bound(squares_, [&](const barrier_constraint& b) {
+      for (const int sign : {-1, 1}) {
+        const double inverse = 1 / (b.limit - b.beyond + sign * b.x);
+        add(b.first, b.limit_by - b.beyond_by + sign * Eigen::Map<const Eigen::Vector3d>(b.x_by),
+            -inverse, inverse * inverse);
+      }
+    });
+    for (const piece_bounds& piece : bounds_.pieces) {
+      const double m = middle_of(piece, squares_),
+                   by_time = weights.time * piece.length / (2 * m * std::sqrt(m));
+      add(Eigen::Index(piece.first), piece.middle, -by_time - rooted_limits() / m,
+          (1.5 * by_time + rooted_limits() / m) / m);
+    }
+    for (int e = 0; e < 2; ++e) {
+      const Eigen::Index i = end_of(e);
+      if (is_slow(e)) {
+        gradient[i] -= weights.lift / ends_[e];
+      } else if (ends_[e] > 0) { // stays constant
+        gradient[i] = 0;
+        entry(i, i) = 1;
+        for (const Eigen::Index k : {1, 2}) {
+          (e == 0 ? entry(k, 0) : entry(i, i - k)) = 0;
+        }
+      }
+    }
+    Eigen::VectorXd newton_step = -gradient;
+    if (!hessian.factorise()) {
+      return 0;
+    }
+    hessian.solve(newton_step);
+    const double decrease = -gradient.dot(newton_step);
     // Step length at which an end attains its required value.
     std::array<double, 2> arrival{2, 2};
-    for (std::size_t e = 0; e < 2; ++e) {
-      const std::size_t i = end_of(e);
-      if (is_slow(e) && squared_velocity_[i] + newton_step[i] >= ends_[e]) {
-        arrival[e] = (ends_[e] - squared_velocity_[i]) / newton_step[i];
+    for (int e = 0; e < 2; ++e) {
+      const Eigen::Index i = end_of(e);
+      if (is_slow(e) && squares_[i] + newton_step[i] >= ends_[e]) {
+        arrival[std::size_t(e)] = (ends_[e] - squares_[i]) / newton_step[i];
       }
     }
-    const double before = value(squared_velocity_, weights);
-    std::vector<double> next(newton_step.size());
+    const double before = value(squares_, weights);
     for (double fraction = std::min({1.0, arrival[0], arrival[1]}); fraction > 1e-6;
          fraction /= 2) {
-      for (std::size_t i = 0; i < newton_step.size(); ++i) {
-        next[i] = squared_velocity_[i] + fraction * newton_step[i];
-      }
+      const Eigen::VectorXd next = squares_ + fraction * newton_step;
       if (value(next, weights) < before - 1e-3 * fraction * decrease) {
-        squared_velocity_ = next;
-        for (std::size_t e = 0; e < 2; ++e) {
-          if (fraction == arrival[e]) {
-            squared_velocity_[end_of(e)] = ends_[e];
-            is_attained_[e] = true;
+        squares_ = next;
+        for (int e = 0; e < 2; ++e) {
+          if (fraction == arrival[std::size_t(e)]) {
+            squares_[end_of(e)] = ends_[e];
+            is_attained_[std::size_t(e)] = true;
           }
         }
         return decrease;
@@ -618,25 +519,10 @@ private:
   }
 
   const path_velocity_constraints& bounds_;
-  std::array<double, 2> ends_;
+  Eigen::Array2d ends_;
   std::array<bool, 2> is_attained_{};
-  std::vector<double> squared_velocity_;
+  Eigen::VectorXd squares_;
 };
-
-} // namespace
-
-path_velocity_result minimum_time_path_velocity(const path_velocity_constraints& bounds,
-                                                const std::array<double, 2>& ends,
-                                                double accuracy) {
-  log_barrier_solver search(bounds, ends);
-  path_velocity_result result;
-  result.reached = search.find_feasible_start();
-  result.nearest_joint = search.nearest_joint();
-  result.coefficients = search.solve(accuracy);
-  return result;
-}
-
-namespace {
 
 /// Time ∫ dτ / τ̇ over an interval of τ on which the squared path velocity τ̇² is a
 /// quadratic polynomial.
@@ -649,6 +535,29 @@ namespace {
                                        : std::atan(angle) / angle;
   return 2 * half * ratio;
 }
+
+} // namespace
+
+timed_path trajectory_from_path_velocity(const std::vector<joint_cubic>& curve,
+                                         const std::vector<reference_piece>& path, std::size_t n,
+                                         const Eigen::VectorXd& squared_velocity) {
+  timed_path result;
+  result.pieces.reserve(path.size());
+  for (const auto& [edge, interval, from, l, start, a, b, c] : path) {
+    const Eigen::Vector3d powers = path_velocity_powers(interval, n).transpose() *
+                                   squared_velocity.segment<3>(Eigen::Index(interval));
+    const double curvature = powers[2], rise = powers[1] + 2 * from * curvature,
+                 before = powers[0] + from * (powers[1] + from * curvature);
+    const double rate = std::sqrt(before),
+                 end_rate = std::sqrt(before + l * (rise + l * curvature));
+    result.pieces.push_back({{result.duration, rate, rise / 2, curvature, a, b, c},
+                             curve[edge].part(start, l * (a + l * (b + l * c)))});
+    result.duration += time_over(l, rate, end_rate, curvature);
+  }
+  return result;
+}
+
+namespace {
 
 /// Checks that second derivatives of a curve are continuous, as finite jerks require.
 ///
@@ -708,12 +617,30 @@ struct jerk_search_result {
   [[nodiscard]] bool is_feasible() const { return reached[end()] == 1; }
 };
 
+/// Path arguments s of a motion at n + 1 equidistant times; the last one is the length of the path.
+[[nodiscard]] std::vector<double> arc_lengths_of(const timed_path& path, std::size_t n,
+                                                 double length) {
+  std::vector<double> result;
+  std::size_t at = 0;
+  double s = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = path.duration * double(i) / double(n);
+    for (; at + 1 < path.pieces.size() && path.pieces[at + 1].scaling.time <= t; ++at) {
+      s += path.pieces[at].path.length;
+    }
+    const auto& [scaling, edge] = path.pieces[at];
+    result.push_back(std::min(s + scaling.at(t, edge.length).s, length));
+  }
+  result.push_back(length);
+  return result;
+}
+
 /// Near-minimum-time trajectory within velocity, acceleration and jerk limits. Its squared path
 /// velocity is a B-spline of a parameter τ that is proportional to the time of another motion, in a
 /// given number of intervals.
 ///
 /// \param motion    motion that defines τ
-/// \param accuracy  as of `minimum_time_path_velocity`
+/// \param accuracy  as of `log_barrier_solver::solve`
 [[nodiscard]] jerk_search_result timed_by_jerks(const time_parametrisation_input& problem,
                                                 const std::vector<joint_cubic>& curve,
                                                 const timed_path& motion, std::size_t intervals,
@@ -725,16 +652,12 @@ struct jerk_search_result {
   const auto path = reference.pieces(knots);
   const path_velocity_constraints bounds(curve, path, intervals, problem.velocity,
                                          problem.acceleration, problem.jerk);
-  std::array<double, 2> ends{};
-  for (std::size_t e = 0; e < 2; ++e) {
-    const double rate = speeds[e] / (e == 0 ? reference.first_slope() : reference.last_slope());
-    ends[e] = speeds[e] > 0 ? rate * rate : 0;
-  }
-  const path_velocity_result velocities = minimum_time_path_velocity(bounds, ends, accuracy);
-  jerk_search_result result;
-  result.reached = {std::sqrt(velocities.reached[0]), std::sqrt(velocities.reached[1])};
-  result.nearest_joint = velocities.nearest_joint;
-  result.motion = trajectory_from_path_velocity(curve, path, intervals, velocities.coefficients);
+  const Eigen::Array2d end_rates(speeds[0] > 0 ? speeds[0] / reference.first_slope() : 0,
+                                 speeds[1] > 0 ? speeds[1] / reference.last_slope() : 0);
+  log_barrier_solver search(bounds, end_rates.square());
+  const auto [first, last] = search.find_feasible_start();
+  jerk_search_result result{{}, {std::sqrt(first), std::sqrt(last)}, search.nearest_joint()};
+  result.motion = trajectory_from_path_velocity(curve, path, intervals, search.solve(accuracy));
   return result;
 }
 
@@ -806,41 +729,6 @@ private:
 };
 
 } // namespace
-
-std::vector<double> arc_lengths_of(const timed_path& path, std::size_t n, double length) {
-  std::vector<double> result;
-  std::size_t at = 0;
-  double s = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double t = path.duration * double(i) / double(n);
-    for (; at + 1 < path.pieces.size() && path.pieces[at + 1].scaling.time <= t; ++at) {
-      s += path.pieces[at].path.length;
-    }
-    const auto& [scaling, edge] = path.pieces[at];
-    result.push_back(std::min(s + scaling.at(t, edge.length).s, length));
-  }
-  result.push_back(length);
-  return result;
-}
-
-timed_path trajectory_from_path_velocity(const std::vector<joint_cubic>& curve,
-                                         const std::vector<reference_piece>& path, std::size_t n,
-                                         const std::vector<double>& squared_velocity) {
-  timed_path result;
-  result.pieces.reserve(path.size());
-  for (const auto& [edge, interval, from, l, start, a, b, c] : path) {
-    const auto rows = path_velocity_powers(interval, n);
-    const double* of = &squared_velocity[interval];
-    const double curvature = times(rows[2], of), rise = times(rows[1], of) + 2 * from * curvature;
-    const double before = times(rows[0], of) + from * (times(rows[1], of) + from * curvature);
-    const double rate = std::sqrt(before),
-                 end_rate = std::sqrt(before + l * (rise + l * curvature));
-    result.pieces.push_back({{result.duration, rate, rise / 2, curvature, a, b, c},
-                             curve[edge].part(start, l * (a + l * (b + l * c)))});
-    result.duration += time_over(l, rate, end_rate, curvature);
-  }
-  return result;
-}
 
 timed_path timed_within_jerks(const time_parametrisation_input& problem,
                               const std::vector<joint_cubic>& curve) {

@@ -260,8 +260,94 @@ double nearest_speed(std::span<const speed_bound> bounds, double x, double lower
   }
 }
 
-std::vector<double> phase_plane_velocities(const path_bounds& path, double first, double last,
-                                           infeasible_boundary& infeasible) {
+namespace {
+
+/// Constraints on ṡ² at the starts and ends of the segments of a path, between which it is linear
+/// in s.
+struct path_bounds {
+  std::vector<double> before, after; ///< largest ṡ² that velocity limits admit
+  std::vector<speed_bound> bounds;   ///< constraints, as many for each segment
+  std::size_t bounds_each;
+
+  /// Collects the constraints by which velocities and accelerations stay within limits on entire
+  /// segments. With ṡ² linear in s the acceleration q' s̈ + q'' ṡ² is a quadratic polynomial and
+  /// lies between its Bernstein coefficients, which are linear in both ṡ².
+  path_bounds(const std::vector<joint_cubic>& parts, const Eigen::VectorXd& velocity,
+              const Eigen::VectorXd& acceleration)
+      : bounds_each(std::size_t(3 * velocity.size())) {
+    before.reserve(parts.size());
+    after.reserve(parts.size());
+    bounds.reserve(parts.size() * bounds_each);
+    for (const joint_cubic& q : parts) {
+      before.push_back(1e100);
+      after.push_back(1e100);
+      const Eigen::VectorXd first = q.first(0), middle = q.c1 + q.length * q.c2,
+                            end = q.first(q.length), second = q.second(0),
+                            last = q.second(q.length);
+      const double half = 1 / (2 * q.length); // s̈ = (y − x) / (2 length)
+      for (Eigen::Index i = 0; i < second.size(); ++i) {
+        const double a = acceleration[i];
+        apply_velocity_limit({first[i], middle[i], end[i]}, velocity[i]);
+        add(second[i] - first[i] * half, first[i] * half, a);
+        add(last[i] / 2 - middle[i] * half, second[i] / 2 + middle[i] * half, a);
+        add(-end[i] * half, last[i] + end[i] * half, a);
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const { return before.size(); }
+  [[nodiscard]] std::span<const speed_bound> of(std::size_t part) const {
+    return std::span(bounds).subspan(part * bounds_each, bounds_each);
+  }
+
+private:
+  /// Adds the constraint |a x + b y| ≤ c, solved for y.
+  void add(double a, double b, double c) {
+    if (std::abs(b) > 1e-12 * std::abs(a)) [[likely]] {
+      const double inverse = 1 / b;
+      bounds.push_back({a * inverse, c * std::abs(inverse)});
+    } else {
+      before.back() = std::min(before.back(), c / std::max(std::abs(a), 1e-100));
+      bounds.push_back({0, std::numeric_limits<double>::infinity()});
+    }
+  }
+  /// Applies a velocity limit. If |q'| is below a line from l to r l, ṡ² may be below (limit /
+  /// line)², which is a convex function, and is above its chord divided by the largest ratio of the
+  /// two. That ratio is attained at (2 r + 1) / (3 r + 3) of the segment.
+  void apply_velocity_limit(const std::array<double, 3>& p, double limit) {
+    const double l_0 = std::abs(p[0]), l_1 = std::abs(p[1]), l_2 = std::abs(p[2]);
+    double at_start = limit / std::max({l_0, l_1, l_2, 1e-50}), at_end = at_start; // ṡ
+    if (at_start * at_start >= std::max(before.back(), after.back())) {
+      return;
+    }
+    const double over = std::max(0.0, l_1 - (l_0 + l_2) / 2);
+    const double x_0 = l_0 + over, x_1 = l_2 + over, r = x_1 / x_0;
+    // Where the line changes much within a segment, its maximum gives a better limit.
+    if (r > .5 && r < 2) {
+      const double u = (2 * r + 1) / (3 * r + 3), line = 1 + (r - 1) * u;
+      const double ratio = line * std::sqrt(1 + (1 / (r * r) - 1) * u);
+      at_start = limit / (x_0 * ratio);
+      at_end = limit / (x_1 * ratio);
+    }
+    before.back() = std::min(before.back(), at_start * at_start);
+    after.back() = std::min(after.back(), at_end * at_end);
+  }
+};
+
+/// Infeasible boundary velocity: the end of the path, and the largest ṡ² that is feasible there.
+struct infeasible_boundary {
+  bool at_start = false, at_end = false;
+  double largest = 0;
+};
+
+/// Maximum squared path velocities ṡ² at the ends of all segments. The backward pass finds the
+/// range from which the given end can be reached; the forward pass takes the largest values that
+/// this range and the constraints admit.
+///
+/// \param infeasible  set if a boundary velocity is infeasible; then the result has no meaning
+[[nodiscard]] std::vector<double> phase_plane_velocities(const path_bounds& path, double first,
+                                                         double last,
+                                                         infeasible_boundary& infeasible) {
   const std::size_t n = path.size();
   const auto cap = [&](std::size_t i) {
     return std::min(i < n ? path.before[i] : path.after[n - 1],
@@ -304,64 +390,6 @@ std::vector<double> phase_plane_velocities(const path_bounds& path, double first
   }
   return speeds;
 }
-void path_bounds::reserve(std::size_t parts) {
-  before.reserve(parts);
-  after.reserve(parts);
-  bounds.reserve(parts * bounds_each);
-}
-
-std::span<const speed_bound> path_bounds::of(std::size_t part) const {
-  return std::span(bounds).subspan(part * bounds_each, bounds_each);
-}
-
-void path_bounds::add(const joint_cubic& q, const Eigen::VectorXd& velocity,
-                      const Eigen::VectorXd& acceleration) {
-  before.push_back(1e100);
-  after.push_back(1e100);
-  const std::array<Eigen::VectorXd, 3> slopes{q.first(0), Eigen::VectorXd(q.c1 + q.length * q.c2),
-                                              q.first(q.length)};
-  const Eigen::VectorXd second = q.second(0), last = q.second(q.length);
-  const double half = 1 / (2 * q.length); // s̈ = (y − x) / (2 length)
-  std::size_t at = bounds.size();
-  bounds.resize(at + bounds_each);
-  for (Eigen::Index i = 0; i < second.size(); ++i) {
-    const std::array<double, 3> p{slopes[0][i], slopes[1][i], slopes[2][i]};
-    apply_velocity_limit(p, velocity[i]);
-    bounds[at++] = bound(second[i] - p[0] * half, p[0] * half, acceleration[i]);
-    bounds[at++] = bound(last[i] / 2 - p[1] * half, second[i] / 2 + p[1] * half, acceleration[i]);
-    bounds[at++] = bound(-p[2] * half, last[i] + p[2] * half, acceleration[i]);
-  }
-}
-
-speed_bound path_bounds::bound(double a, double b, double c) {
-  if (std::abs(b) > 1e-12 * std::abs(a)) [[likely]] {
-    const double inverse = 1 / b;
-    return {a * inverse, c * std::abs(inverse)};
-  }
-  before.back() = std::min(before.back(), c / std::max(std::abs(a), 1e-100));
-  return {0, std::numeric_limits<double>::infinity()};
-}
-
-void path_bounds::apply_velocity_limit(const std::array<double, 3>& p, double limit) {
-  const double l_0 = std::abs(p[0]), l_1 = std::abs(p[1]), l_2 = std::abs(p[2]);
-  double at_start = limit / std::max({l_0, l_1, l_2, 1e-50}), at_end = at_start; // ṡ
-  if (at_start * at_start >= std::max(before.back(), after.back())) {
-    return;
-  }
-  const double over = std::max(0.0, l_1 - (l_0 + l_2) / 2);
-  const double x_0 = l_0 + over, x_1 = l_2 + over, r = x_1 / x_0;
-  // Where the line changes much within a segment, its maximum gives a better limit.
-  if (r > .5 && r < 2) {
-    const double u = (2 * r + 1) / (3 * r + 3), line = 1 + (r - 1) * u;
-    const double ratio = line * std::sqrt(1 + (1 / (r * r) - 1) * u);
-    at_start = limit / (x_0 * ratio);
-    at_end = limit / (x_1 * ratio);
-  }
-  before.back() = std::min(before.back(), at_start * at_start);
-  after.back() = std::min(after.back(), at_end * at_end);
-}
-
-namespace {
 
 /// Segments of a curve with constant s̈ each: their number is proportional to the length, but at
 /// least sixteen per edge; they are shorter towards the ends of edges, where the second derivative
@@ -412,17 +440,6 @@ void require_feasible_velocities(const infeasible_boundary& infeasible, double f
   return result;
 }
 
-[[nodiscard]] path_bounds bounds_of(const std::vector<joint_cubic>& parts,
-                                    const Eigen::VectorXd& velocity,
-                                    const Eigen::VectorXd& acceleration) {
-  path_bounds result(velocity.size());
-  result.reserve(parts.size());
-  for (const auto& part : parts) {
-    result.add(part, velocity, acceleration);
-  }
-  return result;
-}
-
 /// Largest fraction of an acceleration limit that a motion uses, by Bernstein coefficients.
 [[nodiscard]] double largest_fraction(const timed_path& motion, const Eigen::VectorXd& limits) {
   double result = 0;
@@ -440,10 +457,13 @@ void require_feasible_velocities(const infeasible_boundary& infeasible, double f
   return result;
 }
 
-} // namespace
-
-timed_path timed_by_accelerations(const time_parametrisation_input& problem,
-                                  const std::vector<joint_cubic>& curve) {
+/// Minimum-time motion along a curve with constant s̈ in each segment. If segments are
+/// so short that round-off takes accelerations beyond their limits, it is computed
+/// again with smaller limits.
+///
+/// \throws invalid_input for velocities at ends that are too fast
+[[nodiscard]] timed_path timed_by_accelerations(const time_parametrisation_input& problem,
+                                                const std::vector<joint_cubic>& curve) {
   const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
   const double first = problem.initial_speed, last = problem.final_speed;
   Eigen::VectorXd limits = problem.acceleration;
@@ -451,7 +471,7 @@ timed_path timed_by_accelerations(const time_parametrisation_input& problem,
   for (int round = 0; round < 8; ++round) {
     infeasible_boundary infeasible;
     const std::vector<double> squares = phase_plane_velocities(
-        bounds_of(parts, problem.velocity, limits), first * first, last * last, infeasible);
+        path_bounds(parts, problem.velocity, limits), first * first, last * last, infeasible);
     if (result && (infeasible.at_start || infeasible.at_end)) {
       break; // velocities at their limits
     }
@@ -466,6 +486,8 @@ timed_path timed_by_accelerations(const time_parametrisation_input& problem,
   return *result;
 }
 
+} // namespace
+
 timed_path min_acceleration_motion(const time_parametrisation_input& problem,
                                    const std::vector<joint_cubic>& curve) {
   const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
@@ -476,7 +498,7 @@ timed_path min_acceleration_motion(const time_parametrisation_input& problem,
   const auto is_feasible = [&](double scale) {
     const Eigen::VectorXd acceleration = scale * problem.acceleration;
     infeasible = {};
-    squares = phase_plane_velocities(bounds_of(parts, problem.velocity, acceleration), ends[0],
+    squares = phase_plane_velocities(path_bounds(parts, problem.velocity, acceleration), ends[0],
                                      ends[1], infeasible);
     return !infeasible.at_start && !infeasible.at_end;
   };

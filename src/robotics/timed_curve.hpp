@@ -98,48 +98,6 @@ struct feasible_path_velocities {
 [[nodiscard]] double nearest_speed(std::span<const speed_bound> bounds, double x, double lower,
                                    double upper);
 
-/// Constraints on ṡ² at the starts and ends of the segments of a path, between which it is linear
-/// in s.
-struct path_bounds {
-  std::vector<double> before, after; ///< largest ṡ² that velocity limits admit
-  std::vector<speed_bound> bounds;   ///< constraints, as many for each segment
-  std::size_t bounds_each;
-
-  explicit path_bounds(Eigen::Index joints) : bounds_each(std::size_t(3 * joints)) {}
-
-  void reserve(std::size_t parts);
-  [[nodiscard]] std::size_t size() const { return before.size(); }
-  [[nodiscard]] std::span<const speed_bound> of(std::size_t part) const;
-  /// Adds the constraints by which velocities and accelerations stay within limits on an entire
-  /// segment. With ṡ² linear in s the acceleration q' s̈ + q'' ṡ² is a quadratic polynomial and
-  /// lies between its Bernstein coefficients, which are linear in both ṡ².
-  void add(const joint_cubic& q, const Eigen::VectorXd& velocity,
-           const Eigen::VectorXd& acceleration);
-
-private:
-  /// Constraint |a x + b y| ≤ c, solved for y.
-  [[nodiscard]] speed_bound bound(double a, double b, double c);
-  /// Applies a velocity limit. If |q'| is below a line from l to r l, ṡ² may be below (limit /
-  /// line)², which is a convex function, and is above its chord divided by the largest ratio of the
-  /// two. That ratio is attained at (2 r + 1) / (3 r + 3) of the segment.
-  void apply_velocity_limit(const std::array<double, 3>& p, double limit);
-};
-
-/// Infeasible boundary velocity: the end of the path, and the largest ṡ² that is feasible there.
-struct infeasible_boundary {
-  bool at_start = false, at_end = false;
-  double largest = 0;
-};
-
-/// Maximum squared path velocities ṡ² at the ends of all segments. The backward pass finds the
-/// range from which the given end can be reached; the forward pass takes the largest values that
-/// this range and the constraints admit.
-///
-/// \param infeasible  set if a boundary velocity is infeasible; then the result has no meaning
-[[nodiscard]] std::vector<double> phase_plane_velocities(const path_bounds& path, double first,
-                                                         double last,
-                                                         infeasible_boundary& infeasible);
-
 /// Segment of a path on one edge of a curve and in one interval [k, k + 1] of τ: its start on the
 /// edge, and s relative to that start, a t + b t² + c t³ with t = τ − k − from, 0 ≤ t ≤ length.
 struct reference_piece {
@@ -182,24 +140,17 @@ private:
   std::vector<double> c_;
 };
 
-/// Linear form of the three B-spline coefficients of the squared path velocity that
-/// are active in a segment.
-using linear_form = std::array<double, 3>;
-
-[[nodiscard]] inline double times(const linear_form& row, const double* c) {
-  return row[0] * c[0] + row[1] * c[1] + row[2] * c[2];
-}
-
-/// Polynomial in τ − k, by its powers, of a squared path velocity in interval k. The latter is a
-/// quadratic B-spline whose outer coefficients are its values at the ends.
-[[nodiscard]] std::array<linear_form, 3> path_velocity_powers(std::size_t k, std::size_t intervals);
+/// Linear forms of the three B-spline coefficients of the squared path velocity that are active in
+/// a segment, as columns.
+template <int Count>
+using linear_forms = Eigen::Matrix<double, 3, Count>;
 
 /// Constraints |x c| ≤ limit of one joint, relative to its limits: accelerations, and jerks divided
 /// by τ̇, by their four Bernstein coefficients in a segment. `beyond` c bounds the error of the
 /// middle two; the outer ones are values at the ends.
 struct joint_bounds {
-  std::array<linear_form, 4> acceleration{}, jerk{};
-  linear_form beyond_acceleration{}, beyond_jerk{};
+  linear_forms<4> acceleration, jerk;
+  Eigen::Vector3d beyond_acceleration, beyond_jerk;
 };
 
 /// Bernstein coefficients in a segment of the squared path velocity, and of the square of the
@@ -207,8 +158,9 @@ struct joint_bounds {
 struct piece_bounds {
   std::size_t first; ///< index of the coefficient that c[0] is
   double length;     ///< length of the segment in τ
-  std::array<linear_form, 4> squared_velocity{};
-  std::array<linear_form, 10> square_rate{};
+  linear_forms<4> squared_velocity = linear_forms<4>::Zero();
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero(); ///< squared path velocity in the middle
+  linear_forms<10> square_rate = linear_forms<10>::Zero();
 };
 
 /// Constraints on a squared path velocity b = τ̇² that is a quadratic B-spline of τ
@@ -230,42 +182,13 @@ struct path_velocity_constraints {
                             const std::vector<reference_piece>& path, std::size_t intervals,
                             const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration,
                             const Eigen::VectorXd& jerk);
-
-private:
-  void add(const joint_cubic& q, const reference_piece& piece, std::size_t intervals,
-           const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration,
-           const Eigen::VectorXd& jerk);
 };
-
-/// Squared path velocity within limits, by the coefficients of its B-spline.
-struct path_velocity_result {
-  std::vector<double> coefficients;
-  std::array<double, 2> reached{}; ///< fraction of the required value attained at each end
-  std::size_t nearest_joint = 0;   ///< joint whose acceleration and jerk limits are the nearest
-};
-
-/// Nearly minimum-time squared path velocity by a log-barrier interior-point method: the margins to
-/// the limits cost about 10 / accuracy of the time.
-///
-/// \param ends  squared path velocities required at the ends, where joint velocities satisfy their
-/// limits; 0: free
-[[nodiscard]] path_velocity_result
-minimum_time_path_velocity(const path_velocity_constraints& bounds,
-                           const std::array<double, 2>& ends, double accuracy);
 
 /// Timed segments of a path in order, and their total duration.
 struct timed_path {
   std::vector<timed_piece> pieces;
   double duration = 0;
 };
-
-/// Minimum-time motion along a curve with constant s̈ in each segment. If segments are
-/// so short that round-off takes accelerations beyond their limits, it is computed
-/// again with smaller limits.
-///
-/// \throws invalid_input for velocities at ends that are too fast
-[[nodiscard]] timed_path timed_by_accelerations(const time_parametrisation_input& problem,
-                                                const std::vector<joint_cubic>& curve);
 
 /// Motion with approximately the given velocities at its ends that needs the smallest fraction of
 /// the acceleration limits for them, as an initial guess for jerk limits. (Near the minimum-time
@@ -274,16 +197,12 @@ struct timed_path {
 [[nodiscard]] timed_path min_acceleration_motion(const time_parametrisation_input& problem,
                                                  const std::vector<joint_cubic>& curve);
 
-/// Path arguments s of a motion at n + 1 equidistant times; the last one is the length of the path.
-[[nodiscard]] std::vector<double> arc_lengths_of(const timed_path& path, std::size_t n,
-                                                 double length);
-
 /// Trajectory along a curve with a squared path velocity τ̇²(τ) over n intervals of τ, given by its
 /// B-spline coefficients.
 [[nodiscard]] timed_path trajectory_from_path_velocity(const std::vector<joint_cubic>& curve,
                                                        const std::vector<reference_piece>& path,
                                                        std::size_t n,
-                                                       const std::vector<double>& squared_velocity);
+                                                       const Eigen::VectorXd& squared_velocity);
 
 /// Near-minimum-time motion along a curve within velocity, acceleration and jerk limits.
 ///

@@ -473,6 +473,7 @@ TEST_CASE("path_velocity_constraints: bounds on a segment enclose velocities, ac
     for (std::size_t i = 0; i < path.size(); ++i) {
       const auto& piece = path[i];
       const double* c = &squared_velocity[piece.interval];
+      const Eigen::Map<const Eigen::Vector3d> coefficients(c);
       const real_50 first = piece.interval == 0 ? c[0] : (real_50(c[0]) + c[1]) / 2;
       const real_50 last = piece.interval + 1 == n ? c[2] : (real_50(c[1]) + c[2]) / 2;
       for (int at = 0; at <= 4; ++at) {
@@ -494,16 +495,16 @@ TEST_CASE("path_velocity_constraints: bounds on a segment enclose velocities, ac
           const auto& rows = bounds.joints[3 * i + std::size_t(joint)];
           const double u = at / 4.0;
           const auto& rates = bounds.pieces[i].square_rate;
-          const double square_rate =
-              bernstein([&](std::size_t r) { return detail::times(rates[r], c); }, 9, u);
+          const double square_rate = bernstein(
+              [&](std::size_t r) { return coefficients.dot(rates.col(Eigen::Index(r))); }, 9, u);
           CHECK(rate * rate * square / (v[joint] * v[joint]) <= square_rate * (1 + 1e-12) + 1e-28);
           const auto check = [&](const real_50& exact, const auto& all, const auto& beyond) {
             // Only the middle two coefficients are displaced; the bound is exact at the ends.
             const auto moved = [&](double sign) {
               return bernstein(
                   [&](std::size_t r) {
-                    const double off = r == 1 || r == 2 ? detail::times(beyond, c) : 0;
-                    return detail::times(all[r], c) + sign * off;
+                    const double off = r == 1 || r == 2 ? coefficients.dot(beyond) : 0;
+                    return coefficients.dot(all.col(Eigen::Index(r))) + sign * off;
                   },
                   3, u);
             };
@@ -539,9 +540,9 @@ TEST_CASE("reference_parametrisation: a knot next to a node does not change the 
       const auto number = [](double x) { return Eigen::VectorXd::Constant(1, x); };
       return detail::joint_cubic{number(from), number(1), number(0), number(0), length};
     };
-    std::vector<double> squared_velocity;
+    Eigen::VectorXd squared_velocity(18);
     for (int i = 0; i < 18; ++i) {
-      squared_velocity.push_back(1 + .1 * std::sin(i));
+      squared_velocity[i] = 1 + .1 * std::sin(i);
     }
     const auto motion = detail::trajectory_from_path_velocity(
         std::vector{straight(0, knot), straight(knot, arc_lengths.back() - knot)}, path, 16,
