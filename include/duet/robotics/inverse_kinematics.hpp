@@ -116,6 +116,12 @@ DUET_ABI_END
 /// once the error stops falling, from random configurations, which are identical in every call with
 /// the same seed.
 ///
+/// Objectives and obstacles act as for partial goals. For six joints, revolute or up to three of
+/// them prismatic, an objective is minimised from all solutions of `all_inverse_kinematics` within
+/// the limits, with any full turns that limits allow: a `preferred_posture` gives the nearest
+/// solution of all if these are complete. At singular poses with a self-motion, the search from
+/// random configurations is added.
+///
 /// \param start  initial guess, a nearby solution for a warm start; moved to within the limits,
 /// revolute joints whose range contains a full turn by full turns
 /// \return the joints; unless `reason` is `reached`, the configuration nearest to the goal that was
@@ -126,26 +132,16 @@ DUET_ABI_END
 /// blocks the search there, `iteration_limit` that nothing does
 /// \throws invalid_input for a start that is not finite or of another size, for a goal that is not
 /// a pose, for invalid options, and for more than 100 joints
-template <SerialChain C, VectorLike Start>
+template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 [[nodiscard]] inverse_kinematics_result
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
-                   const inverse_kinematics_options& options = {}) {
+                   const inverse_kinematics_options& options = {}, const Objective& objective = {},
+                   const Scene& around = {}) {
   inverse_kinematics_result result;
+  const auto preferences = detail::preferences_of(chain, objective, around);
   detail::solve_poses(chain, {&goal, 1}, detail::start_of(chain, start), {&result, 1}, options,
-                      one_core, {}, true);
+                      one_core, preferences, true);
   return result;
-}
-
-/// Inverse kinematics of many goals: out[i] = inverse_kinematics(chain, goals[i], start, options),
-/// with identical results for any number of threads.
-///
-/// \throws invalid_input if the sizes differ, for the first goal that is not a pose, and as above
-/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
-template <SerialChain C, VectorLike Start>
-void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
-                        const Start& start, std::span<inverse_kinematics_result> out,
-                        const inverse_kinematics_options& options = {}, execution how = one_core) {
-  detail::solve_poses(chain, goals, detail::start_of(chain, start), out, options, how, {}, false);
 }
 
 /// Inverse kinematics for partial goals: joint coordinates within the limits of a chain at which
@@ -181,25 +177,6 @@ inverse_kinematics(const C& chain, const G& goal, const Start& start,
   return result;
 }
 
-/// Inverse kinematics for a pose with an objective or among obstacles, as for partial goals: joint
-/// coordinates within the limits at which the tip of a chain has the pose `goal`.
-///
-/// For six joints, revolute or up to three of them prismatic, an objective is minimised from all
-/// solutions of `all_inverse_kinematics` within the limits, with any full turns that limits allow:
-/// a `preferred_posture` gives the nearest solution of all if these are complete. At singular poses
-/// with a self-motion, the search from random configurations is added.
-template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
-[[nodiscard]] inverse_kinematics_result
-inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
-                   const inverse_kinematics_options& options, const Objective& objective,
-                   const Scene& around = {}) {
-  inverse_kinematics_result result;
-  const auto preferences = detail::preferences_of(chain, objective, around);
-  detail::solve_poses(chain, {&goal, 1}, detail::start_of(chain, start), {&result, 1}, options,
-                      one_core, preferences, true);
-  return result;
-}
-
 /// Inverse kinematics of many partial goals: out[i] = inverse_kinematics(chain, goals[i], start,
 /// options, objective, around), with identical results for any number of threads.
 ///
@@ -225,12 +202,13 @@ void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
 /// Inverse kinematics of many poses: out[i] = inverse_kinematics(chain, goals[i], start, options,
 /// objective, around), with identical results for any number of threads.
 ///
-/// \throws invalid_input, cancelled: as for partial goals
+/// \throws invalid_input if the sizes differ, for the first goal that is not a pose, and as above
+/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
 template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
 void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
                         const Start& start, std::span<inverse_kinematics_result> out,
-                        const inverse_kinematics_options& options, execution how,
-                        const Objective& objective, const Scene& around = {}) {
+                        const inverse_kinematics_options& options = {}, execution how = one_core,
+                        const Objective& objective = {}, const Scene& around = {}) {
   const auto preferences = detail::preferences_of(chain, objective, around);
   detail::solve_poses(chain, goals, detail::start_of(chain, start), out, options, how, preferences,
                       false);
