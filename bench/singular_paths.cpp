@@ -54,8 +54,7 @@ std::optional<joints_of<N>> newton(const serial_chain<N>& chain, joints_of<N> th
   for (int k = 0; k < 12; ++k) {
     const auto current = detail::to_tip_pose(chain.pose(theta));
     const auto e = detail::error_twist(current, detail::to_tip_pose(goal));
-    const Eigen::Matrix<double, 6, 1> twist =
-        Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&e.values[0]);
+    const Eigen::Matrix<double, 6, 1> twist = e;
     if (pose_distance(chain.pose(theta), goal) < 1e-7) {
       return theta;
     }

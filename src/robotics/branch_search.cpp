@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "branches/branch_search.hpp"
+#include "branches/loop_equation.hpp"
 #include "branches/subproblems.hpp"
 
 #include "tip_pose.hpp"

@@ -2,15 +2,12 @@
 #pragma once
 
 #include "bounded_step.hpp"
-#include "small_vector.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <optional>
-#include <utility>
 #include <vector>
 
 /// \file
@@ -27,58 +24,37 @@ struct inequality {
   double bound;
 };
 
-/// Least squares: the residual f − Σ z_i column_i of minimum norm, and z. The second pass removes
-/// round-off of the first: a Gram matrix has the squared condition number.
-template <class V>
-[[nodiscard]] std::pair<V, V> least_squares_on(const std::vector<V>& columns, const V& f) {
-  const auto count = Eigen::Index(columns.size());
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, V::MaxRowsAtCompileTime,
-                V::MaxRowsAtCompileTime>
-      gram(count, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    for (Eigen::Index j = 0; j < count; ++j) {
-      gram(i, j) = columns[std::size_t(i)].dot(columns[std::size_t(j)]);
-    }
-  }
-  const cholesky factors(gram);
-  V z = V::Zero(count), right_side(count), residual = f;
-  for (int twice = 0; twice < 2; ++twice) {
-    for (Eigen::Index i = 0; i < count; ++i) {
-      right_side[i] = columns[std::size_t(i)].dot(residual);
-    }
-    z += factors.solve(right_side);
-    residual = f;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      residual -= z[i] * columns[std::size_t(i)];
-    }
-  }
-  return {residual, z};
-}
-
-/// Nonnegative least squares: the residual f − Σ u_i column_i of minimum norm with all u_i ≥ 0, by
-/// Lawson and Hanson's active-set method.
-template <class V>
-[[nodiscard]] V nonnegative_residual(const std::vector<V>& columns, const V& f) {
+/// Nonnegative least squares: the residual f − A u of minimum norm with all u ≥ 0, by Lawson and
+/// Hanson's active-set method.
+template <class M, class V>
+[[nodiscard]] V nonnegative_residual(const M& a, const V& f) {
+  constexpr int rows = M::MaxRowsAtCompileTime;
   struct share {
-    std::size_t column;
+    Eigen::Index column;
     double u;
   };
   std::vector<share> active;
   V residual = f;
-  for (std::size_t round = 0; round < 3 * columns.size(); ++round) {
-    const auto gain = [&](const V& column) { return column.dot(residual); };
-    const auto best = std::max_element(columns.begin(), columns.end(),
-                                       [&](const V& a, const V& b) { return gain(a) < gain(b); });
-    if (!(gain(*best) > 1e-12)) {
+  for (Eigen::Index round = 0; round < 3 * a.cols(); ++round) {
+    Eigen::Index best = 0;
+    if (!((a.transpose() * residual).maxCoeff(&best) > 1e-12)) {
       break;
     }
-    active.push_back({std::size_t(best - columns.begin()), 0});
+    active.push_back({best, 0});
     for (bool is_settled = false; !is_settled && !active.empty();) {
-      std::vector<V> chosen;
-      for (const share& each : active) {
-        chosen.push_back(columns[each.column]);
+      const auto count = Eigen::Index(active.size());
+      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, rows, rows + 1> chosen(a.rows(),
+                                                                                      count);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        chosen.col(i) = a.col(active[std::size_t(i)].column);
       }
-      const auto [rest, z] = least_squares_on(chosen, f);
+      // The second pass removes round-off of the first: a Gram matrix has the squared condition
+      // number.
+      using gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, rows + 1, rows + 1>;
+      const Eigen::LDLT<gram> factors(chosen.transpose() * chosen);
+      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, rows + 1, 1> z =
+          factors.solve(chosen.transpose() * f);
+      z += factors.solve(chosen.transpose() * (f - chosen * z));
       // Step towards z as far as all stay nonnegative; the first that becomes zero leaves the
       // active set.
       double fraction = 1;
@@ -95,7 +71,7 @@ template <class V>
       }
       is_settled = first == active.size();
       if (is_settled) {
-        residual = rest;
+        residual = f - chosen * z;
       } else {
         active.erase(active.begin() + std::ptrdiff_t(first));
       }
@@ -111,23 +87,22 @@ template <class V>
 template <class V>
 [[nodiscard]] std::optional<V> least_distance(const std::vector<inequality<V>>& inequalities,
                                               Eigen::Index n) {
-  constexpr int capacity = V::MaxRowsAtCompileTime;
-  using column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, capacity + 1, 1>;
-  std::vector<column> columns;
-  columns.reserve(inequalities.size());
+  constexpr int rows = V::RowsAtCompileTime == Eigen::Dynamic ? Eigen::Dynamic
+                                                              : V::RowsAtCompileTime + 1,
+                max_rows = V::MaxRowsAtCompileTime + 1;
+  using column = Eigen::Matrix<double, rows, 1, 0, max_rows, 1>;
+  Eigen::Matrix<double, rows, Eigen::Dynamic, 0, max_rows, Eigen::Dynamic> columns(
+      n + 1, Eigen::Index(inequalities.size()));
+  Eigen::Index count = 0;
   for (const inequality<V>& each : inequalities) {
     const double length = each.normal.norm();
     if (length > 1e-12) {
-      columns.emplace_back(n + 1);
-      columns.back().head(n) = each.normal / length;
-      columns.back()[n] = each.bound / length;
+      columns.col(count++) << each.normal / length, each.bound / length;
     } else if (each.bound > 1e-9) {
       return std::nullopt; // independent of x
     }
   }
-  if (columns.empty()) {
-    return V(V::Zero(n));
-  }
+  columns.conservativeResize(Eigen::NoChange, count);
   const column residual = nonnegative_residual(columns, column(column::Unit(n + 1, n)));
   // residual[n] is 1 / (1 + |x|²).
   if (!(residual[n] > 1e-8)) {
@@ -136,38 +111,46 @@ template <class V>
   return V(-residual.head(n) / residual[n]);
 }
 
-/// Projection of joint steps onto the null space of the Jacobian (self-motion), by Gram–Schmidt
-/// orthonormalisation of its rows.
+/// Orthonormal vectors (Gram–Schmidt), and the projection onto their orthogonal complement.
 template <class V>
-class self_motion {
+class orthonormal_rows {
 public:
+  orthonormal_rows() = default;
+  /// Rows of a matrix: the projection is that of steps onto its null space (self-motion).
   template <class J>
-  explicit self_motion(const J& jacobian) {
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      V row = V::Zero(jacobian.cols());
-      for (Eigen::Index k = 0; k < row.size(); ++k) {
-        row[k] = jacobian(i, k);
-      }
-      const V rest = (*this)(row);
-      const double length = rest.norm();
-      if (length > 1e-9 * row.norm()) {
-        rows_[count_++] = rest / length;
-      }
+  explicit orthonormal_rows(const J& matrix, Eigen::Index size) {
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      V row = V::Zero(size);
+      row.head(matrix.cols()) = matrix.row(i);
+      add(row);
     }
   }
 
-  [[nodiscard]] V operator()(V step) const {
+  /// Adds a vector, unless it is linearly dependent on those added before.
+  ///
+  /// \return length of its new component, 0 for none
+  double add(const V& row) {
+    const V rest = (*this)(row);
+    const double length = rest.norm();
+    const bool is_new = length > 1e-9 * row.norm();
+    if (is_new) {
+      rows_.push_back(rest / length);
+    }
+    return is_new ? length : 0;
+  }
+  [[nodiscard]] const V& back() const { return rows_.back(); }
+  /// Component of x that is orthogonal to all of them.
+  [[nodiscard]] V operator()(V x) const {
     for (int twice = 0; twice < 2; ++twice) { // the second pass removes round-off
-      for (std::size_t i = 0; i < count_; ++i) {
-        step -= rows_[i].dot(step) * rows_[i];
+      for (const V& row : rows_) {
+        x -= row.dot(x) * row;
       }
     }
-    return step;
+    return x;
   }
 
 private:
-  std::array<V, 6> rows_; ///< rows of J, orthonormalised
-  std::size_t count_ = 0;
+  std::vector<V> rows_;
 };
 
 template <class V>
@@ -178,29 +161,26 @@ struct constrained_step_result {
 
 /// Step Δ nearest to `preferred` with lower ≤ Δ ≤ upper and the inequalities, and with J Δ = e up
 /// to damping near singularities.
-template <class J, class E, class V>
+template <class J, class V>
 [[nodiscard]] constrained_step_result<V>
-constrained_step(const J& jacobian, const E& e, const V& preferred, const V& lower, const V& upper,
-                 const std::vector<inequality<V>>& inequalities) {
-  const Eigen::Index n = jacobian.cols();
+constrained_step(const J& jacobian, const small_twist& e, const V& preferred, const V& lower,
+                 const V& upper, const std::vector<inequality<V>>& inequalities) {
+  const Eigen::Index n = jacobian.cols(), size = preferred.size();
   const damped_gram gram(gram_of(jacobian));
-  const E force = gram.solve(e);
-  const self_motion<V> null_space(jacobian);
+  const orthonormal_rows<V> null_space(jacobian, size);
   V unconstrained = null_space(preferred);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    unconstrained[i] += column_dot(jacobian, i, force);
-  }
+  unconstrained.head(n) += jacobian.transpose() * gram.solve(e);
   std::vector<inequality<V>> reduced; // in the null space
   reduced.reserve(inequalities.size() + 2 * std::size_t(n));
   for (const inequality<V>& each : inequalities) {
     reduced.push_back({null_space(each.normal), each.bound - each.normal.dot(unconstrained)});
   }
   for (Eigen::Index i = 0; i < n; ++i) {
-    const V normal = null_space(V::Unit(n, i));
+    const V normal = null_space(V::Unit(size, i));
     reduced.push_back({normal, lower[i] - unconstrained[i]});
     reduced.push_back({-normal, unconstrained[i] - upper[i]});
   }
-  const std::optional<V> correction = least_distance(reduced, n);
+  const std::optional<V> correction = least_distance(reduced, size);
   return {correction ? std::optional<V>(unconstrained + *correction) : std::nullopt,
           gram.smallest()};
 }

@@ -250,6 +250,10 @@ class branch_finder {
 public:
   explicit branch_finder(const solution_curve& curve) : curve_(curve) {}
 
+  /// The branch point ahead of a point of the curve, to round-off; empty if no branch point is
+  /// near, or if branches touch there, so that second derivatives do not separate them.
+  ///
+  /// \param step  half of the last rejected step; a branch point is near if it is small
   [[nodiscard]] std::optional<branch_point_data> ahead(const curve_point& from, double step) const {
     const auto x = step < 1e-3 ? singular_point(from, 4 * step) : std::nullopt;
     if (!x || from.tangent.dot(*x - from.x) <= 0) {
@@ -429,15 +433,6 @@ private:
   const solution_curve& curve_;
 };
 
-/// The branch point ahead of a point of the curve, to round-off; empty if no branch point is
-/// near, or if branches touch there, so that second derivatives do not separate them.
-///
-/// \param step  half of the last rejected step; a branch point is near if it is small
-[[nodiscard]] std::optional<branch_point_data>
-branch_point_ahead(const solution_curve& curve, const curve_point& from, double step) {
-  return branch_finder(curve).ahead(from, step);
-}
-
 /// Start of a curve with its rates, to detect that the curve returns.
 class closure_test {
 public:
@@ -549,7 +544,7 @@ private:
 
   /// A point behind a branch point, if steps became so small that one may be near.
   [[nodiscard]] std::optional<curve_point> past_branch_point(const curve_point& from, double step) {
-    const auto crossing = branch_point_ahead(curve_, from, step);
+    const auto crossing = branch_finder(curve_).ahead(from, step);
     if (!crossing) {
       return std::nullopt;
     }
@@ -609,12 +604,8 @@ Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
   const detail::rank_revealing_svd svd(j);
   detail::require(svd.rank == j.cols(), "duet: driven_motion: ", driven(),
                   " does not determine the rates of the other coordinates (dead point)");
-  Eigen::MatrixXd result(j.cols(), j.rows());
-  for (Eigen::Index i = 0; i < j.rows(); ++i) {
-    result.col(i) = svd.solve(Eigen::VectorXd::Unit(j.rows(), i), j.cols())
-                        .cwiseProduct(mechanism_.units()(dependent_));
-  }
-  return result;
+  return mechanism_.units()(dependent_).asDiagonal() * svd.v *
+         svd.s.head(j.cols()).cwiseInverse().asDiagonal() * svd.u.leftCols(j.cols()).transpose();
 }
 
 void driven_motion::require_accelerations() const {
@@ -682,11 +673,16 @@ Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
            curve.coordinates(current.x), target);
     }
   };
+  const auto at_target = [&](const Eigen::VectorXd& x) {
+    Eigen::VectorXd q = curve.coordinates(x);
+    q(drives_) = target;
+    return q;
+  };
   for (double step = options_.largest_step;;) {
     const auto next = curve.advance(current, step);
     if (!next) {
       step /= 2;
-      if (const auto met = detail::branch_point_ahead(curve, current, step)) {
+      if (const auto met = detail::branch_finder(curve).ahead(current, step)) {
         const Eigen::VectorXd& along = met->tangents[0];
         const double s = met->x[met->x.size() - 1], rate = along[along.size() - 1];
         current = met->points[0];
@@ -696,9 +692,7 @@ Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
           guess.x = met->x + (length - s) / rate * along;
           const auto reached = curve.at(length, guess, step);
           if (reached || curve.residuals(guess.x).norm() <= 1e-12) {
-            Eigen::VectorXd q = curve.coordinates(reached ? reached->x : guess.x);
-            q(drives_) = target;
-            return q;
+            return at_target(reached ? reached->x : guess.x);
           }
         }
         if (current.s() >= length || current.s_rate() <= 0) {
@@ -717,9 +711,7 @@ Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
       const double part = (length - current.s()) / (to.end.s() - current.s());
       const auto guess = curve.advance(current, part * to.step);
       if (const auto reached = curve.at(length, guess ? *guess : to.end, step)) {
-        Eigen::VectorXd q = curve.coordinates(reached->x);
-        q(drives_) = target;
-        return q;
+        return at_target(reached->x);
       }
     }
     if (next->s_rate() <= 0 && (to.end.s() < length || step < min_step)) {

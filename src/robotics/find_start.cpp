@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "branches/loop_equation.hpp"
 #include "planning_model.hpp"
-#include "solutions_within_limits.hpp"
 #include "splitmix64.hpp"
 
 #include <duet/core/errors.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "branches/branch_search.hpp"
 #include "branches/elimination.hpp"
+#include "branches/loop_equation.hpp"
 #include "branches/singular_value.hpp"
 #include "branches/subproblems.hpp"
 
@@ -10,6 +10,7 @@
 #include <duet/core/config.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
+#include <duet/quaternion/rotation.hpp>
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Core>
@@ -340,7 +341,7 @@ private:
       const loop_joint &b = loop.revolute(1), &c = loop.revolute(2), &d = loop.revolute(3);
       std::array<matrix, 4> rotations;
       rotations[0] = rotation_matrix(loop.revolute(0).axis, std::cos(alpha), std::sin(alpha));
-      const matrix closing = rotation_matrix_of(loop.loop_.closing.rotation);
+      const matrix closing = duet::rotation_matrix(loop.loop_.closing.rotation).cast<complex>();
       const matrix rest = rotations[0].transpose() * closing; // rotation by β, γ and δ
       const vector first = Eigen::Vector3d(b.axis).cast<complex>();
       const vector last = Eigen::Vector3d(d.axis).cast<complex>();
@@ -373,15 +374,6 @@ private:
       return (branches[0].determinant * branches[1].determinant).real() * across;
     }
   };
-
-  [[nodiscard]] static matrix rotation_matrix_of(const quaternion<double>& q) {
-    matrix result;
-    for (int k = 0; k < 3; ++k) {
-      const three_vector<double> e{k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.};
-      result.col(k) = Eigen::Vector3d(rotated(q, e)).cast<complex>();
-    }
-    return result;
-  }
 
   /// Closure condition (n₁ × n₂)·t, with t the remaining translation if prismatic joints are at 0.
   [[nodiscard]] complex closure_condition(const std::array<matrix, 4>& rotations) const {

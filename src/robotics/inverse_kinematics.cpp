@@ -1,12 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "bounded_step.hpp"
+#include "branches/loop_equation.hpp"
 #include "constrained_step.hpp"
-#include "goal_equations.hpp"
-#include "nearest_pose.hpp"
 #include "planning_model.hpp"
-#include "small_vector.hpp"
-#include "solutions_within_limits.hpp"
 #include "splitmix64.hpp"
 
 #include <duet/core/config.hpp>
@@ -51,10 +48,76 @@ void require_options(const inverse_kinematics_options& options) {
   return a < b || (std::isnan(b) && !std::isnan(a));
 }
 
+/// Equations J Δ = e of a goal at some θ.
+template <int Capacity>
+struct goal_equations {
+  chain_state<Capacity> at;
+  small_twist e = {};
+  pose_error residual = {};
+  std::array<bool, 6> is_free{}; ///< true for each of the six rows without an equation
+};
+
+/// Goal with lengths in the planner's unit: a pose, or a goal with a constraint of its own.
+struct scaled_goal {
+  double length;                  ///< the planner's unit of length
+  std::optional<tip_pose> target; ///< pose, in the planner's unit
+  const goal_view* other;         ///< if there is no pose, in the user's unit
+
+  [[nodiscard]] twist_constraint constraint(const tip_pose& tip) const {
+    if (target) {
+      const small_twist e = error_twist(tip, *target);
+      return {gram_matrix::Identity(), e, e};
+    }
+    twist_constraint x =
+        other->constraint(to_dual_quaternion({tip.rotation, length * tip.translation}));
+    x.lower.head<3>() /= length;
+    x.upper.head<3>() /= length;
+    x.matrix.topRightCorner<3, 3>() /= length;
+    x.matrix.bottomLeftCorner<3, 3>() *= length;
+    return x;
+  }
+  /// True if certainly out of reach: the tip is never farther from the first joint than the lengths
+  /// of links, prismatic joints and tool together.
+  [[nodiscard]] bool is_beyond(const chain_reach& reach, const pose_tolerance& tolerance) const {
+    if (target) {
+      return reach.is_beyond(*target, tolerance);
+    }
+    const three_vector<double> first = length * reach.first;
+    const double max_distance = (reach.links + reach.travel + reach.tool) * (1 + 1e-12);
+    return reach.has_joints && other->distance_from &&
+           other->distance_from(first.eigen()) / length > max_distance + tolerance.translation;
+  }
+  /// Sets the equations: all six components of the twist to a pose; of other goals M J Δ = e, where
+  /// rows within their bounds impose no equation.
+  template <int Capacity>
+  void set_equations(goal_equations<Capacity>& x) const {
+    if (target) {
+      x.e = error_twist(x.at.tip, *target);
+      x.residual = {length_of(target->translation - x.at.tip.translation),
+                    x.e.template tail<3>().norm()};
+      return;
+    }
+    const twist_constraint limits = constraint(x.at.tip);
+    x.e = unsatisfied(limits);
+    x.residual = deviation_of(x.e);
+    x.at.jacobian = (limits.matrix * x.at.jacobian).eval();
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      const bool is_equation =
+          limits.lower[i] == limits.upper[i] && !limits.matrix.row(i).isZero(0);
+      x.is_free[std::size_t(i)] = x.e[i] == 0 && !is_equation;
+      if (x.is_free[std::size_t(i)]) {
+        x.at.jacobian.row(i).setZero();
+      }
+    }
+  }
+  /// Part of a constraint that is not satisfied yet.
+  [[nodiscard]] static small_twist unsatisfied(const twist_constraint& limits) {
+    return limits.lower.cwiseMax(limits.upper.cwiseMin(0));
+  }
+};
+
 /// Common part of all searches for configurations of a chain.
-///
-/// \tparam Goal  a pose, or a type with its own `set_equations` and `is_beyond`
-template <int Capacity, class Goal = tip_pose>
+template <int Capacity>
 class inverse_kinematics_search {
   using vector = small_vector<Capacity>;
 
@@ -71,7 +134,7 @@ public:
   inverse_kinematics_search(const planning_model<Capacity>& model, const vector& start,
                             const inverse_kinematics_options& options)
       : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
-        start_(start) {
+        period_(vector::Zero()), beyond_(vector::Zero()), spread_(vector::Zero()), start_(start) {
     require_options(options);
     for (int i = 0; i < model.size; ++i) {
       require(start[i] - start[i] == 0, "duet: inverse_kinematics: joint ", i, " of the start is ",
@@ -87,15 +150,10 @@ public:
     start_ = within_limits(start_);
   }
 
-  [[nodiscard]] attempt operator()(const Goal& goal) const {
-    const bool is_out_of_reach = is_beyond(model_.reach, goal, tolerance_);
+  [[nodiscard]] attempt operator()(const scaled_goal& goal) const {
+    const bool is_out_of_reach = goal.is_beyond(model_.reach, tolerance_);
     const auto search = [&](const vector& from) {
-      if constexpr (std::same_as<Goal, tip_pose>) {
-        if (is_out_of_reach) {
-          return nearest(from, goal);
-        }
-      }
-      return approach(from, goal);
+      return is_out_of_reach && goal.target ? nearest(from, goal) : approach(from, goal);
     };
     attempt best = search(start_);
     int iterations = best.iterations, restarts = 0;
@@ -119,13 +177,13 @@ public:
   }
 
   /// Damped least squares from one initial guess, without random restarts.
-  [[nodiscard]] attempt approach(vector theta, const Goal& goal) const {
+  [[nodiscard]] attempt approach(vector theta, const scaled_goal& goal) const {
     attempt best{theta, {}, std::numeric_limits<double>::infinity()};
     double before = best.error;
     int since = 0; // iterations since the error last fell by a tenth
     for (int iteration = 0;; ++iteration) {
       const equations current = equations_at(theta, goal);
-      const double error = dot(current.e, current.e);
+      const double error = current.e.squaredNorm();
       const bool is_reached = tolerance_.ratio(current.residual) <= 1;
       if (iteration == 0 || error < best.error || is_reached) {
         best = {theta, current.residual, error};
@@ -147,14 +205,14 @@ public:
   }
 
   /// Reason why the search cannot continue from a configuration.
-  [[nodiscard]] stop_reason obstacle(const vector& theta, const Goal& goal) const {
+  [[nodiscard]] stop_reason obstacle(const vector& theta, const scaled_goal& goal) const {
     const equations current = equations_at(theta, goal);
     if (step(current, damping(current)).is_bounded) {
       return stop_reason::joint_limit;
     }
     gram_matrix gram = gram_of(current.at.jacobian);
     int count = 6;
-    for (std::ptrdiff_t i = 0; i < 6; ++i) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
       if (current.is_free[std::size_t(i)]) {
         gram(i, i) = 1;
         --count;
@@ -167,8 +225,8 @@ public:
 
   /// Random configuration, uniform within the limits; without them, about the start.
   [[nodiscard]] vector configuration(splitmix64& random) const {
-    vector theta;
-    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+    vector theta = vector::Zero();
+    for (Eigen::Index i = 0; i < model_.size; ++i) {
       double lower = model_.lower[i], upper = model_.upper[i];
       if (!(upper - lower < std::numeric_limits<double>::infinity())) {
         lower = std::max(lower, start_[i] - spread_[i]);
@@ -185,27 +243,26 @@ public:
 
 private:
   using equations = goal_equations<Capacity>;
-  [[nodiscard]] equations equations_at(const vector& theta, const Goal& goal) const {
-    equations result{model_.at(theta), {}, {}};
-    set_equations(result, goal);
+  [[nodiscard]] equations equations_at(const vector& theta, const scaled_goal& goal) const {
+    equations result{model_.at(theta)};
+    goal.set_equations(result);
     return result;
   }
 
   /// Levenberg–Marquardt (damped least squares) step.
-  [[nodiscard]] bounded_step_result<vector> step(const equations& x, double lambda) const {
+  [[nodiscard]] bounded_step_result<Capacity> step(const equations& x, double lambda) const {
     return bounded_step(x.at.jacobian, x.e, model_.lower - x.at.theta - beyond_,
                         model_.upper - x.at.theta + beyond_, {0, lambda});
   }
   /// Damping, which grows with the error.
   [[nodiscard]] static double damping(const equations& x) {
-    return std::min(.02 * dot(x.e, x.e), .08) + 1e-9;
+    return std::min(.02 * x.e.squaredNorm(), .08) + 1e-9;
   }
 
   /// Nearest pose from a start on: minimum of the squared distance of the origins plus |ω|², by
   /// Newton's method with a damping that lets no step increase it. Joints at limits that block them
   /// are fixed there.
-  template <std::same_as<tip_pose> Pose>
-  [[nodiscard]] attempt nearest(const vector& start, const Pose& goal) const {
+  [[nodiscard]] attempt nearest(const vector& start, const scaled_goal& goal) const {
     point current = point_at(start, goal);
     double lambda = 0;
     int iterations = 0;
@@ -218,11 +275,7 @@ private:
         if (!step) {
           continue;
         }
-        vector theta = current.theta;
-        for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
-          theta[i] += (*step)[i];
-        }
-        const point next = point_at(within_limits(theta), goal);
+        const point next = point_at(within_limits(current.theta + *step), goal);
         // Near the minimum round-off hides a decrease of the error, but not of its gradient.
         const bool is_even = next.error <= current.error * (1 + 1e-14);
         is_lower = next.error < current.error * (1 - 1e-14) ||
@@ -245,13 +298,12 @@ private:
     std::array<bool, std::size_t(Capacity)> is_fixed{}; ///< true if fixed at a limit that blocks it
     double max_gradient = 0; ///< largest entry of the gradient of joints that are not fixed
   };
-  template <std::same_as<tip_pose> Pose>
-  [[nodiscard]] point point_at(const vector& theta, const Pose& goal) const {
+  [[nodiscard]] point point_at(const vector& theta, const scaled_goal& goal) const {
     const equations x = equations_at(theta, goal);
-    const three_vector<double> displacement = goal.translation - x.at.tip.translation;
-    const small_twist e{{displacement.x, displacement.y, displacement.z, x.e[3], x.e[4], x.e[5]}};
-    point result{theta, x.residual, dot(e, e), squared_error_of(x.at.jacobian, e)};
-    for (std::ptrdiff_t i = 0; i < Capacity; ++i) {
+    small_twist e = x.e;
+    e.head<3>() = (goal.target->translation - x.at.tip.translation).eigen();
+    point result{theta, x.residual, e.squaredNorm(), squared_error_of(x.at.jacobian, e)};
+    for (Eigen::Index i = 0; i < Capacity; ++i) {
       const double gradient = result.to_second_order.gradient[i];
       const bool is_at_limit = period_[i] == 0 && (gradient > 0 ? theta[i] <= model_.lower[i]
                                                                 : theta[i] >= model_.upper[i]);
@@ -264,7 +316,7 @@ private:
 
   /// Revolute joints whose range contains a full turn are wrapped into it, others stop at limits.
   [[nodiscard]] vector within_limits(vector theta) const {
-    for (std::ptrdiff_t i = 0; i < model_.size; ++i) {
+    for (Eigen::Index i = 0; i < model_.size; ++i) {
       const double lower = model_.lower[i], upper = model_.upper[i];
       if (period_[i] > 0 && theta[i] > upper) {
         theta[i] -= period_[i] * std::ceil((theta[i] - upper) / period_[i]);
@@ -292,63 +344,33 @@ struct step_conditions {
   std::vector<inequality<V>> inequalities; ///< normal·x ≥ bound
 };
 
-/// Orthonormal vectors (Gram–Schmidt), and the projection onto their orthogonal complement.
-template <class V>
-class orthonormal_rows {
-public:
-  /// Adds a vector, unless it is linearly dependent on those added before.
-  ///
-  /// \return length of its new component, 0 for none
-  double add(const V& row) {
-    const V rest = (*this)(row);
-    const double length = rest.norm();
-    const bool is_new = length > 1e-9 * row.norm();
-    if (is_new) {
-      rows_.push_back(rest / length);
-    }
-    return is_new ? length : 0;
-  }
-  [[nodiscard]] const V& back() const { return rows_.back(); }
-  /// Component of x that is orthogonal to all of them.
-  [[nodiscard]] V operator()(V x) const {
-    for (int twice = 0; twice < 2; ++twice) { // the second pass removes round-off
-      for (const V& row : rows_) {
-        x -= row.dot(x) * row;
-      }
-    }
-    return x;
-  }
-
-private:
-  std::vector<V> rows_;
-};
-
 /// Minimiser x of gradient·x + ½ xᵀ B x under the constraints, B = `curvature` positive definite;
 /// nothing if no x satisfies them. With B = L Lᵀ and y = Lᵀx + L⁻¹ gradient the objective is ½|y|²
 /// up to a constant: a least-norm problem for y.
 template <class V, class M>
 [[nodiscard]] std::optional<V> quadratic_step(const V& gradient, const M& curvature,
                                               const step_conditions<V>& conditions) {
-  const cholesky<M> factors(curvature);
+  const Eigen::LLT<M> factors(curvature);
+  const auto root = factors.matrixL();
   orthonormal_rows<V> equality_rows;
   V aim = V::Zero(gradient.size()); // the least-norm y that satisfies the equations
   for (const inequality<V>& each : conditions.equations) {
-    const V row = factors.forward(each.normal);
+    const V row = root.solve(each.normal);
     const double residual = each.bound - row.dot(aim), length = equality_rows.add(row);
     if (length > 0) {
       aim +=
           residual * length / (length * length + 1e-14 * row.squaredNorm()) * equality_rows.back();
     }
   }
-  aim -= equality_rows(factors.forward(gradient));
+  aim -= equality_rows(root.solve(gradient));
   std::vector<inequality<V>> reduced;
   reduced.reserve(conditions.inequalities.size());
   for (const inequality<V>& each : conditions.inequalities) {
-    const V row = factors.forward(each.normal);
+    const V row = root.solve(each.normal);
     reduced.push_back({equality_rows(row), each.bound - row.dot(aim)});
   }
   const std::optional<V> correction = least_distance(reduced, gradient.size());
-  return correction ? std::optional<V>(factors.backward(V(aim + *correction))) : std::nullopt;
+  return correction ? std::optional<V>(factors.matrixU().solve(aim + *correction)) : std::nullopt;
 }
 
 /// Sequential quadratic programming within the solutions of a goal: each step keeps goal, limits
@@ -427,17 +449,15 @@ private:
     x.theta = theta;
     const auto state = model_.at(theta);
     const twist_constraint constraint = goal_.constraint(state.tip);
-    x.residual = residual_twist(constraint).residual;
+    x.residual = deviation_of(scaled_goal::unsatisfied(constraint));
     x.error_ratio = std::max(tolerance_.ratio(x.residual),
                              model_.margin_violation(theta) / tolerance_.translation);
     auto& more = x.conditions.inequalities;
-    for (std::ptrdiff_t i = 0; i < 6; ++i) {
+    for (Eigen::Index i = 0; i < 6; ++i) {
       if (constraint.matrix.row(i).isZero(0)) {
         continue;
       }
-      const joints row = goal_row(constraint, i, state.jacobian);
-      vector normal(model_.size);
-      std::copy_n(row.values.begin(), model_.size, normal.begin());
+      const vector normal = (constraint.matrix.row(i) * state.jacobian).transpose();
       const double lower = constraint.lower[i], upper = constraint.upper[i];
       if (lower == upper) {
         x.conditions.equations.push_back({normal, lower});
@@ -462,10 +482,8 @@ private:
     }
   }
   [[nodiscard]] joints moved(joints theta, const vector& step, double part) const {
-    for (int i = 0; i < model_.size; ++i) {
-      theta[i] = std::clamp(theta[i] + part * step[i], model_.lower[i], model_.upper[i]);
-    }
-    return theta;
+    theta.head(model_.size) += part * step;
+    return theta.cwiseMax(model_.lower).cwiseMin(model_.upper);
   }
 
   /// Point at which all constraints hold again, by least-norm steps.
@@ -492,9 +510,8 @@ private:
       const auto chain_joints = model_.chain_joints(x->theta);
       x->value = objective_(chain_joints);
       x->gradient = objective_.gradient(chain_joints);
-      for (int i = 0; i < model_.size; ++i) { // with respect to the planner's coordinates
-        x->gradient[i] *= model_.unit[i];
-      }
+      // With respect to the planner's coordinates.
+      x->gradient = x->gradient.cwiseProduct(model_.unit.head(model_.size)).eval();
     }
     return x;
   }
@@ -523,11 +540,7 @@ private:
   [[nodiscard]] matrix learned(matrix curvature, bool is_first, const point& before,
                                const point& after) const {
     const projected_gradient gradient_before(before), gradient_after(after);
-    vector s(model_.size);
-    for (int i = 0; i < model_.size; ++i) {
-      s[i] = after.theta[i] - before.theta[i];
-    }
-    s = gradient_after.active_rows(s);
+    const vector s = gradient_after.active_rows((after.theta - before.theta).head(model_.size));
     vector y = gradient_after.gradient - gradient_before.gradient;
     if (is_first && s.dot(y) > 0) {
       curvature *= y.squaredNorm() / s.dot(y) / curvature(0, 0);
@@ -553,41 +566,55 @@ private:
 };
 
 /// Search for solutions from the start and from random configurations, of which each is refined by
-/// `solution_refinement`.
+/// `solution_refinement` if there are preferences.
 template <int Capacity>
 class solution_search {
-  using search = inverse_kinematics_search<Capacity, scaled_goal>;
+  using vector = small_vector<Capacity>;
+  using attempt = typename inverse_kinematics_search<Capacity>::attempt;
 
 public:
-  using attempt = typename search::attempt;
+  solution_search(const planning_model<Capacity>& model, const vector& start,
+                  const inverse_kinematics_options& options,
+                  const solution_preferences& preferences)
+      : model_(model), options_(options), preferences_(preferences),
+        tolerance_(model.tolerance(options.tolerance)), search_(model, start, options) {}
 
-  solution_search(const planning_model<Capacity>& model, const small_vector<Capacity>& start,
-                  const inverse_kinematics_options& options)
-      : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
-        search_(model, start, options) {}
-
-  /// Solutions within the limits, up to full turns, that are known before the search.
-  struct known_solutions {
-    std::vector<small_vector<Capacity>> joints;
-    bool is_complete = false; ///< true if there are no others
-  };
-
-  /// \param is_choosy  false if the first solution is as good as any
-  [[nodiscard]] attempt operator()(const scaled_goal& goal, const objective_view& objective,
-                                   bool is_choosy, const known_solutions& known = {}) const {
-    if (!is_choosy || is_beyond(model_.reach, goal, tolerance_)) {
-      return search_(goal);
+  /// \param name  callable that returns the name of the goal for messages
+  /// \throws invalid_input if the goal or the objective is nan at every configuration evaluated
+  template <class Goal, class Name>
+  [[nodiscard]] inverse_kinematics_result operator()(const Goal& of, const Name& name) const {
+    scaled_goal goal{model_.length, {}, nullptr};
+    solution_list known;
+    if constexpr (std::same_as<Goal, goal_view>) {
+      goal.other = &of;
+    } else {
+      goal.target = model_.scaled_pose(normalized(of));
+      if (preferences_.objective && is_algebraic(model_.chain(), 6)) {
+        known = solutions_within_limits(model_.chain(), of, options_.tolerance);
+      }
     }
+    const bool is_choosy = !preferences_.is_empty() && !goal.is_beyond(model_.reach, tolerance_);
+    const attempt x = is_choosy ? preferred(goal, known) : search_(goal);
+    if (is_choosy || std::same_as<Goal, goal_view>) {
+      require_numbers(x, name);
+    }
+    return {model_.joints_within_limits(x.joints), model_.unscaled_error(x.residual), x.iterations,
+            x.restarts, x.reason};
+  }
+
+private:
+  [[nodiscard]] attempt preferred(const scaled_goal& goal, const solution_list& known) const {
+    const objective_view& objective = preferences_.objective;
     const solution_refinement<Capacity> refine(model_, goal, objective, tolerance_);
     attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
     double min_value = std::numeric_limits<double>::infinity(); // of the objective
     int iterations = 0, candidates = 0, restarts = 0;
-    const auto consider = [&](small_vector<Capacity> theta) {
+    const auto consider = [&](vector theta) {
       constexpr int rounds = 4; // after self-motions other full turns may be better
       std::optional<typename solution_refinement<Capacity>::point> refined;
       for (int k = 0; k < rounds; ++k) {
         const auto other = objective ? improved_by_full_turns(theta, objective) : theta;
-        if (refined && norm(other - theta) == 0) {
+        if (refined && other == theta) {
           break;
         }
         refined = refine(other, options_.max_iterations);
@@ -602,8 +629,8 @@ public:
       }
       return refined.has_value();
     };
-    for (const small_vector<Capacity>& theta : known.joints) {
-      consider(theta);
+    for (const Eigen::VectorXd& theta : known.joints) {
+      consider(model_.joints(theta));
     }
     if (known.is_complete && best.reason == stop_reason::reached) {
       return best;
@@ -634,14 +661,12 @@ public:
     return best;
   }
 
-private:
   /// Joints moved by full turns within the limits as long as that lowers the objective.
-  [[nodiscard]] small_vector<Capacity>
-  improved_by_full_turns(small_vector<Capacity> theta, const objective_view& objective) const {
+  [[nodiscard]] vector improved_by_full_turns(vector theta, const objective_view& objective) const {
     constexpr double max_change = 0x1p20;
     double min_value = objective(model_.chain_joints(theta));
     const auto is_lower_by = [&](int i, double change) {
-      small_vector<Capacity> other = theta;
+      vector other = theta;
       other[i] += change;
       const bool is_within = other[i] >= model_.lower[i] && other[i] <= model_.upper[i];
       const double value = is_within ? objective(model_.chain_joints(other)) : min_value;
@@ -668,70 +693,9 @@ private:
     return theta;
   }
 
-  const planning_model<Capacity>& model_;
-  inverse_kinematics_options options_;
-  pose_tolerance tolerance_;
-  search search_;
-};
-
-template <int Capacity, class Attempt>
-[[nodiscard]] inverse_kinematics_result result_of(const planning_model<Capacity>& model,
-                                                  const Attempt& x) {
-  return {model.joints_within_limits(x.joints), model.unscaled_error(x.residual), x.iterations,
-          x.restarts, x.reason};
-}
-
-/// Search for the preferred solutions of one goal after the other.
-template <int Capacity>
-class preferred_solutions {
-  using known_solutions = typename solution_search<Capacity>::known_solutions;
-
-public:
-  preferred_solutions(const planning_model<Capacity>& model, const small_vector<Capacity>& start,
-                      const inverse_kinematics_options& options,
-                      const solution_preferences& preferences)
-      : model_(model), options_(options), preferences_(preferences), any_(model, start, options),
-        search_(model, start, options) {}
-
-  /// \param name  callable that returns the name of the goal for messages
-  /// \throws invalid_input if the goal or the objective is nan at every configuration evaluated
-  template <class Name>
-  [[nodiscard]] inverse_kinematics_result solve(const goal_view& goal, const Name& name,
-                                                const known_solutions& known = {}) const {
-    const auto x = search_(scaled_goal{goal, model_.length}, preferences_.objective,
-                           !preferences_.is_empty(), known);
-    require_numbers(x, name);
-    return result_of(model_, x);
-  }
-  template <class Name>
-  [[nodiscard]] inverse_kinematics_result solve(const dual_quaternion<double>& goal,
-                                                const Name& name) const {
-    const tip_pose scaled = model_.scaled_pose(normalized(goal));
-    if (model_.reach.is_beyond(scaled, model_.tolerance(options_.tolerance))) {
-      return result_of(model_, any_(scaled));
-    }
-    const full_pose_goal full{to_tip_pose(normalized(goal))};
-    return solve(goal_view(full), name, all_solutions(goal));
-  }
-
-private:
-  /// All solutions of a six-joint chain, as candidates for an objective.
-  [[nodiscard]] known_solutions all_solutions(const dual_quaternion<double>& goal) const {
-    known_solutions known;
-    if (preferences_.objective && is_algebraic(model_.chain(), 6)) {
-      const auto all = solutions_within_limits(model_.chain(), goal, options_.tolerance);
-      known.is_complete = all.is_complete;
-      for (const auto& theta : all.joints) {
-        known.joints.push_back(model_.joints(theta));
-      }
-    }
-    return known;
-  }
-
   /// Rejects nan: the best candidate is nan only if all candidates are.
   template <class Name>
-  void require_numbers(const typename solution_search<Capacity>::attempt& x,
-                       const Name& name) const {
+  void require_numbers(const attempt& x, const Name& name) const {
     const auto fail = [&](const std::string& what) {
       fail_not_a_number("duet: inverse_kinematics: " + what, model_.chain_joints(x.joints));
     };
@@ -748,46 +712,35 @@ private:
   const planning_model<Capacity>& model_;
   const inverse_kinematics_options& options_;
   const solution_preferences& preferences_;
-  inverse_kinematics_search<Capacity> any_;
-  solution_search<Capacity> search_;
+  pose_tolerance tolerance_;
+  inverse_kinematics_search<Capacity> search_;
 };
 
-void require_same_size(std::size_t goals, std::size_t results) {
-  require(goals == results, "duet: inverse_kinematics: ", goals, " goals, but room for ", results,
-          " results");
-}
-
-template <class Check>
-void check_goals(std::size_t count, bool is_one, const char* name_of_one, const Check& check) {
-  for (std::size_t i = 0; i < count; ++i) {
-    check(i, is_one ? name_of_one : "goal " + std::to_string(i));
-  }
-}
-
+/// Solutions of goals of one type: poses, or those with constraints of their own.
 template <class Goal>
-void solve_preferred(const chain_view& chain, std::span<const Goal> goals,
-                     const Eigen::Ref<const Eigen::VectorXd>& start,
-                     std::span<inverse_kinematics_result> out,
-                     const inverse_kinematics_options& options, const execution& how,
-                     const solution_preferences& preferences, bool is_one) {
+void solve_all(const chain_view& chain, std::span<const Goal> goals,
+               const Eigen::Ref<const Eigen::VectorXd>& start,
+               std::span<inverse_kinematics_result> out, const inverse_kinematics_options& options,
+               const execution& how, const solution_preferences& preferences, bool is_one) {
+  require(goals.size() == out.size(), "duet: inverse_kinematics: ", goals.size(),
+          " goals, but room for ", out.size(), " results");
   with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
     const planning_model<Capacity> model(chain, preferences.around);
-    const preferred_solutions<Capacity> solutions(model, model.joints(start), options, preferences);
-    check_goals(goals.size(), is_one, std::is_same_v<Goal, goal_view> ? "the region" : "the goal",
-                [&](std::size_t i, const std::string& name) {
-                  if constexpr (std::is_same_v<Goal, goal_view>) {
-                    goals[i].check(name);
-                  } else {
-                    require_pose(goals[i], "inverse_kinematics", name);
-                  }
-                });
+    const solution_search<Capacity> search(model, model.joints(start), options, preferences);
+    const auto name_of = [&](std::size_t i, const char* one = "the goal") {
+      return is_one ? one : "goal " + std::to_string(i);
+    };
+    for (std::size_t i = 0; i < goals.size(); ++i) {
+      if constexpr (std::same_as<Goal, goal_view>) {
+        if (goals[i].check) {
+          goals[i].check(name_of(i, "the region"));
+        }
+      } else {
+        require_pose(goals[i], "inverse_kinematics", name_of(i));
+      }
+    }
     parallel_for(
-        goals.size(),
-        [&](std::size_t i) {
-          out[i] = solutions.solve(goals[i], [&] {
-            return is_one ? std::string("the goal") : "goal " + std::to_string(i);
-          });
-        },
+        goals.size(), [&](std::size_t i) { out[i] = search(goals[i], [&] { return name_of(i); }); },
         how);
   });
 }
@@ -801,24 +754,7 @@ void solve_poses(const chain_view& chain, std::span<const dual_quaternion<double
                  std::span<inverse_kinematics_result> out,
                  const inverse_kinematics_options& options, const execution& how,
                  const solution_preferences& preferences, bool is_one) {
-  require_same_size(goals.size(), out.size());
-  if (!preferences.is_empty()) {
-    solve_preferred(chain, goals, start, out, options, how, preferences, is_one);
-    return;
-  }
-  with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
-    const planning_model<Capacity> model(chain);
-    const inverse_kinematics_search<Capacity> search(model, model.joints(start), options);
-    check_goals(goals.size(), is_one, "the goal", [&](std::size_t i, const std::string& name) {
-      require_pose(goals[i], "inverse_kinematics", name);
-    });
-    parallel_for(
-        goals.size(),
-        [&](std::size_t i) {
-          out[i] = result_of(model, search(model.scaled_pose(normalized(goals[i]))));
-        },
-        how);
-  });
+  solve_all(chain, goals, start, out, options, how, preferences, is_one);
 }
 
 void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
@@ -826,8 +762,7 @@ void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
                  std::span<inverse_kinematics_result> out,
                  const inverse_kinematics_options& options, const execution& how,
                  const solution_preferences& preferences, bool is_one) {
-  require_same_size(goals.size(), out.size());
-  solve_preferred(chain, goals, start, out, options, how, preferences, is_one);
+  solve_all(chain, goals, start, out, options, how, preferences, is_one);
 }
 
 DUET_ABI_END

@@ -3,7 +3,6 @@
 
 #include "bounded_step.hpp"
 #include "planning_model.hpp"
-#include "small_vector.hpp"
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 
@@ -25,7 +24,7 @@ DUET_ABI_BEGIN
 template <class V>
 [[nodiscard]] V joint_centring_step(const V& theta, const V& lower, const V& upper, double step) {
   V result = theta;
-  for (std::ptrdiff_t i = 0; i < theta.size(); ++i) {
+  for (Eigen::Index i = 0; i < theta.size(); ++i) {
     const double half = (upper[i] - lower[i]) / 2;
     const bool has_centre = half > 0 && half - half == 0;
     const double x = has_centre ? (theta[i] - lower[i]) / half - 1 : 0; // from -1 to 1
@@ -69,18 +68,16 @@ struct pose_solver {
   double damped_below = damping_threshold; ///< singular value below which steps are damped first
 
   void without_limits() {
-    for (std::ptrdiff_t i = 0; i < model.size; ++i) {
-      lower[i] = -std::numeric_limits<double>::infinity();
-      upper[i] = std::numeric_limits<double>::infinity();
-    }
+    upper.head(model.size).fill(std::numeric_limits<double>::infinity());
+    lower = -upper;
   }
 
-  [[nodiscard]] bool is_endless(std::ptrdiff_t joint) const {
+  [[nodiscard]] bool is_endless(Eigen::Index joint) const {
     return model.is_rotational[std::size_t(joint)] && std::isinf(upper[joint] - lower[joint]);
   }
   /// Difference of configurations except for full turns of joints without limits.
   [[nodiscard]] vector modulo_full_turns(vector difference) const {
-    for (std::ptrdiff_t i = 0; i < model.size; ++i) {
+    for (Eigen::Index i = 0; i < model.size; ++i) {
       if (is_endless(i)) {
         difference[i] = std::remainder(difference[i], 2 * std::numbers::pi);
       }
@@ -96,12 +93,7 @@ struct pose_solver {
   }
 
   [[nodiscard]] bool is_within_limits(const vector& theta) const {
-    for (std::ptrdiff_t i = 0; i < model.size; ++i) {
-      if (theta[i] < lower[i] || theta[i] > upper[i]) {
-        return false;
-      }
-    }
-    return true;
+    return !((theta.array() < lower.array()).any() || (theta.array() > upper.array()).any());
   }
 
   /// Result of the step nearest to the desired joint step that takes the tip from a
@@ -125,7 +117,7 @@ struct pose_solver {
                                          const tip_pose& target) const {
     const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
                                    upper - from.theta, {undamped_threshold_near_singularity});
-    return norm(step.step);
+    return step.step.norm();
   }
 
 private:
@@ -145,7 +137,7 @@ private:
       const double size = result.error_ratio(tolerance);
       // An iteration that does not at least halve the error will not converge.
       if (size <= 1 || result.iterations == max_iterations || size > before / 2 ||
-          !move(result, result.state, error, {}, threshold)) {
+          !move(result, result.state, error, vector::Zero(), threshold)) {
         return result;
       }
       before = size;
@@ -153,11 +145,8 @@ private:
   }
 
   /// Configuration clamped to the limits, which round-off may have violated.
-  [[nodiscard]] vector within(vector theta) const {
-    for (std::ptrdiff_t i = 0; i < theta.size(); ++i) {
-      theta[i] = std::clamp(theta[i], lower[i], upper[i]);
-    }
-    return theta;
+  [[nodiscard]] vector within(const vector& theta) const {
+    return theta.cwiseMax(lower).cwiseMin(upper);
   }
 
   /// Takes the step nearest to `desired_step` that moves the tip by `e` to first order, from a
@@ -179,7 +168,7 @@ private:
       return false;
     }
     const vector aim = within(from.theta + desired_step);
-    const small_twist rest = residual_after_step(e, from.jacobian, aim - from.theta);
+    const small_twist rest = e - from.jacobian * (aim - from.theta).head(model.size);
     const auto step = bounded_step(from.jacobian, rest, lower - aim, upper - aim, {threshold});
     x.smallest_singular_value = std::min(x.smallest_singular_value, step.smallest_singular_value);
     x.is_bounded = x.is_bounded || step.is_bounded;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "constrained_step.hpp"
-#include "small_vector.hpp"
 #include "tip_pose.hpp"
 
 #include <duet/core/errors.hpp>
@@ -55,7 +54,7 @@ template <int Capacity>
 struct chain_state {
   small_vector<Capacity> theta;
   tip_pose tip;
-  small_matrix<6, Capacity> jacobian;
+  small_jacobian<Capacity> jacobian;
 };
 
 /// Reach of a chain: the origin of the first joint is fixed in the base, that of the last in the
@@ -109,6 +108,8 @@ public:
   /// \throws invalid_input for an invalid scene
   explicit planning_model(const chain_view& chain, const scene* around = nullptr)
       : size(chain.size()), chain_(chain), around_(around) {
+    lower = upper = vector::Zero();
+    unit = vector::Ones();
     for (int i = 0; i < size; ++i) {
       const auto k = std::size_t(i);
       const auto& step = chain.steps()[k];
@@ -137,14 +138,13 @@ public:
     reach.has_joints = size > 0;
     length = reach.scale();
     reach = reach.in_units_of(length);
-    for (int i = 0; i < Capacity; ++i) {
-      unit[i] = i >= size || is_rotational[std::size_t(i)] ? 1 : length;
-      row_unit_[i] = unit[i] / length;
-      unscaled_lower_[i] = lower[i];
-      unscaled_upper_[i] = upper[i];
-      lower[i] /= unit[i];
-      upper[i] /= unit[i];
+    for (int i = 0; i < size; ++i) {
+      unit[i] = is_rotational[std::size_t(i)] ? 1 : length;
     }
+    unscaled_lower_ = lower;
+    unscaled_upper_ = upper;
+    lower = lower.cwiseQuotient(unit);
+    upper = upper.cwiseQuotient(unit);
     if (around != nullptr) {
       require_scene(chain, *around);
       margin = around->margin / length;
@@ -157,33 +157,19 @@ public:
   /// \param theta  a vector of any kind
   template <class X>
   [[nodiscard]] vector joints(const X& theta) const {
-    vector result;
+    vector result = vector::Zero();
     for (int i = 0; i < size; ++i) {
       result[i] = theta[i] / unit[i];
     }
     return result;
   }
-  [[nodiscard]] vector unscaled_joints(vector theta) const {
-    for (int i = 0; i < Capacity; ++i) {
-      theta[i] *= unit[i];
-    }
-    return theta;
-  }
   /// Joints in the user's units as a column of the chain's size.
   [[nodiscard]] bounded_vector<Capacity> chain_joints(const vector& theta) const {
-    bounded_vector<Capacity> result(size);
-    for (int i = 0; i < size; ++i) {
-      result[i] = theta[i] * unit[i];
-    }
-    return result;
+    return theta.cwiseProduct(unit).head(size);
   }
   /// Joints in the user's units, clamped to the limits, which round-off may have violated.
   [[nodiscard]] bounded_vector<Capacity> joints_within_limits(const vector& theta) const {
-    bounded_vector<Capacity> result = chain_joints(theta);
-    for (int i = 0; i < size; ++i) {
-      result[i] = std::clamp(result[i], unscaled_lower_[i], unscaled_upper_[i]);
-    }
-    return result;
+    return theta.cwiseProduct(unit).cwiseMax(unscaled_lower_).cwiseMin(unscaled_upper_).head(size);
   }
   [[nodiscard]] tip_pose scaled_pose(const dual_quaternion<double>& a) const {
     const tip_pose x = to_tip_pose(a);
@@ -192,11 +178,9 @@ public:
   [[nodiscard]] dual_quaternion<double> unscaled_pose(const tip_pose& a) const {
     return detail::to_dual_quaternion({a.rotation, length * a.translation});
   }
-  [[nodiscard]] small_matrix<6, Capacity> unscaled_jacobian(small_matrix<6, Capacity> j) const {
+  [[nodiscard]] small_jacobian<Capacity> unscaled_jacobian(small_jacobian<Capacity> j) const {
     for (int i = 0; i < size; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        j(k, i) *= length / unit[i];
-      }
+      j.col(i).template head<3>() *= length / unit[i];
     }
     return j;
   }
@@ -219,16 +203,12 @@ public:
 
   void set(state& of, const vector& theta) const {
     of.theta = theta;
-    of.jacobian.count = size;
-    of.tip = chain_.pose_and_jacobian(unscaled_joints(theta).values.data(),
-                                      of.jacobian.columns[0].values.data());
+    of.jacobian.resize(6, size);
+    const vector unscaled = theta.cwiseProduct(unit);
+    of.tip = chain_.pose_and_jacobian(unscaled.data(), of.jacobian.data());
     of.tip.translation = 1 / length * of.tip.translation;
-    for (std::size_t i = 0; i < of.jacobian.columns.size(); ++i) {
-      auto& column = of.jacobian.columns[i].values;
-      const double part = row_unit_.values[i]; // ω of prismatic joints is 0
-      column[0] *= part;
-      column[1] *= part;
-      column[2] *= part;
+    for (int i = 0; i < size; ++i) {
+      of.jacobian.col(i).template head<3>() *= unit[i] / length; // ω of prismatic joints is 0
     }
   }
   [[nodiscard]] state at(const vector& theta) const {
@@ -263,22 +243,35 @@ public:
     if (around_ == nullptr) {
       return {};
     }
-    // In columns of fixed size a plan beside an obstacle takes a quarter less.
-    if constexpr (Capacity == 8) {
-      if (size == 6) {
-        return collision_free_step_in<Eigen::Matrix<double, 6, 1>>(from, e, desired_step);
-      }
-      if (size == 7) {
-        return collision_free_step_in<Eigen::Matrix<double, 7, 1>>(from, e, desired_step);
-      }
+    const auto inequalities = margin_inequalities<column>(from.theta);
+    if (inequalities.empty()) {
+      return {};
     }
-    return collision_free_step_in<bounded_vector<Capacity>>(from, e, desired_step);
+    const vector down = lower - from.theta, up = upper - from.theta;
+    const auto step = [&](const std::vector<inequality<column>>& active) {
+      return constrained_step(from.jacobian, e, to_column(desired_step), to_column(down),
+                              to_column(up), active);
+    };
+    const auto result = step(inequalities);
+    if (result.step) {
+      vector wide = vector::Zero();
+      wide.head(result.step->size()) = *result.step;
+      return {wide, result.smallest_singular_value};
+    }
+    // A step that is infeasible without obstacles too is not blocked by them.
+    return {std::nullopt, result.smallest_singular_value, !step({}).step};
   }
 
 private:
-  template <class V>
-  [[nodiscard]] collision_free_step<Capacity>
-  collision_free_step_in(const state& from, const small_twist& e, const vector& desired_step) const;
+  /// Columns for steps beside obstacles: those of fixed size take a quarter less.
+  using column = std::conditional_t<Capacity == 8, vector, bounded_vector<Capacity>>;
+  [[nodiscard]] column to_column(const vector& x) const {
+    if constexpr (Capacity == 8) {
+      return x;
+    } else {
+      return x.head(size);
+    }
+  }
 
   /// Bodies of the scene in the frame of the base, by one traversal of the chain.
   [[nodiscard]] std::vector<capsule<double>>
@@ -297,7 +290,6 @@ private:
     });
   }
 
-  vector row_unit_; ///< units of the coordinates relative to the length
   vector unscaled_lower_, unscaled_upper_;
   chain_view chain_;
   const scene* around_;
@@ -327,7 +319,7 @@ planning_model<Capacity>::margin_inequalities(const vector& theta) const {
       const vector3<double>& n = nearest.points.normal;
       const vector3<double>& p = link > other ? nearest.points.on_body : nearest.points.on_obstacle;
       const vector3<double> moment = p.cross(n);
-      V gradient = V::Zero(size);
+      V gradient = V::Zero(V::RowsAtCompileTime == Eigen::Dynamic ? size : V::RowsAtCompileTime);
       for (int i = std::min(link, other); i < std::max(link, other); ++i) {
         const double outwards =
             n.dot(j->col(i).template head<3>()) + moment.dot(j->col(i).template tail<3>());
@@ -337,32 +329,6 @@ planning_model<Capacity>::margin_inequalities(const vector& theta) const {
     }
   });
   return result;
-}
-
-template <int Capacity>
-template <class V>
-collision_free_step<Capacity>
-planning_model<Capacity>::collision_free_step_in(const state& from, const small_twist& e,
-                                                 const vector& desired_step) const {
-  const auto inequalities = margin_inequalities<V>(from.theta);
-  if (inequalities.empty()) {
-    return {};
-  }
-  const auto to_column = [&](const vector& x) {
-    return V(Eigen::Map<const V>(x.values.data(), size));
-  };
-  const V down = to_column(lower - from.theta), up = to_column(upper - from.theta);
-  const auto step = [&](const std::vector<inequality<V>>& active) {
-    return constrained_step(from.jacobian, e, to_column(desired_step), down, up, active);
-  };
-  const auto result = step(inequalities);
-  if (result.step) {
-    vector scaled;
-    std::copy_n(result.step->data(), size, scaled.values.begin());
-    return {scaled, result.smallest_singular_value};
-  }
-  // A step that is infeasible without obstacles too is not blocked by them.
-  return {std::nullopt, result.smallest_singular_value, !step({}).step};
 }
 
 DUET_ABI_END

@@ -1,6 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "branches/branch_search.hpp"
 #include "branches/chain_loop.hpp"
 #include "branches/loop_equation.hpp"
 #include "planning_model.hpp"
@@ -21,7 +20,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -35,14 +33,34 @@ using seven_coordinates = Eigen::Matrix<double, 7, 1>;
 using seven_columns = Eigen::Matrix<double, 6, 7>;
 
 /// Arm of seven joints, and the goal of its tip (end effector).
-struct redundant_arm {
-  std::array<bool, 7> is_revolute{};
-  double size = 1; ///< characteristic length of the arm
-  tip_pose goal{};
+class redundant_arm {
+public:
+  redundant_arm(const chain_view& chain, const dual_quaternion<double>& to)
+      : goal(to_tip_pose(to)), chain_(chain), model_(chain), scaled_goal_(model_.scaled_pose(to)) {}
+
+  tip_pose goal;
+
+  /// Characteristic length.
+  [[nodiscard]] double size() const { return model_.length; }
+  [[nodiscard]] bool is_revolute(int joint) const {
+    return model_.is_rotational[std::size_t(joint)];
+  }
   /// Pose error of the tip, and the Jacobian; lengths relative to the arm's size.
-  std::function<six_coordinates(const seven_coordinates&, seven_columns&)> tip_error;
+  [[nodiscard]] six_coordinates tip_error(const seven_coordinates& x,
+                                          seven_columns& jacobian) const {
+    const auto state = model_.at(model_.joints(x));
+    jacobian = state.jacobian;
+    return error_twist(state.tip, scaled_goal_);
+  }
   /// Axes of the other joints, with one fixed at a coordinate.
-  std::function<chain_screws(int, double)> axes_without;
+  [[nodiscard]] chain_screws axes_without(int fixed, double value) const {
+    return chain_screws(chain_, seven_coordinates(value * seven_coordinates::Unit(fixed)), fixed);
+  }
+
+private:
+  known_size_view<7> chain_;
+  planning_model<8> model_;
+  tip_pose scaled_goal_;
 };
 
 /// Consecutive points of a curve, or a sample of a component of another dimension.
@@ -77,14 +95,14 @@ public:
                                              const seven_coordinates& a) const {
     seven_coordinates d = b - a;
     for (int i = 0; i < 7; ++i) {
-      d[i] = arm_.is_revolute[std::size_t(i)] ? wrap_angle(d[i]) : d[i] / arm_.size;
+      d[i] = arm_.is_revolute(i) ? wrap_angle(d[i]) : d[i] / arm_.size();
     }
     return d;
   }
 
   [[nodiscard]] seven_coordinates moved(seven_coordinates x, const seven_coordinates& d) const {
     for (int i = 0; i < 7; ++i) {
-      x[i] += arm_.is_revolute[std::size_t(i)] ? d[i] : arm_.size * d[i];
+      x[i] += arm_.is_revolute(i) ? d[i] : arm_.size() * d[i];
     }
     return x;
   }
@@ -209,7 +227,7 @@ public:
     seven_coordinates x;
     for (int i = 0; i < 7; ++i) {
       const double part = 2 * random() - 1;
-      x[i] = part * (arm_.is_revolute[std::size_t(i)] ? std::numbers::pi : arm_.size);
+      x[i] = part * (arm_.is_revolute(i) ? std::numbers::pi : arm_.size());
     }
     return projected(x, std::numeric_limits<double>::infinity());
   }
@@ -511,7 +529,7 @@ private:
   void add_slices() {
     const int count = int(std::ceil(2 * std::numbers::pi / resolution_));
     for (int fixed = 0; fixed < 7; ++fixed) {
-      for (int k = 0; k < count && arm_.is_revolute[std::size_t(fixed)]; ++k) {
+      for (int k = 0; k < count && arm_.is_revolute(fixed); ++k) {
         // not at round numbers from tables, where arms are singular
         add_slice(fixed, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
       }
@@ -523,8 +541,7 @@ private:
     for (const loop_solution& x : search.answer().solutions) {
       seven_coordinates theta;
       for (int i = 0, k = 0; i < 7; ++i) {
-        theta[i] =
-            i == fixed ? value : x.theta[k] * (arm_.is_revolute[std::size_t(i)] ? 1 : axes.size);
+        theta[i] = i == fixed ? value : x.theta[k] * (arm_.is_revolute(i) ? 1 : axes.size);
         k += i != fixed;
       }
       // If other joints can move while this one is fixed, its value is singular, or the set has
@@ -617,51 +634,6 @@ private:
   std::vector<traced_curve> components_;
 };
 
-/// \throws invalid_input for a chain that does not have seven joints, all revolute or one prismatic
-void require_seven_joints(const chain_view& chain) {
-  require(chain.size() == 7, "duet: self_motion_curves: the chain has ", chain.size(),
-          " moving joints (expected 7)");
-  int prismatic_count = 0;
-  for (int i = 0; i < chain.size(); ++i) {
-    require(chain.kind(i) != joint_kind::helical, "duet: self_motion_curves: joint ", i,
-            " is helical (expected revolute or prismatic)");
-    prismatic_count += chain.kind(i) == joint_kind::prismatic;
-  }
-  require(prismatic_count <= 1, "duet: self_motion_curves: the chain has ", prismatic_count,
-          " prismatic joints (expected at most 1)");
-}
-
-/// Chain and goal as the search uses them; refers to the chain.
-[[nodiscard]] redundant_arm seven_joints_of(const chain_view& chain, const tip_pose& goal) {
-  const planning_model<8> model(chain);
-  redundant_arm result;
-  result.size = model.length;
-  result.goal = goal;
-  for (std::size_t i = 0; i < 7; ++i) {
-    result.is_revolute[i] = model.is_rotational[i];
-  }
-  result.tip_error = [model,
-                      scaled_goal = tip_pose{goal.rotation, 1 / model.length * goal.translation}](
-                         const seven_coordinates& x, seven_columns& jacobian) {
-    const auto state = model.at(model.joints(x));
-    const small_twist e = error_twist(state.tip, scaled_goal);
-    six_coordinates error;
-    for (int k = 0; k < 6; ++k) {
-      error[k] = e[k];
-      for (int i = 0; i < 7; ++i) {
-        jacobian(k, i) = state.jacobian(k, i);
-      }
-    }
-    return error;
-  };
-  result.axes_without = [seven = known_size_view<7>(chain)](int fixed, double value) {
-    seven_coordinates theta = seven_coordinates::Zero();
-    theta[fixed] = value;
-    return chain_screws(seven, theta, fixed);
-  };
-  return result;
-}
-
 } // namespace
 } // namespace duet::detail
 
@@ -671,11 +643,11 @@ DUET_ABI_BEGIN
 std::vector<self_motion_curve> self_motion_curves(const chain_view& chain,
                                                   const dual_quaternion<double>& goal,
                                                   const self_motion_options& options) {
-  detail::require_seven_joints(chain);
+  detail::require_algebraic(chain, 7, "self_motion_curves");
   detail::require_pose(goal, "self_motion_curves", "the goal");
   detail::require_option("self_motion_curves", "resolution", options.resolution,
                          options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
-  const auto arm = detail::seven_joints_of(chain, detail::to_tip_pose(normalized(goal)));
+  const detail::redundant_arm arm(chain, normalized(goal));
   std::vector<self_motion_curve> result;
   for (const detail::traced_curve& curve : detail::component_search(arm, options.resolution)()) {
     result.push_back(

@@ -41,18 +41,18 @@ using tip_pose = link_displacement<double>;
   const three_vector<double> sines{r.x(), r.y(), r.z()};
   const double sine = length_of(sines);
   if (!(sine > 0)) {
-    return {{displacement.x, displacement.y, displacement.z, 0, 0, 0}};
+    return small_twist(displacement.x, displacement.y, displacement.z, 0, 0, 0);
   }
   const double half = std::atan2(sine, r.w()); // of the angle
   const three_vector<double> axis = 1 / sine * sines, across = cross(axis, displacement);
   const auto v = displacement - half * across + (1 - half * r.w() / sine) * cross(axis, across);
   const auto omega = 2 * half * axis;
-  return {{v.x, v.y, v.z, omega.x, omega.y, omega.z}};
+  return small_twist(v.x, v.y, v.z, omega.x, omega.y, omega.z);
 }
 
 /// Lengths of v and ω. That of v is the distance of the origins if the two poses are near.
 [[nodiscard]] inline pose_error deviation_of(const small_twist& e) {
-  return {length_of(three_vector{e[0], e[1], e[2]}), length_of(three_vector{e[3], e[4], e[5]})};
+  return {e.head<3>().norm(), e.tail<3>().norm()};
 }
 [[nodiscard]] inline pose_error pose_error_between(const tip_pose& a, const tip_pose& b) {
   return {length_of(b.translation - a.translation), deviation_of(error_twist(a, b)).rotation};

@@ -2,7 +2,6 @@
 
 #include "support/random.hpp"
 
-#include "../../src/robotics/branches/branch_search.hpp"
 #include "../../src/robotics/branches/chain_loop.hpp"
 #include "../../src/robotics/branches/loop_equation.hpp"
 

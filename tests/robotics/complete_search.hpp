@@ -94,7 +94,7 @@ private:
       const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)), current);
       const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
           duet::jacobian(arm_, x, duet::frame::hybrid), Eigen::ComputeFullU | Eigen::ComputeFullV);
-      x += svd.solve(Eigen::Map<const joints>(&e.values[0]));
+      x += svd.solve(e);
     }
     return x;
   }
@@ -281,7 +281,7 @@ private:
               duet::jacobian(arm_, y, duet::frame::hybrid),
               Eigen::ComputeFullU | Eigen::ComputeFullV);
           current.setThreshold(1e-4);
-          y += current.solve(Eigen::Map<const joints>(&e.values[0]));
+          y += current.solve(e);
         }
         const auto off = duet::pose_error_between(arm_.pose(y), pose);
         if (std::max(off.translation, off.rotation) > 1e-9 ||

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "../../src/robotics/constrained_step.hpp"
-#include "../../src/robotics/small_vector.hpp"
 
 #include "support/random.hpp"
 
@@ -38,35 +37,27 @@ M random_matrix(duet_test::random_source& random, M m) {
 
 } // namespace
 
-TEST_CASE("cholesky: solves systems; an unknown without a positive pivot is 0") {
+TEST_CASE("gram_factors: solve systems; an unknown without a positive pivot is 0") {
   duet_test::random_source random(4);
-  for (int n = 1; n <= 10; ++n) {
-    using matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 10, 10>;
-    const matrix root = random_matrix(random, matrix(n, n));
-    const vector x = random_matrix(random, vector(n));
+  for (int k = 0; k < 10; ++k) {
+    const detail::gram_matrix root = random_matrix(random, detail::gram_matrix());
+    const vector6<double> x = random_matrix(random, vector6<double>());
     // Only the lower half of a = root rootᵀ + 1/100 is used. The last unknown has a pivot of zero
     // or below in `cut`.
-    matrix a(n, n), lower(n, n), cut(n, n);
-    for (int i = 0; i < n; ++i) {
-      for (int j = 0; j < n; ++j) {
-        a(i, j) = root.row(i).dot(root.row(j)) + (i == j ? .01 : 0);
-        lower(i, j) = j > i ? NAN : a(i, j);
-        cut(i, j) = i < n - 1 ? lower(i, j) : i > j ? 0 : n % 2 - 1;
-      }
-    }
-    vector b(n);
-    for (int i = 0; i < n; ++i) {
-      b[i] = a.row(i).dot(x);
-    }
-    const detail::cholesky full(lower), reduced(cut);
+    const detail::gram_matrix a = root * root.transpose() + .01 * detail::gram_matrix::Identity();
+    detail::gram_matrix lower = a;
+    lower.triangularView<Eigen::StrictlyUpper>().setConstant(NAN);
+    detail::gram_matrix cut = lower;
+    cut.row(5).setZero();
+    cut(5, 5) = -k % 2;
+    const vector6<double> b = a * x;
+    const detail::gram_factors full(lower), reduced(cut);
     CHECK(full.is_positive());
     CHECK((full.solve(b) - x).norm() < 1e-10 * x.norm());
     CHECK(!reduced.is_positive());
-    const vector found = reduced.solve(b);
-    CHECK(found[n - 1] == 0);
-    for (int i = 0; i < n - 1; ++i) {
-      CHECK(std::abs(a.row(i).dot(found) - b[i]) < 1e-10 * x.norm());
-    }
+    const vector6<double> found = reduced.solve(b);
+    CHECK(found[5] == 0);
+    CHECK((a * found - b).head<5>().norm() < 1e-10 * x.norm());
   }
 }
 
@@ -153,7 +144,7 @@ TEST_CASE("constrained_step: satisfies twist, limits and inequalities and is nea
     // One degree of redundancy: the steps some + y z that satisfy all constraints, and the y
     // nearest to the preferred step.
     const joints any = random_matrix(random, joints());
-    const joints z = detail::self_motion<joints>(j)(any).normalized();
+    const joints z = detail::orthonormal_rows<joints>(j, 7)(any).normalized();
     CHECK((j * z).norm() < 1e-14);
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     const auto keep = [&](const joints& normal, double bound) {

@@ -1,6 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "../../src/robotics/nearest_pose.hpp"
 #include "../../src/robotics/planning_model.hpp"
 #include "../../src/robotics/tip_pose.hpp"
 
@@ -373,8 +372,8 @@ TEST_CASE("squared_error_of: gradient and Hessian agree with dual numbers") {
       const auto twist = detail::error_twist(state.tip, model.scaled_pose(goal));
       const auto displacement = model.scaled_pose(goal).translation - state.tip.translation;
       const auto found = detail::squared_error_of(
-          state.jacobian, detail::small_twist{{displacement.x, displacement.y, displacement.z,
-                                               twist[3], twist[4], twist[5]}});
+          state.jacobian, detail::small_twist(displacement.x, displacement.y, displacement.z,
+                                              twist[3], twist[4], twist[5]));
       const auto half_square = [&](const auto& x) {
         const auto tip = arm.pose(x);
         const auto offset = ((translation(goal) - translation(tip)) / model.length).eval();

@@ -144,7 +144,7 @@ private:
     joints x = from;
     for (int round = 0; round < 8; ++round) {
       const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)), goal);
-      const Eigen::Map<const Eigen::Matrix<double, 6, 1>> error(&e.values[0]);
+      const Eigen::Matrix<double, 6, 1>& error = e;
       if (error.norm() < 1e-9) {
         return x;
       }

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "../../src/robotics/planning_model.hpp"
-#include "../../src/robotics/singularity.hpp"
 
 #include "robotics/chains.hpp"
 #include "robotics/complete_search.hpp"
@@ -317,13 +316,13 @@ TEST_CASE("singular_point: steps_for bends a stretched elbow by the right angle"
       for (const double bend : {.01, -.02}) {
         const auto e = detail::error_twist(at.tip, model.at(at.theta + bend * n).tip);
         const auto [first, second] = singular.steps_for(e);
-        const double near = dot(first, n) * bend > 0 ? dot(first, n) : dot(second, n);
-        const double far = dot(first + second, n) - near;
+        const double near = first.dot(n) * bend > 0 ? first.dot(n) : second.dot(n);
+        const double far = (first + second).dot(n) - near;
         CHECK(std::abs(near - bend) < .05 * std::abs(bend));
         CHECK(std::abs(far + bend + 2 * bent) < .1 * std::abs(bend));
         const auto [none, no_other] = singular.steps_for(-1 * e);
-        CHECK(norm(none) == 0);
-        CHECK(norm(no_other) == 0);
+        CHECK(none.norm() == 0);
+        CHECK(no_other.norm() == 0);
       }
     }
   }
@@ -347,7 +346,7 @@ TEST_CASE("orientation: is constant along a self-motion curve") {
     for (int step = 0; step < 300; ++step) {
       at = model.at(at.theta + .005 * n);
       n = detail::self_motion_space(at.jacobian).direction(n);
-      CHECK(norm(n) == doctest::Approx(1));
+      CHECK(n.norm() == doctest::Approx(1));
       CHECK(detail::orientation(at.jacobian, n) == first);
       Eigen::Matrix<double, 7, 7> square;
       square << jacobian(arm, seven(detail::to_chain_joints(arm, at.theta)), frame::hybrid),

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <concepts>
+#include <functional>
 #include <string>
 #include <type_traits>
 
@@ -130,44 +131,22 @@ DUET_ABI_BEGIN
 void require_goal(const task_space_region& region, const std::string& name);
 
 /// View of a goal of any type.
-class goal_view {
-public:
+struct goal_view {
+  std::function<twist_constraint(const dual_quaternion<double>&)> constraint;
+  /// Lower bound of the distance of tips at the goal from a point; empty if the goal has none.
+  std::function<double(const vector3<double>&)> distance_from;
+  /// Throws invalid_input for a region that contains no pose; empty for other goals.
+  std::function<void(const std::string& name)> check;
+
   template <TipGoal G>
-  goal_view(const G& goal)
-      : goal_(&goal), constraint_([](const void* g, const dual_quaternion<double>& tip) {
-          return static_cast<const G*>(g)->constraint(tip);
-        }) {
+  goal_view(const G& goal) : constraint([&goal](const auto& tip) { return goal.constraint(tip); }) {
     if constexpr (requires(const vector3<double>& point) { goal.distance_from(point); }) {
-      distance_from_ = [](const void* g, const vector3<double>& point) {
-        return double(static_cast<const G*>(g)->distance_from(point));
-      };
+      distance_from = [&goal](const auto& point) { return double(goal.distance_from(point)); };
     }
     if constexpr (std::convertible_to<const G&, const task_space_region&>) {
-      check_ = [](const void* g, const std::string& name) {
-        require_goal(*static_cast<const G*>(g), name);
-      };
+      check = [&goal](const std::string& name) { require_goal(goal, name); };
     }
   }
-
-  /// \throws invalid_input for a region that contains no pose
-  void check(const std::string& name) const {
-    if (check_ != nullptr) {
-      check_(goal_, name);
-    }
-  }
-  [[nodiscard]] twist_constraint constraint(const dual_quaternion<double>& tip) const {
-    return constraint_(goal_, tip);
-  }
-  /// Lower bound of the distance of tips at the goal from a point; 0 if the goal has none.
-  [[nodiscard]] double distance_from(const vector3<double>& point) const {
-    return distance_from_ == nullptr ? 0 : distance_from_(goal_, point);
-  }
-
-private:
-  const void* goal_;
-  twist_constraint (*constraint_)(const void*, const dual_quaternion<double>&);
-  double (*distance_from_)(const void*, const vector3<double>&) = nullptr;
-  void (*check_)(const void*, const std::string&) = nullptr;
 };
 
 DUET_ABI_END

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <functional>
 #include <string>
 
 /// \file
@@ -99,53 +100,43 @@ class objective_view {
   using joints_view = Eigen::Ref<const Eigen::VectorXd>; // of vectors of any size, without a copy
 
 public:
-  objective_view() = default;
   /// \tparam N  number of joints, as in `serial_chain`
   template <int N, class F>
   [[nodiscard]] static objective_view of(const F& f) {
     objective_view result;
     if constexpr (!std::same_as<F, no_objective>) {
       using vector = joint_vector<double, N>;
-      result.f_ = &f;
       if constexpr (requires(const vector& x) { double(f(x)); }) {
-        result.value_ = [](const void* g, const joints_view& x) {
-          return double((*static_cast<const F*>(g))(vector(x)));
-        };
+        result.value_ = [&f](const joints_view& x) { return double(f(vector(x))); };
       } // an objective that only has a gradient is enough for `follow_path`
-      result.gradient_ = [](const void* g, const joints_view& x, Eigen::Ref<Eigen::VectorXd> out) {
-        out = gradient_of(*static_cast<const F*>(g), vector(x));
-      };
+      // Its own gradient, or automatic differentiation by dual numbers.
+      if constexpr (requires(const vector& x) { f.gradient(x); }) {
+        result.gradient_ = [&f](const joints_view& x, Eigen::Ref<Eigen::VectorXd> out) {
+          out = result_of_call(f.gradient(vector(x)));
+        };
+      } else {
+        result.gradient_ = [&f](const joints_view& x, Eigen::Ref<Eigen::VectorXd> out) {
+          out = duet::gradient(f, vector(x)).gradient;
+        };
+      }
     }
     return result;
   }
 
-  [[nodiscard]] explicit operator bool() const { return f_ != nullptr; }
+  [[nodiscard]] explicit operator bool() const { return gradient_ != nullptr; }
   /// Value at joint coordinates; 0 if the objective has none.
-  [[nodiscard]] double operator()(const joints_view& joints) const {
-    return value_ == nullptr ? 0 : value_(f_, joints);
-  }
+  [[nodiscard]] double operator()(const joints_view& x) const { return value_ ? value_(x) : 0; }
   /// Gradient at joint coordinates, in a vector of the same type.
   template <class V>
   [[nodiscard]] V gradient(const V& joints) const {
     V result(joints.size());
-    gradient_(f_, joints, result);
+    gradient_(joints, result);
     return result;
   }
 
 private:
-  /// Gradient of an objective: its own member, or automatic differentiation by dual numbers.
-  template <class Objective, class X>
-  [[nodiscard]] static auto gradient_of(const Objective& objective, const X& joints) {
-    if constexpr (requires { objective.gradient(joints); }) {
-      return result_of_call(objective.gradient(joints));
-    } else {
-      return duet::gradient(objective, joints).gradient;
-    }
-  }
-
-  const void* f_ = nullptr;
-  double (*value_)(const void*, const joints_view&) = nullptr;
-  void (*gradient_)(const void*, const joints_view&, Eigen::Ref<Eigen::VectorXd>) = nullptr;
+  std::function<double(const joints_view&)> value_;
+  std::function<void(const joints_view&, Eigen::Ref<Eigen::VectorXd>)> gradient_;
 };
 
 /// The scene that is passed, or null.

@@ -5,8 +5,13 @@
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/kinematics/chain_view.hpp>
+#include <duet/kinematics/joint.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/three_vector.hpp>
+#include <duet/robotics/all_inverse_kinematics.hpp>
 
 #include <Eigen/Core>
 
@@ -14,13 +19,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <vector>
 
 /// \file
-/// Loop equation of six joints whose successive displacements equal a given one. All solutions of
-/// inverse kinematics are found from it; chain and goal enter through it only.
+/// Loop equation of six joints whose successive displacements equal a given one, and the search for
+/// all its solutions, those of inverse kinematics; chain and goal enter through it only.
 
 namespace duet::detail {
 DUET_ABI_BEGIN
@@ -176,6 +182,67 @@ struct loop_solution_set {
                                     : std::remainder(x, full_turn);
   return r <= -pi ? pi : r;
 }
+
+/// All solutions of a loop, by the method that suits its geometry.
+class branch_search {
+public:
+  explicit branch_search(const loop_equation& loop);
+
+  [[nodiscard]] const loop_solution_set& answer() const { return answer_; }
+  [[nodiscard]] solution_method method() const { return method_; }
+
+private:
+  branch_search() = default;
+
+  void search(const loop_equation& loop);
+  void search_near_goal(const loop_equation& loop);
+  /// Solves the loop that begins with its joint number `first` as a loop of the type `Form`.
+  ///
+  /// \return false if no solution is found and coordinates are undetermined
+  template <class Form, class... Rest>
+  bool solve(solution_method method, int first, const loop_equation& loop, const Rest&... rest);
+
+  loop_solution_set answer_;
+  solution_method method_ = solution_method::elimination;
+};
+
+/// Loop with a goal close to the given one.
+[[nodiscard]] loop_equation with_disturbed_goal(loop_equation loop, double by, std::uint64_t seed);
+
+/// True if the goal is farther away than the joints can reach.
+[[nodiscard]] bool is_beyond_reach(const loop_equation& loop);
+
+/// True if no solution is regular, whatever the goal, as if two neighbouring joints rotate about
+/// one axis.
+[[nodiscard]] bool is_always_singular(const loop_equation& loop);
+
+/// All solutions of a loop by Raghavan–Roth elimination, for arms without special geometry.
+[[nodiscard]] loop_solution_set eliminated(const loop_equation& loop);
+
+/// All solutions of a loop with two prismatic joints, by the zeros of a polynomial.
+[[nodiscard]] loop_solution_set solve_two_prismatic(const loop_equation& loop);
+
+/// θ moved by a full turn into the limits, if that is possible.
+[[nodiscard]] double wrap_into_limits(double theta, const joint_limits<double>& limits);
+
+/// True if the chain has n joints whose equations are algebraic, as `all_inverse_kinematics` and
+/// `self_motion_curves` require: revolute, or up to three of six or one of seven prismatic.
+[[nodiscard]] bool is_algebraic(const chain_view& chain, int n);
+
+/// \throws invalid_input for other chains, with the name of the function
+void require_algebraic(const chain_view& chain, int n, const char* function);
+
+/// Solutions of inverse kinematics, and whether there are no others.
+struct solution_list {
+  std::vector<Eigen::VectorXd> joints;
+  bool is_complete = false;
+};
+
+/// Solutions of `all_inverse_kinematics` within the limits, revolute joints moved into them by full
+/// turns. Joints that miss a limit by no more than the tolerance are clamped to it.
+[[nodiscard]] solution_list solutions_within_limits(const chain_view& chain,
+                                                    const dual_quaternion<double>& goal,
+                                                    const pose_tolerance& tolerance);
 
 DUET_ABI_END
 } // namespace duet::detail
