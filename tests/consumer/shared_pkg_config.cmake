@@ -2,4 +2,5 @@
 
 # What pkg-config says of shared libraries.
 
+set(names duet-robotics)
 include(${CMAKE_CURRENT_LIST_DIR}/pkg_config.cmake)

@@ -19,11 +19,11 @@ function(configure_headers build tree)
     -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_EXAMPLES=OFF -DDUET_BUILD_IO=OFF -DDUET_BUILD_ROBOTICS=OFF ${ARGN})
 endfunction()
 
-# A project finds duet below a prefix, and its programs run: <prefix> <whether it has the libraries>.
+# A project finds duet below a prefix, and a program of it runs: <prefix> <whether it has the libraries>.
 function(use_duet prefix has_libraries)
   run(${CMAKE_CTEST_COMMAND} --build-and-test ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/find_package ${folder}/consumer
     --build-generator ${generator}
     --build-options -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_PREFIX_PATH=${prefix} -Dexpected_prefix=${prefix}
-      -Dhas_libraries=${has_libraries}
+      -Dhas_libraries=${has_libraries} -Dis_brief=ON
     --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
 endfunction()

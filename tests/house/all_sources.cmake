@@ -1,7 +1,7 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 # Writes a file that includes all sources of the libraries, or of those named: what they share is then compiled once.
-# (That each compiles alone is seen by consumer/plain.)
+# (That each compiles alone is seen by consumer/add_subdirectory.)
 #
 # usage: write_all_sources(<src> <file> [<library>...])
 function(write_all_sources src file)

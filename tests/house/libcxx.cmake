@@ -23,18 +23,15 @@ execute_process(
   COMMAND_ERROR_IS_FATAL ANY)
 execute_process(COMMAND ${folder}/tests COMMAND_ERROR_IS_FATAL ANY)
 
-# Both libraries as one.
+# (The sources of duet::robotics are compiled with it by house/without_exceptions.)
 include(${CMAKE_CURRENT_LIST_DIR}/all_sources.cmake)
-write_all_sources(${project}/src ${folder}/sources.cpp)
+write_all_sources(${project}/src ${folder}/sources.cpp io)
 list(APPEND compile -fPIC -pthread -Wno-ignored-attributes)
 execute_process(
   COMMAND ${compile} -shared -Wl,--version-script=${project}/src/exported_symbols.map ${folder}/sources.cpp
     -o ${folder}/libduet.so -lexpat
   COMMAND_ERROR_IS_FATAL ANY)
-foreach(program IN ITEMS files planning)
-  execute_process(
-    COMMAND ${compile} ${project}/tests/consumer/${program}.cpp -o ${folder}/${program}
-      -L ${folder} -lduet -Wl,-rpath,${folder}
-    COMMAND_ERROR_IS_FATAL ANY)
-  execute_process(COMMAND ${folder}/${program} WORKING_DIRECTORY ${folder} COMMAND_ERROR_IS_FATAL ANY)
-endforeach()
+execute_process(
+  COMMAND ${compile} ${project}/tests/consumer/files.cpp -o ${folder}/files -L ${folder} -lduet -Wl,-rpath,${folder}
+  COMMAND_ERROR_IS_FATAL ANY)
+execute_process(COMMAND ${folder}/files WORKING_DIRECTORY ${folder} COMMAND_ERROR_IS_FATAL ANY)

@@ -1,13 +1,13 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# All headers and libraries compile with -fno-exceptions and -fno-rtti; what they compute is right,
-# and errors end in the handler, or in std::abort.
+# All headers and libraries compile with -fno-exceptions and -fno-rtti, without any build system, and with libc++ where it
+# is installed; what they compute is right, and errors end in the handler, or in std::abort.
 #
-# cmake "-Dcompile=<compiler and flags>" -P without_exceptions.cmake
+# cmake "-Dcompile=<compiler and flags>" [-Dother_library=-stdlib=libc++] -P without_exceptions.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
-set(flags -fno-exceptions -fno-rtti)
+set(flags -fno-exceptions -fno-rtti ${other_library})
 set(headers "")
 set(include ${CMAKE_CURRENT_LIST_DIR}/../../include)
 file(GLOB_RECURSE all RELATIVE ${include} ${include}/duet/*.hpp)
