@@ -10,7 +10,10 @@
 
 /// \file
 /// Templates that many tests use: `compare`, `interpolate` and `fit` over double. They are compiled
-/// once for all tests, optimised, in instantiated.cpp; without, each test would instantiate them.
+/// once for all tests, optimised, in instantiated.cpp; without, or with DUET_TEST_INSTANTIATES_ALL,
+/// each test instantiates them.
+
+#ifndef DUET_TEST_INSTANTIATES_ALL
 
 #ifndef DUET_TEST_INSTANTIATED
 #define DUET_TEST_INSTANTIATED extern template
@@ -58,3 +61,5 @@ fit(std::vector<double>, std::vector<quaternion<screw_dual<double>>>, std::vecto
     const fit_options&);
 
 } // namespace duet
+
+#endif
