@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/shared_tag.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -25,6 +27,7 @@ using duet::derivative;
 using duet::derivatives;
 using duet::directional_derivative;
 using duet::quaternion;
+using duet_test::shared_tag;
 
 namespace {
 
@@ -44,7 +47,7 @@ TEST_CASE("derivative: the result may be a scalar") {
 
 TEST_CASE("derivative: the result may be an Eigen vector, matrix or expression") {
   const auto fixed = [](const auto& x) { return duet::make_vector(x * x, sin(x), 1.0); };
-  const auto [y, dy] = derivative(fixed, 2.0);
+  const auto [y, dy] = derivative<shared_tag>(fixed, 2.0);
   static_assert(std::is_same_v<decltype(y), const Eigen::Vector3d>);
   CHECK(y == Eigen::Vector3d(4, std::sin(2.0), 1));
   CHECK(dy == Eigen::Vector3d(4, std::cos(2.0), 0));
@@ -57,14 +60,14 @@ TEST_CASE("derivative: the result may be an Eigen vector, matrix or expression")
     }
     return m;
   };
-  const auto [m, dm] = derivative(dynamic, 2.0);
+  const auto [m, dm] = derivative<shared_tag>(dynamic, 2.0);
   CHECK(m.rows() == 2);
   CHECK(m(1, 2) == 12);
   CHECK(dm(1, 2) == 6);
 
   // A lambda may return an expression that refers to its captures.
   const Eigen::Vector2d v(1, 2);
-  const auto [e, de] = derivative(
+  const auto [e, de] = derivative<shared_tag>(
       [&](const auto& x) {
         using T = std::decay_t<decltype(x)>;
         return Eigen::Matrix<T, 2, 1>(v * x);
@@ -73,7 +76,7 @@ TEST_CASE("derivative: the result may be an Eigen vector, matrix or expression")
   CHECK(e == Eigen::Vector2d(3, 6));
   CHECK(de == v);
 
-  const auto [row, drow] = derivative(
+  const auto [row, drow] = derivative<shared_tag>(
       [](const auto& x) {
         using T = std::decay_t<decltype(x)>;
         return Eigen::Matrix<T, 1, 2>(x, x * x);
@@ -87,7 +90,7 @@ TEST_CASE("derivative: the result may be an array, tuple or pair, also nested") 
   const auto f = [](const auto& x) {
     return std::tuple(std::array{x, x * x}, sin(x), std::pair(x * 2, 7), 3.5);
   };
-  const auto [y, dy] = derivative(f, 2.0);
+  const auto [y, dy] = derivative<shared_tag>(f, 2.0);
   CHECK(std::get<0>(y) == std::array{2.0, 4.0});
   CHECK(std::get<0>(dy) == std::array{1.0, 4.0});
   CHECK(std::get<1>(dy) == std::cos(2.0));
@@ -101,7 +104,7 @@ TEST_CASE("derivative: the result may be a quaternion") {
     using T = std::decay_t<decltype(x)>;
     return duet::exp(duet::vector3<T>(x, T(0), T(0)));
   };
-  const auto [q, q_dot] = derivative(f, 0.3);
+  const auto [q, q_dot] = derivative<shared_tag>(f, 0.3);
   static_assert(std::is_same_v<decltype(q), const quaternion<double>>);
   CHECK(q.x() == doctest::Approx(std::sin(0.3)).epsilon(1e-15));
   CHECK(q_dot.x() == doctest::Approx(std::cos(0.3)).epsilon(1e-15));
@@ -114,7 +117,7 @@ TEST_CASE("derivative: the result may be a quaternion") {
 
 TEST_CASE("derivative: a constant result has derivative zero") {
   CHECK(derivative([](auto) { return 4.0; }, 1.0).derivative == 0);
-  CHECK(derivative([](auto) { return Eigen::Vector2d(1, 2); }, 1.0).derivative ==
+  CHECK(derivative<shared_tag>([](auto) { return Eigen::Vector2d(1, 2); }, 1.0).derivative ==
         Eigen::Vector2d::Zero());
   const auto ys = derivatives<2>([](auto) { return 4; }, 1.0);
   CHECK(ys == std::array{4, 0, 0});
@@ -125,7 +128,8 @@ TEST_CASE("derivatives: higher derivatives of a scalar and of a vector") {
   for (int k = 0; k <= 6; ++k) {
     CHECK(ys[std::size_t(k)] == doctest::Approx(sine(k, 0.4)).epsilon(1e-14));
   }
-  const auto vs = derivatives<2>([](auto x) { return duet::make_vector(x * x * x, 1 / x); }, 2.0);
+  const auto vs =
+      derivatives<2, shared_tag>([](auto x) { return duet::make_vector(x * x * x, 1 / x); }, 2.0);
   CHECK(vs[1] == Eigen::Vector2d(12, -0.25));
   CHECK(vs[2] == Eigen::Vector2d(12, 0.25));
 }
@@ -164,17 +168,17 @@ TEST_CASE("derivative: auto, the conditional operator and lambdas with two retur
 TEST_CASE("directional_derivative: equals the Jacobian times the direction") {
   const auto f = [](const auto& x) { return duet::make_vector(x[0] * x[1], sin(x[0])); };
   const Eigen::Vector2d x(0.5, 2), v(3, -1);
-  const auto [y, dy] = directional_derivative(f, x, v);
+  const auto [y, dy] = directional_derivative<shared_tag>(f, x, v);
   CHECK(y == Eigen::Vector2d(1, std::sin(0.5)));
   CHECK(dy[0] == 3 * 2 - 0.5);
   CHECK(dy[1] == doctest::Approx(3 * std::cos(0.5)).epsilon(1e-15));
   // The direction may be an expression, the point of another kind.
-  CHECK(directional_derivative(f, x, 2 * v).derivative == 2 * dy);
-  CHECK(directional_derivative(f, std::array{0.5, 2.0}, v).derivative == dy);
+  CHECK(directional_derivative<shared_tag>(f, x, 2 * v).derivative == 2 * dy);
+  CHECK(directional_derivative<shared_tag>(f, std::array{0.5, 2.0}, v).derivative == dy);
   CHECK(directional_derivative([](auto t) { return t * t; }, 3.0, 0.5).derivative == 3);
 
   const Eigen::VectorXd longer = Eigen::VectorXd::Ones(3);
-  CHECK_THROWS_WITH_AS(static_cast<void>(directional_derivative(f, x, longer)),
+  CHECK_THROWS_WITH_AS(static_cast<void>(directional_derivative<shared_tag>(f, x, longer)),
                        "duet: directional_derivative: the point has 2 components, the direction 3",
                        duet::invalid_input);
 }

@@ -3,6 +3,7 @@
 #include "support/identical.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/shared_tag.hpp"
 
 #include <duet/derivative/gradient.hpp>
 #include <duet/kinematics/closest_points.hpp>
@@ -239,7 +240,7 @@ TEST_CASE("closest_points: the normal of crossing axes is perpendicular to both"
       closest_points(capsule<>(o, x, 0), capsule<>(vector(.5 * x + y), vector(9 * x + y), 0));
   CHECK(alongside.on_body == vector(.75, 0, 0));
   // The distance grows along the normal, whatever moves.
-  const auto distance_gradient = gradient(
+  const auto distance_gradient = gradient<duet_test::shared_tag>(
       [&](const auto& move) {
         using T = std::decay_t<decltype(move[0])>;
         const vector3<T> a = -x.cast<T>() + move, b = x.cast<T>() + move;
@@ -283,7 +284,7 @@ TEST_CASE("closest_points: the gradient by dual numbers is the normal, weighted 
       const auto p = closest_points(c, obstacle);
       Eigen::Matrix<double, 6, 1> ends;
       ends << c.from, c.to;
-      const auto distance_gradient = gradient(
+      const auto distance_gradient = gradient<duet_test::shared_tag>(
           [&](const auto& x) {
             using T = std::decay_t<decltype(x[0])>;
             return closest_points(
@@ -319,7 +320,7 @@ TEST_CASE("closest_points: the gradient by dual numbers is the normal, weighted 
 
 TEST_CASE("closest_points: gradients are finite for touching and coinciding shapes") {
   const auto distance_gradient = [](const auto& obstacle, const vector& x) {
-    return gradient(
+    return gradient<duet_test::shared_tag>(
                [&](const auto& y) {
                  using T = std::decay_t<decltype(y[0])>;
                  return closest_points(sphere<T>{y, T(0)}, obstacle).distance;

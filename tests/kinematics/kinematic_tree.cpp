@@ -493,18 +493,20 @@ TEST_CASE("kinematic_tree: Jacobians and rates equal dual numbers through a coup
   duet_test::random_source random(3);
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector4d y = random_vector(4, random), v = random_vector(4, random);
-    const auto c = jacobian(waves, y);
+    const auto c = jacobian<duet_test::shared_tag>(waves, y);
     const VectorXd q_dot = c.jacobian * v;
     const Eigen::MatrixXd c_rate =
-        directional_derivative([&](const auto& x) { return jacobian(waves, x).jacobian; }, y, v)
+        directional_derivative<duet_test::outer_shared_tag>(
+            [&](const auto& x) { return jacobian<duet_test::shared_tag>(waves, x).jacobian; }, y, v)
             .derivative;
     const auto check = [&](const auto& at) {
       for_each_frame([&](auto frame) {
         const auto m = [&](const auto& x) {
-          return jacobian([&](const auto& u) { return tree.pose(waves(u), at); }, x, frame)
+          return jacobian<duet_test::shared_tag>(
+                     [&](const auto& u) { return tree.pose(waves(u), at); }, x, frame)
               .jacobian;
         };
-        const auto both = directional_derivative(m, y, v);
+        const auto both = directional_derivative<duet_test::outer_shared_tag>(m, y, v);
         const auto closed = jacobian_with_rate(tree, c.value, q_dot, frame, at);
         CHECK(max_abs_difference(both.value, closed.jacobian * c.jacobian) < 1e-13);
         CHECK(max_abs_difference(both.derivative,
@@ -516,9 +518,11 @@ TEST_CASE("kinematic_tree: Jacobians and rates equal dual numbers through a coup
     check(relative);
     check(tree.link("finger").link);
     const auto m = [&](const auto& x) {
-      return jacobian([&](const auto& u) { return centre_of_mass(tree, waves(u)); }, x).jacobian;
+      return jacobian<duet_test::shared_tag>(
+                 [&](const auto& u) { return centre_of_mass(tree, waves(u)); }, x)
+          .jacobian;
     };
-    const auto both = directional_derivative(m, y, v);
+    const auto both = directional_derivative<duet_test::outer_shared_tag>(m, y, v);
     const Eigen::MatrixXd first = centre_of_mass_jacobian(tree, c.value);
     CHECK(max_abs_difference(both.value, first * c.jacobian) < 2e-14);
     CHECK(max_abs_difference(both.derivative,
