@@ -18,11 +18,14 @@ endif()
 # -Wstringop-overflow within std::string, -Warray-bounds in optimised code over dual numbers,
 # -Wmaybe-uninitialized in its header of AVX-512; clang 22 objects to __COUNTER__ in the macros of
 # doctest and Google Benchmark.
-target_compile_options(duet_development INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wshadow -Wnon-virtual-dtor
-  -Woverloaded-virtual -Wold-style-cast ${duet_compiler_memory}
-  "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict;-Wno-array-bounds;-Wno-stringop-overflow;-Wno-maybe-uninitialized>"
-  $<$<AND:$<CXX_COMPILER_ID:Clang>,$<VERSION_GREATER_EQUAL:$<CXX_COMPILER_VERSION>,22>>:-Wno-c2y-extensions>)
+set(duet_warnings -Wall -Wextra -Wpedantic -Wconversion -Wno-sign-conversion -Wshadow -Wnon-virtual-dtor
+  -Woverloaded-virtual -Wold-style-cast)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  list(APPEND duet_warnings -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-maybe-uninitialized)
+elseif(CMAKE_CXX_COMPILER_ID STREQUAL "Clang" AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 22)
+  list(APPEND duet_warnings -Wno-c2y-extensions)
+endif()
+target_compile_options(duet_development INTERFACE ${duet_warnings} ${duet_compiler_memory})
 
 # It links in a fifth of the time that the GNU linker takes: the table of formulas in 0.2 s of processor time
 # instead of 0.9.
