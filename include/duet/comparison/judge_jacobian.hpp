@@ -60,11 +60,12 @@ struct jacobian_judgement {
   std::string worst_input{};           ///< input with that error
   /// Every single slip that explains all samples; empty if none does.
   std::vector<jacobian_slip> slips{};
-  std::string simplest_input{};  ///< simplest input with the worst verdict
-  Eigen::Index row = 0;          ///< row of the largest error there
-  Eigen::Index column = 0;       ///< column of the largest error there
-  Eigen::MatrixXd derivative{};  ///< right Jacobian there, in tangent coordinates
-  Eigen::MatrixXd handwritten{}; ///< handwritten Jacobian there, in tangent coordinates
+  std::vector<std::string> notes{}; ///< what else was found, as about manifolds of Ceres
+  std::string simplest_input{};     ///< simplest input with the worst verdict
+  Eigen::Index row = 0;             ///< row of the largest error there
+  Eigen::Index column = 0;          ///< column of the largest error there
+  Eigen::MatrixXd derivative{};     ///< right Jacobian there, in tangent coordinates
+  Eigen::MatrixXd handwritten{};    ///< handwritten Jacobian there, in tangent coordinates
 
   /// True if the Jacobian agrees.
   [[nodiscard]] explicit operator bool() const { return outcome == verdict::agrees; }
@@ -90,6 +91,9 @@ struct jacobian_judgement {
   }
   if (j.outcome == verdict::disagrees && j.slips.empty()) {
     out << "  no single slip explains it\n";
+  }
+  for (const std::string& note : j.notes) {
+    out << "  note: " << note << "\n";
   }
   if (j.outcome != verdict::agrees) {
     counterexample entry;
@@ -151,9 +155,10 @@ struct jacobian_argument<X> {
 };
 
 template <EigenMatrix X>
-  requires(X::SizeAtCompileTime > 0)
 struct jacobian_argument<X> {
   static void append(std::vector<jacobian_part>& list, const std::string& name) {
+    static_assert(X::SizeAtCompileTime > 0,
+                  "duet: judge_jacobian: vectors need a size known at compile time");
     append_part(list, jacobian_part::kind::vector, name, X::SizeAtCompileTime);
   }
   static void save(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
@@ -595,6 +600,44 @@ judged_jacobian(const std::string& label, const jacobian_problem& problem,
   return result;
 }
 
+/// \param results  parts of what f returns
+template <class F, class J, class... Domains>
+[[nodiscard]] jacobian_judgement
+judged_jacobian(const std::string& label, const F& f, const J& jacobian,
+                std::vector<jacobian_part> results, const sampler<Domains...>& inputs,
+                const jacobian_options& options) {
+  using arguments = decltype(inputs.template make<double>(std::declval<const coordinates&>()));
+  using right = jacobian_truth<F, arguments, body_frame>;
+  using left = jacobian_truth<F, arguments, spatial_frame>;
+  jacobian_problem problem;
+  problem.side = options.side;
+  problem.order = options.order;
+  problem.results = std::move(results);
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (jacobian_argument<std::tuple_element_t<I, arguments>>::append(problem.arguments,
+                                                                   inputs.names()[I]),
+     ...);
+  }
+  (std::make_index_sequence<sizeof...(Domains)>{});
+  problem.truth = [&](const Eigen::VectorXd& state) {
+    return options.side == perturbation::right ? right::at(f, state, problem.results)
+                                               : left::at(f, state, problem.results);
+  };
+  problem.written = [&](const Eigen::VectorXd& state) {
+    Eigen::Index next = 0;
+    return written_matrix(
+        result_of_call(
+            std::apply(jacobian, jacobian_argument<arguments>::template load<double>(state, next))),
+        tangent_size(problem.results));
+  };
+  return judged_jacobian(
+      label, problem, inputs.points(options.samples, options.seed), inputs,
+      [&](const coordinates& point) {
+        return saved(inputs.template make<double>(point), problem.arguments);
+      },
+      options);
+}
+
 DUET_ABI_END
 } // namespace detail
 
@@ -632,40 +675,15 @@ judge_jacobian(const std::string& label, const F& f, const J& jacobian,
   static_assert(detail::takes<J, arguments>,
                 "duet: judge_jacobian: the Jacobian must take one argument of each domain of the "
                 "sampler, over double");
-  using right = detail::jacobian_truth<F, arguments, body_frame>;
-  using left = detail::jacobian_truth<F, arguments, spatial_frame>;
-  static_assert(!std::is_void_v<typename right::scalar> || detail::takes<F, arguments>,
+  using truth = detail::jacobian_truth<F, arguments, body_frame>;
+  static_assert(!std::is_void_v<typename truth::scalar> || detail::takes<F, arguments>,
                 "duet: judge_jacobian: the function must take one argument of each domain of the "
                 "sampler");
-  detail::jacobian_problem problem;
-  problem.side = options.side;
-  problem.order = options.order;
-  [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (detail::jacobian_argument<std::tuple_element_t<I, arguments>>::append(problem.arguments,
-                                                                           inputs.names()[I]),
-     ...);
-  }
-  (std::make_index_sequence<sizeof...(Domains)>{});
   using result = std::decay_t<decltype(detail::result_of_call(
       std::apply(f, std::declval<const arguments&>())))>;
-  detail::jacobian_argument<result>::append(problem.results, "f");
-  problem.truth = [&](const Eigen::VectorXd& state) {
-    return options.side == perturbation::right ? right::at(f, state, problem.results)
-                                               : left::at(f, state, problem.results);
-  };
-  problem.written = [&](const Eigen::VectorXd& state) {
-    Eigen::Index next = 0;
-    return detail::written_matrix(
-        detail::result_of_call(std::apply(
-            jacobian, detail::jacobian_argument<arguments>::template load<double>(state, next))),
-        detail::tangent_size(problem.results));
-  };
-  return detail::judged_jacobian(
-      label, problem, inputs.points(options.samples, options.seed), inputs,
-      [&](const coordinates& point) {
-        return detail::saved(inputs.template make<double>(point), problem.arguments);
-      },
-      options);
+  std::vector<detail::jacobian_part> results;
+  detail::jacobian_argument<result>::append(results, "f");
+  return detail::judged_jacobian(label, f, jacobian, std::move(results), inputs, options);
 }
 
 } // namespace duet
