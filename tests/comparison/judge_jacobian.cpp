@@ -387,9 +387,9 @@ TEST_CASE("a judgement as text") {
   CHECK(text.find("  simplest input: q = rotation by (1, 0, 0), p = (0, 0, 0)\n"
                   "    entry (1, 5): -0.8414709848, handwritten 0.8414709848\n"
                   "    derivative:\n") != std::string::npos);
-  CHECK(j.simplest_input == "q = rotation by (1, 0, 0), p = (0, 0, 0)");
-  CHECK(j.row == 1);
-  CHECK(j.column == 5);
+  CHECK(j.simplest->input == "q = rotation by (1, 0, 0), p = (0, 0, 0)");
+  CHECK(j.simplest->row == 1);
+  CHECK(j.simplest->column == 5);
 }
 
 } // namespace test_comparison_judge_jacobian

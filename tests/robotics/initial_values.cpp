@@ -134,6 +134,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(jacobian_options);
   DUET_CHECK(jacobian_judgement);
   DUET_CHECK(jacobian_slip);
+  DUET_CHECK(jacobian_counterexample);
   DUET_CHECK(worst_errors);
   DUET_CHECK(counterexample);
   DUET_CHECK(comparison);

@@ -50,6 +50,15 @@ struct jacobian_options {
   progress_callback report = {}; ///< callback after every input; may end the run
 };
 
+/// An input at which a handwritten Jacobian is wrong.
+struct jacobian_counterexample {
+  std::string input{};           ///< the arguments, as text
+  Eigen::Index row = 0;          ///< row of the largest error
+  Eigen::Index column = 0;       ///< column of the largest error
+  Eigen::MatrixXd derivative{};  ///< right Jacobian, in tangent coordinates
+  Eigen::MatrixXd handwritten{}; ///< handwritten Jacobian, in tangent coordinates
+};
+
 /// Result of `judge_jacobian`.
 struct jacobian_judgement {
   std::string label{};                 ///< label passed to `judge_jacobian`
@@ -61,11 +70,7 @@ struct jacobian_judgement {
   /// Every single slip that explains all samples; empty if none does.
   std::vector<jacobian_slip> slips{};
   std::vector<std::string> notes{}; ///< what else was found, as about manifolds of Ceres
-  std::string simplest_input{};     ///< simplest input with the worst verdict
-  Eigen::Index row = 0;             ///< row of the largest error there
-  Eigen::Index column = 0;          ///< column of the largest error there
-  Eigen::MatrixXd derivative{};     ///< right Jacobian there, in tangent coordinates
-  Eigen::MatrixXd handwritten{};    ///< handwritten Jacobian there, in tangent coordinates
+  std::optional<jacobian_counterexample> simplest{}; ///< simplest input with the worst verdict
 
   /// True if the Jacobian agrees.
   [[nodiscard]] explicit operator bool() const { return outcome == verdict::agrees; }
@@ -95,15 +100,16 @@ struct jacobian_judgement {
   for (const std::string& note : j.notes) {
     out << "  note: " << note << "\n";
   }
-  if (j.outcome != verdict::agrees) {
+  if (j.simplest) {
+    const jacobian_counterexample& c = *j.simplest;
     counterexample entry;
-    entry.automatic = {j.derivative(j.row, j.column)};
-    entry.closed_form = {j.handwritten(j.row, j.column)};
+    entry.automatic = {c.derivative(c.row, c.column)};
+    entry.closed_form = {c.handwritten(c.row, c.column)};
     const auto [right, wrong] = detail::sides_text(entry);
-    out << "  simplest input: " << j.simplest_input << "\n    entry (" << j.row << ", " << j.column
+    out << "  simplest input: " << c.input << "\n    entry (" << c.row << ", " << c.column
         << "): " << right << ", handwritten " << wrong << "\n";
     for (const auto& [name, matrix] :
-         {std::pair("derivative", &j.derivative), std::pair("handwritten", &j.handwritten)}) {
+         {std::pair("derivative", &c.derivative), std::pair("handwritten", &c.handwritten)}) {
       out << "    " << name << ":\n" << std::setprecision(4);
       for (Eigen::Index i = 0; i < matrix->rows(); ++i) {
         out << "    ";
@@ -592,10 +598,9 @@ judged_jacobian(const std::string& label, const jacobian_problem& problem,
                                  : v == result.outcome;
         });
     const jacobian_sample s = judge.sample_at(state_of(simplest));
-    result.simplest_input = inputs.describe(simplest);
-    std::tie(result.row, result.column) = judge.position_of(s);
-    result.derivative = s.exact;
-    result.handwritten = s.written;
+    const auto [row, column] = judge.position_of(s);
+    result.simplest =
+        jacobian_counterexample{inputs.describe(simplest), row, column, s.exact, s.written};
   }
   return result;
 }
