@@ -27,8 +27,8 @@ DUET_ABI_BEGIN
 class jacobian_slip_search : protected slips_of_terms {
 public:
   /// \param samples  with at least one that is wrong; the wrong ones are searched first
-  jacobian_slip_search(const jacobian_problem& problem, std::vector<jacobian_sample> samples)
-      : slips_of_terms(problem, std::move(samples)) {}
+  jacobian_slip_search(const jacobian_problem& problem, const std::vector<jacobian_sample>& samples)
+      : slips_of_terms(problem, samples) {}
 
   [[nodiscard]] std::vector<jacobian_slip> found() {
     try_algebra();

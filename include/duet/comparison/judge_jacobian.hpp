@@ -574,7 +574,7 @@ judged_jacobian(const std::string& label, const jacobian_problem& problem,
         used.push_back(samples[n]);
       }
     }
-    result.slips = jacobian_slip_search(problem, std::move(used)).found();
+    result.slips = jacobian_slip_search(problem, used).found();
   }
   for (const verdict v : verdicts) {
     ++result.counts[std::size_t(v)];

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -38,10 +39,12 @@ protected:
   using kind = jacobian_part::kind;
 
   /// \param samples  with at least one that is wrong; the wrong ones are searched first
-  slips_of_blocks(const jacobian_problem& problem, std::vector<jacobian_sample> samples)
-      : problem_(problem), samples_(std::move(samples)) {
-    std::stable_partition(samples_.begin(), samples_.end(),
-                          [](const jacobian_sample& s) { return s.is_wrong; });
+  slips_of_blocks(const jacobian_problem& problem, const std::vector<jacobian_sample>& samples)
+      : problem_(problem) {
+    for (const bool is_wrong : {true, false}) {
+      std::copy_if(samples.begin(), samples.end(), std::back_inserter(samples_),
+                   [&](const jacobian_sample& s) { return s.is_wrong == is_wrong; });
+    }
     double worst = 0;
     const auto error_of = [](const jacobian_sample& s) {
       return largest_entry(s.written - s.exact) / largest_entry(s.exact);
