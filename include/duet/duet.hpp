@@ -16,7 +16,7 @@
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
-#include <duet/comparison/poses.hpp>
+#include <duet/comparison/rigid_motions.hpp>
 #include <duet/comparison/rotations.hpp>
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/parallel_for.hpp>

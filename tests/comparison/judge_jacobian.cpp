@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/comparison/judge_jacobian.hpp>
-#include <duet/comparison/poses.hpp>
+#include <duet/comparison/rigid_motions.hpp>
 #include <duet/duet.hpp>
 
 #include <doctest/doctest.h>
@@ -186,7 +186,7 @@ TEST_CASE("rotation between two rotations: branches, sheets and Jacobians of exp
 
 TEST_CASE("pose between two poses: blocks of adjoints") {
   const auto f = [](const auto& a, const auto& b) { return conj(a) * b; };
-  const auto inputs = sampler(poses{}, poses{}).named("A", "B");
+  const auto inputs = sampler(rigid_motions{}, rigid_motions{}).named("A", "B");
   const auto judge = [&](slip s) {
     return judge_jacobian(
         "relative pose", f,
@@ -258,7 +258,7 @@ TEST_CASE("integrated rotation: time steps") {
 
 TEST_CASE("derivatives by stored numbers of rotations and poses, in both orders and sides") {
   const auto f = [](const auto& a, const auto& p) { return transform_point(a, p); };
-  const auto inputs = sampler(poses{}, vectors<3>{1}).named("A", "p");
+  const auto inputs = sampler(rigid_motions{}, vectors<3>{1}).named("A", "p");
   for (const bool is_usual : {true, false}) {
     const auto order = is_usual ? quaternion_order::wxyz : quaternion_order::xyzw;
     const auto side = is_usual ? perturbation::right : perturbation::left;

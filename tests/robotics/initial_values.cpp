@@ -145,7 +145,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(derivative_and_error<Vector3d>);
   DUET_CHECK(rotations);
   DUET_CHECK(quaternions);
-  DUET_CHECK(poses);
+  DUET_CHECK(rigid_motions);
   DUET_CHECK(execution);
   DUET_CHECK(progress);
   DUET_CHECK(csv_row);

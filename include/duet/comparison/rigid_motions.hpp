@@ -21,7 +21,7 @@ namespace duet {
 /// Special and related ones are those of `rotations` with translations that are zero, tiny, large,
 /// along the axis of rotation and across it. Of unit norm in every precision, since it is
 /// constructed in it.
-struct poses {
+struct rigid_motions {
   double bound = 2;                ///< maximum absolute value of a component of the translation
   double largest_angle = 6.283185; ///< just below a full turn, where the rotation vector jumps
 
