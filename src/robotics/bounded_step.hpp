@@ -376,16 +376,17 @@ template <int Capacity>
   return result;
 }
 
-/// Newton step to the minimum of ½|e|² in the coordinates that are not fixed; nothing if the
-/// curvature and λ together are not positive definite.
+/// Newton step to the minimum of ½|e|² in the first n coordinates, those that are fixed excepted;
+/// nothing if the curvature and λ together are not positive definite.
 template <int Capacity>
 [[nodiscard]] std::optional<small_vector<Capacity>>
 newton_step(const squared_error<Capacity>& error,
-            const std::array<bool, std::size_t(Capacity)>& is_fixed, double lambda) {
-  auto matrix = error.curvature;
+            const std::array<bool, std::size_t(Capacity)>& is_fixed, Eigen::Index n,
+            double lambda) {
+  Eigen::MatrixXd matrix = error.curvature.topLeftCorner(n, n);
   small_vector<Capacity> step = -error.gradient;
   matrix.diagonal().array() += lambda;
-  for (Eigen::Index j = 0; j < Capacity; ++j) {
+  for (Eigen::Index j = 0; j < n; ++j) {
     if (is_fixed[std::size_t(j)]) {
       matrix.row(j).setZero();
       matrix.col(j).setZero();
@@ -393,11 +394,11 @@ newton_step(const squared_error<Capacity>& error,
       step[j] = 0;
     }
   }
-  const Eigen::LLT<Eigen::Ref<Eigen::Matrix<double, Capacity, Capacity>>> factors(matrix);
+  const Eigen::LLT<Eigen::MatrixXd> factors(matrix);
   if (factors.info() != Eigen::Success) {
     return std::nullopt;
   }
-  factors.solveInPlace(step);
+  step.head(n) = factors.solve(step.head(n));
   return step;
 }
 

@@ -26,15 +26,14 @@ struct inequality {
 
 /// Nonnegative least squares: the residual f − A u of minimum norm with all u ≥ 0, by Lawson and
 /// Hanson's active-set method.
-template <class M, class V>
-[[nodiscard]] V nonnegative_residual(const M& a, const V& f) {
-  constexpr int rows = M::MaxRowsAtCompileTime;
+[[nodiscard]] inline Eigen::VectorXd nonnegative_residual(const Eigen::MatrixXd& a,
+                                                          const Eigen::VectorXd& f) {
   struct share {
     Eigen::Index column;
     double u;
   };
   std::vector<share> active;
-  V residual = f;
+  Eigen::VectorXd residual = f;
   for (Eigen::Index round = 0; round < 3 * a.cols(); ++round) {
     Eigen::Index best = 0;
     if (!((a.transpose() * residual).maxCoeff(&best) > 1e-12)) {
@@ -43,17 +42,14 @@ template <class M, class V>
     active.push_back({best, 0});
     for (bool is_settled = false; !is_settled && !active.empty();) {
       const auto count = Eigen::Index(active.size());
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, rows, rows + 1> chosen(a.rows(),
-                                                                                      count);
+      Eigen::MatrixXd chosen(a.rows(), count);
       for (Eigen::Index i = 0; i < count; ++i) {
         chosen.col(i) = a.col(active[std::size_t(i)].column);
       }
       // The second pass removes round-off of the first: a Gram matrix has the squared condition
       // number.
-      using gram = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, rows + 1, rows + 1>;
-      const Eigen::LDLT<gram> factors(chosen.transpose() * chosen);
-      Eigen::Matrix<double, Eigen::Dynamic, 1, 0, rows + 1, 1> z =
-          factors.solve(chosen.transpose() * f);
+      const Eigen::LDLT<Eigen::MatrixXd> factors(chosen.transpose() * chosen);
+      Eigen::VectorXd z = factors.solve(chosen.transpose() * f);
       z += factors.solve(chosen.transpose() * (f - chosen * z));
       // Step towards z as far as all stay nonnegative; the first that becomes zero leaves the
       // active set.
@@ -87,12 +83,7 @@ template <class M, class V>
 template <class V>
 [[nodiscard]] std::optional<V> least_distance(const std::vector<inequality<V>>& inequalities,
                                               Eigen::Index n) {
-  constexpr int rows = V::RowsAtCompileTime == Eigen::Dynamic ? Eigen::Dynamic
-                                                              : V::RowsAtCompileTime + 1,
-                max_rows = V::MaxRowsAtCompileTime + 1;
-  using column = Eigen::Matrix<double, rows, 1, 0, max_rows, 1>;
-  Eigen::Matrix<double, rows, Eigen::Dynamic, 0, max_rows, Eigen::Dynamic> columns(
-      n + 1, Eigen::Index(inequalities.size()));
+  Eigen::MatrixXd columns(n + 1, Eigen::Index(inequalities.size()));
   Eigen::Index count = 0;
   for (const inequality<V>& each : inequalities) {
     const double length = each.normal.norm();
@@ -102,8 +93,8 @@ template <class V>
       return std::nullopt; // independent of x
     }
   }
-  columns.conservativeResize(Eigen::NoChange, count);
-  const column residual = nonnegative_residual(columns, column(column::Unit(n + 1, n)));
+  const Eigen::VectorXd residual =
+      nonnegative_residual(columns.leftCols(count), Eigen::VectorXd::Unit(n + 1, n));
   // residual[n] is 1 / (1 + |x|²).
   if (!(residual[n] > 1e-8)) {
     return std::nullopt;

@@ -271,7 +271,8 @@ private:
          ++iterations) {
       is_lower = false;
       for (; !is_lower && lambda < 1e6 * (1 + current.error); lambda = std::max(4 * lambda, 1e-3)) {
-        const auto step = newton_step(current.to_second_order, current.is_fixed, lambda);
+        const auto step =
+            newton_step(current.to_second_order, current.is_fixed, model_.size, lambda);
         if (!step) {
           continue;
         }
@@ -338,19 +339,19 @@ private:
 };
 
 /// Equality and inequality constraints of a step.
-template <class V>
 struct step_conditions {
-  std::vector<inequality<V>> equations;    ///< normal·x = bound
-  std::vector<inequality<V>> inequalities; ///< normal·x ≥ bound
+  std::vector<inequality<Eigen::VectorXd>> equations;    ///< normal·x = bound
+  std::vector<inequality<Eigen::VectorXd>> inequalities; ///< normal·x ≥ bound
 };
 
 /// Minimiser x of gradient·x + ½ xᵀ B x under the constraints, B = `curvature` positive definite;
 /// nothing if no x satisfies them. With B = L Lᵀ and y = Lᵀx + L⁻¹ gradient the objective is ½|y|²
 /// up to a constant: a least-norm problem for y.
-template <class V, class M>
-[[nodiscard]] std::optional<V> quadratic_step(const V& gradient, const M& curvature,
-                                              const step_conditions<V>& conditions) {
-  const Eigen::LLT<M> factors(curvature);
+[[nodiscard]] std::optional<Eigen::VectorXd> quadratic_step(const Eigen::VectorXd& gradient,
+                                                            const Eigen::MatrixXd& curvature,
+                                                            const step_conditions& conditions) {
+  using V = Eigen::VectorXd;
+  const Eigen::LLT<Eigen::MatrixXd> factors(curvature);
   const auto root = factors.matrixL();
   orthonormal_rows<V> equality_rows;
   V aim = V::Zero(gradient.size()); // the least-norm y that satisfies the equations
@@ -381,15 +382,14 @@ template <int Capacity>
 class solution_refinement {
 public:
   using joints = small_vector<Capacity>;
-  using vector = bounded_vector<Capacity>;
-  using matrix =
-      Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, Capacity, Capacity>;
+  using vector = Eigen::VectorXd; // of one size for all chains: compiled once
+  using matrix = Eigen::MatrixXd;
 
   struct point {
     joints theta;
     pose_error residual;
     double error_ratio = 0; ///< largest deviation or margin violation, relative to the tolerance
-    step_conditions<vector> conditions;
+    step_conditions conditions;
     double value = 0; ///< value of the objective
     vector gradient;
   };
