@@ -62,8 +62,12 @@ void run(const options& settings) {
   const smoothed s =
       smooth(r, samples_per_knot, settings.characteristic_length, settings.outlier_threshold);
 
+  if (!s.fit.remark.empty()) {
+    std::cerr << s.fit.remark << " (--samples-per-knot)\n";
+  }
+
   std::filesystem::create_directories(settings.out);
-  duet::write_file(settings.out + "/trajectory.csv", trajectory_csv(r, s.fit.curve, rate));
+  duet::write_file(settings.out + "/trajectory.csv", trajectory_csv(r, s.fit, rate));
   duet::write_file(settings.out + "/rows.csv", rows_csv(r, s));
   const bool drawn =
       example::draw(settings.out, "fit", 520,
@@ -74,9 +78,9 @@ void run(const options& settings) {
     std::cout << "No picture: gnuplot is not installed\n";
   }
   std::printf("fit trajectory: rows=%zu left_out=%zu controls=%zu outliers=%zu "
-              "median_residual=%.3g rms=%.3g\n",
+              "median_residual=%.3g rms=%.3g inlier_rms=%.3g\n",
               rows, r.left_out, s.fit.curve.control_points().size(), outliers(s),
-              median(s.fit.residuals), s.fit.rms);
+              median(s.fit.residuals), s.fit.rms, s.fit.inlier_rms);
 }
 
 } // namespace

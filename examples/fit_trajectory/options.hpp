@@ -31,7 +31,8 @@ inline std::optional<options> parse_options(int argc, char** argv) {
   example::option_list description(
       "Fits a smooth curve to recorded motion: robust least squares with a cumulative cubic "
       "B-spline of\n"
-      "poses, with velocities and accelerations (trajectory.csv), residuals (rows.csv) and "
+      "poses, with velocities, accelerations and their standard deviations (trajectory.csv), "
+      "residuals\n(rows.csv) and "
       "pictures.\n\n  fit_trajectory [FILE] [options]\n\n"
       "FILE has rows `timestamp tx ty tz qx qy qz qw` (seconds, metres, # starts a comment), or a "
       "header, a\nfirst line or a comment, that names the columns in any order; files of the "

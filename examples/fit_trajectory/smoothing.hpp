@@ -48,7 +48,8 @@ struct smoothed {
 inline smoothed smooth(const recording& r, std::size_t samples_per_knot,
                        double characteristic_length, double outlier) {
   const duet::fit_options options{.characteristic_length = characteristic_length,
-                                  .outlier_threshold = std::max(outlier, 0.0)};
+                                  .outlier_threshold = std::max(outlier, 0.0),
+                                  .keeps_covariance = true};
   fitted result =
       duet::fit<curve>(r.table.parameters, r.table.elements,
                        duet::knots_every(r.table.parameters, samples_per_knot), options);
@@ -77,10 +78,19 @@ inline double rate_for(double duration, const std::optional<double>& requested) 
 }
 
 /// Poses and their rates at even times, in fixed axes: velocity and acceleration of the origin,
-/// angular velocity and acceleration.
-inline std::string trajectory_csv(const recording& r, const curve& s, double rate) {
-  std::string text = "timestamp,tx,ty,tz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,ax,ay,az,"
-                     "alphax,alphay,alphaz\n";
+/// angular velocity and acceleration; then standard deviations of the rates.
+inline std::string trajectory_csv(const recording& r, const fitted& fit, double rate) {
+  std::string text = "timestamp,tx,ty,tz,qx,qy,qz,qw";
+  for (const char* const prefix : {",", ",sd_"}) {
+    for (const char* const name : {"v", "w", "a", "alpha"}) {
+      for (const char* const axis : {"x", "y", "z"}) {
+        text += std::string(prefix) + name + axis;
+      }
+    }
+  }
+  text += "\n";
+  const curve& s = fit.curve;
+  const auto covariance = fit.covariance();
   const double end = s.basis().back();
   duet::span_hint hint;
   for (std::size_t i = 0; double(i) / rate <= end; ++i) {
@@ -90,6 +100,10 @@ inline std::string trajectory_csv(const recording& r, const curve& s, double rat
     std::vector<double> numbers{r.start + t, x[0], x[1], x[2], x[4], x[5], x[6], x[3]};
     numbers.insert(numbers.end(), m.velocity.begin(), m.velocity.end());
     numbers.insert(numbers.end(), m.acceleration.begin(), m.acceleration.end());
+    const auto variances = covariance.motion(t, duet::frame::hybrid).joint.diagonal();
+    for (Eigen::Index k = 6; k < 18; ++k) {
+      numbers.push_back(std::sqrt(variances[k]));
+    }
     text += duet::csv_line(numbers);
   }
   return text;
@@ -108,25 +122,22 @@ inline std::string rows_csv(const recording& r, const smoothed& s) {
 }
 
 /// Commands that read a few thousand evenly spaced lines of a table, once for both pictures.
-inline std::string picture_data(const std::string& name, std::size_t lines,
+inline std::string picture_data(const std::string& name, std::size_t max_lines, std::size_t lines,
                                 const std::string& columns) {
-  constexpr std::size_t max_lines = 5000;
   return "set table $" + name + "\nplot '" + name + ".csv' skip 1 every " +
          std::to_string(lines / max_lines + 1) + " using " + columns + " with table\nunset table\n";
 }
 
 /// The time at which the three coordinates are best separated, and their values: the position of
-/// their names.
-/// \param group  0 position, 1 velocity, 2 angular velocity
-inline std::pair<double, vector3<double>> best_separated(const curve& s, std::size_t group) {
+/// their names; of the position or the angular velocity.
+inline std::pair<double, vector3<double>> best_separated(const curve& s, bool is_position) {
   std::pair<double, vector3<double>> result{};
   double widest = -1;
   for (int i = 4; i <= 96; ++i) {
     const double t = s.basis().back() * i / 100;
     const auto m = s.motion(t, duet::frame::hybrid);
-    const vector3<double> x = group == 0   ? vector3<double>(duet::translation(m.value))
-                              : group == 1 ? vector3<double>(m.velocity.template head<3>())
-                                           : vector3<double>(m.velocity.template tail<3>());
+    const vector3<double> x = is_position ? vector3<double>(duet::translation(m.value))
+                                          : vector3<double>(m.velocity.template tail<3>());
     const double separation =
         std::min({std::abs(x[0] - x[1]), std::abs(x[1] - x[2]), std::abs(x[2] - x[0])});
     if (separation > widest) {
@@ -137,7 +148,8 @@ inline std::pair<double, vector3<double>> best_separated(const curve& s, std::si
   return result;
 }
 
-/// Position with outliers, velocities, and residuals.
+/// Position with outliers, angular velocity, an angular acceleration with the band that holds the
+/// true one with 95 % probability, and residuals.
 /// \param rows, poses  their numbers; with more than 5000 rows outliers are not drawn
 inline std::string picture_script(double start, double duration, const smoothed& s,
                                   std::size_t rows, std::size_t poses) {
@@ -151,33 +163,46 @@ inline std::string picture_script(double start, double duration, const smoothed&
                         " : 1/0) with points pt 7 ps .5 lc rgb grey, \\\n     ";
     }
   }
-  const auto curves = [&](std::size_t group) {
-    std::string names, text = "plot ";
-    if (group == 0) {
-      text += outlier_points;
-    }
-    const auto [t, values] = best_separated(s.fit.curve, group);
+  const auto curves = [&](bool is_position) {
+    std::string names, text = "plot " + (is_position ? outlier_points : "");
+    const auto [t, values] = best_separated(s.fit.curve, is_position);
     for (std::size_t k = 0; k < 3; ++k) {
       names += std::string("set label '") + axes[k] + "' at " + duet::to_text(t) + "," +
                duet::to_text(values[Eigen::Index(k)]) + " center offset 0,.7 front tc rgb " +
                colours[k] + "\n";
-      text += "$trajectory using 1:" + std::to_string(2 + 3 * group + k) +
+      text += "$trajectory using 1:" + std::to_string((is_position ? 2 : 5) + k) +
               " with lines lw 2 lc rgb " + colours[k] + (k < 2 ? ", \\\n     " : "\n");
     }
     return names + text + "unset label\n";
   };
+  double largest = 0; // of the angular acceleration and its band, without the uncertain ends
+  const auto covariance = s.fit.covariance();
+  for (int i = 4; i <= 96; ++i) {
+    const double t = duration * i / 100;
+    largest = std::max(
+        largest, std::abs(s.fit.curve.motion(t, duet::frame::hybrid).acceleration[3]) +
+                     2 * std::sqrt(covariance.motion(t, duet::frame::hybrid).acceleration()(3, 3)));
+  }
+  const std::string reach = duet::to_text(std::ceil(1.2 * largest));
   std::string text =
       "if (!exists('is_read')) {\n" +
-      picture_data("trajectory", poses, "($1" + first + "):2:3:4:9:10:11:12:13:14") +
-      picture_data("rows", rows, "($2" + first + "):3:4:5:6:7") +
+      picture_data("trajectory", 600, poses, "($1" + first + "):2:3:4:12:13:14:18:30") +
+      picture_data("rows", 2000, rows, "($2" + first + "):3:4:5:6:7") +
       "is_read = 1\n}\nset datafile separator whitespace\n"
       "set multiplot layout 2,2 title " +
       example::title(std::to_string(outliers(s)) + " of " + std::to_string(rows) +
                      " rows are far off, and do not pull the curve") +
       "\nset lmargin 10\nset rmargin 3\nset offsets 0,0,graph .15,0\nset xrange [0:" +
-      duet::to_text(duration) + "]\nset ytics .5\nset ylabel 'position / m'\n" + curves(0) +
-      "set ylabel 'velocity / (m/s)'\n" + curves(1) +
-      "set xlabel 'time / s'\nset ylabel 'angular velocity / (rad/s)'\n" + curves(2);
+      duet::to_text(duration) + "]\nset ytics .5\nset ylabel 'position / m'\n" + curves(true) +
+      "set ylabel 'angular velocity / (rad/s)'\n" + curves(false) +
+      "set xlabel 'time / s'\nset ylabel 'acceleration about x / (rad/s^2)'\nset ytics 2\n"
+      "set yrange [-" +
+      reach + ":" + reach +
+      "]\n"
+      "set label 'light: 95 %' at graph .98,.93 right tc rgb vermillion\n"
+      "plot $trajectory using 1:($8 - 1.96 * $9):($8 + 1.96 * $9) with filledcurves fs solid .3 "
+      "noborder lc rgb vermillion, \\\n     $trajectory using 1:8 with lines lw 2 lc rgb "
+      "vermillion\nunset label\nset yrange [*:*]\n";
   const std::string limit = duet::to_text(s.outlier);
   return text +
          "set ylabel 'residual / rad'\nset offsets 0,0,0,0\nset logscale y\nset ytics 10\n"

@@ -301,6 +301,7 @@ TEST_CASE("at the minimum of every loss the gradient of the cost vanishes") {
     CHECK(hessian.llt().info() == Eigen::Success);
     // Sandwich of the curvatures and the gradients of single losses.
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero(), curvatures = squares;
+    double psi_2 = 0, curved_psi_2 = 0, sum = 0, sum_2 = 0; // of ψ², ψ²W, W and W²
     const auto j = duet::jacobian([&](const auto& x) { return f(x[0], x[1], x[2]); },
                                   Eigen::Vector3d(a, b, c));
     for (int i = 0; i < 30; ++i) {
@@ -317,12 +318,17 @@ TEST_CASE("at the minimum of every loss the gradient of the cost vanishes") {
       const Eigen::Matrix3d outer = j.jacobian.row(i).transpose() * j.jacobian.row(i);
       squares += weight * weight * s * s * outer;
       curvatures += curvature * outer;
+      psi_2 += weight * weight * s * s;
+      curved_psi_2 += curvature * weight * weight * s * s;
+      sum += curvature;
+      sum_2 += curvature * curvature;
     }
     const Eigen::Matrix3d inverse = curvatures.inverse();
+    const double shrunk = .1 * (2 * curved_psi_2 / (sum / 30 * psi_2) - 30 * sum_2 / (sum * sum));
     const Eigen::Matrix3d covariance =
         loss.form == loss_function::kind::squares
             ? Eigen::Matrix3d((j.jacobian.transpose() * j.jacobian).inverse() * 2 * r.cost / 27)
-            : Eigen::Matrix3d(inverse * squares * inverse * 30 / 27);
+            : Eigen::Matrix3d(inverse * squares * inverse / (1 - shrunk));
     CHECK((r.covariance - covariance).norm() < 1e-9 * covariance.norm());
   }
 }

@@ -234,6 +234,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(end_acceleration<>);
   DUET_CHECK(fully_clamped<>);
   DUET_CHECK(fit_options);
+  DUET_CHECK(motion_covariance<double, 3>);
   DUET_CHECK(interpolation_report);
   DUET_CHECK(span_hint);
   DUET_CHECK(lookup_table<double>);

@@ -58,7 +58,7 @@ struct jacobian_evaluation {
 struct jacobian_problem {
   std::vector<jacobian_part> arguments{}, results{};
   std::function<jacobian_evaluation(const Eigen::VectorXd& state)> truth{};
-  /// The handwritten matrix as it is rerotated_part: with columns for tangent coordinates, or for
+  /// The handwritten matrix as it is returned: with columns for tangent coordinates, or for
   /// stored numbers (quaternions in `order`, poses as [t; q]).
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& state)> written{};
   std::vector<jacobian_part> context{}; ///< further numbers of the state
@@ -71,7 +71,7 @@ struct jacobian_sample {
   Eigen::VectorXd state{};
   jacobian_evaluation truth{};
   Eigen::MatrixXd exact{};   ///< the derivative, rounded to double
-  Eigen::MatrixXd raw{};     ///< as rerotated_part
+  Eigen::MatrixXd raw{};     ///< as returned
   Eigen::MatrixXd written{}; ///< in tangent coordinates
   Eigen::MatrixXd outer{}; ///< factor A if A times the exact matrix is what is written, else empty
   double allowed = 0;      ///< allowed error of an entry

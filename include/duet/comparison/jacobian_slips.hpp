@@ -271,7 +271,7 @@ private:
     part.written = nullptr;
     part.arguments.clear();
     Eigen::Index first = 0;
-    std::vector<Eigen::Index> order; // columns as rerotated_part
+    std::vector<Eigen::Index> order; // columns as returned
     for (const jacobian_part& a : problem_.arguments) {
       const Eigen::Index count = a.type == kind::pose ? 3 : a.is_motion() ? 0 : a.dimension;
       if (count > 0) {
@@ -322,7 +322,7 @@ private:
       std::function<std::pair<const jacobian_part*, vector>(const vector&, const matrix&)>;
 
   /// \param part    the problem with stored numbers as arguments
-  /// \param order   columns of what is rerotated_part, in the order of the arguments
+  /// \param order   columns of what is returned, in the order of the arguments
   /// \param change  the argument with the quaternion, and the derivative of f with its norm
   void try_continued(jacobian_problem part, const std::vector<Eigen::Index>& order,
                      const growth& change) {

@@ -152,5 +152,39 @@ inverse_roots(const char* function, const std::vector<Eigen::MatrixXd>& covarian
   return result;
 }
 
+/// Ratio of the expectation of Σ gᵢgᵢᵀ, gᵢ the gradients of single losses, to its value at the
+/// estimate, for the covariance H⁻¹(Σ gᵢgᵢᵀ)H⁻¹ of robust estimates. Let ψᵢ = wᵢ ρ′ be the
+/// derivative of a loss, Wᵢ = wᵢ(ρ′/r across the residual, ρ″ along it) that of ψᵢ by the residual,
+/// and h the number of unknowns over that of components. An error of the estimate takes from ψᵢ its
+/// part of WᵢJᵢ(H⁻¹Jᵢᵀψᵢ), so that on average the sum is too small by
+///
+/// 1 − h (2 Σ ψᵢᵀWᵢψᵢ/(τ Σ|ψᵢ|²) − υ/τ²), τ and υ the means of the eigenvalues of W and of W².
+///
+/// For plain least squares with equal weights this is 1 − h.
+template <Real R>
+class gradient_bias {
+public:
+  /// Adds a residual of size r and `dimension` components, its weight w, ρ′/r and ρ″.
+  void add(const R& r, int dimension, const R& w, const R& across, const R& along) {
+    const R psi = w * across * r, by_across = w * across, by_along = w * along;
+    squares_ += psi * psi;
+    inner_ += by_along * (psi * psi);
+    trace_ += R(dimension - 1) * by_across + by_along;
+    trace_of_square_ += R(dimension - 1) * (by_across * by_across) + by_along * by_along;
+    components_ += R(dimension);
+  }
+
+  /// The ratio; NaN if the components are too few.
+  [[nodiscard]] R factor(const R& unknowns) const {
+    const R mean = trace_ / components_, h = unknowns / components_;
+    const R left =
+        1 - h * (2 * inner_ / (mean * squares_) - trace_of_square_ / (components_ * mean * mean));
+    return left > 0 ? R(1 / left) : std::numeric_limits<R>::quiet_NaN();
+  }
+
+private:
+  R squares_{0}, inner_{0}, trace_{0}, trace_of_square_{0}, components_{0};
+};
+
 } // namespace detail
 } // namespace duet

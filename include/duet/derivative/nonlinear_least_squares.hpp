@@ -76,8 +76,8 @@ struct nonlinear_least_squares_result {
   /// ([v; ω]) in body axes: of the errors that those of the residuals cause to first order.
   /// σ²(JᵀJ)⁻¹ with σ² = 2 cost/degrees of freedom, NaN without any; (JᵀJ)⁻¹ of whitened residuals
   /// if there are covariances; with a robust loss H⁻¹(Σ gᵢgᵢᵀ)H⁻¹ (sandwich) of the gradients gᵢ of
-  /// single losses. Zero for parameters at a bound; infinite variances for those in
-  /// `undetermined`.
+  /// single losses, corrected for the number of parameters. Zero for parameters at a bound;
+  /// infinite variances for those in `undetermined`.
   Eigen::MatrixXd covariance = {};
   int degrees_of_freedom = 0; ///< number of components less the rank of the Jacobian
   /// Names of the parameters that the residuals do not determine, alone or together with others:
@@ -508,6 +508,7 @@ private:
         }
       }
       if (is_final_) {
+        gradient_bias_.add(length, size, weight, loss.weight, loss.curvature);
         const Eigen::VectorXd gradient = rows.transpose() * weighted_.segment<size>(i * size);
         gradient_squares_ += gradient * gradient.transpose();
       }
@@ -565,7 +566,8 @@ private:
       };
       const Eigen::MatrixXd h = scaled(r_.transpose() * r_ + curvature_change_);
       inverse = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(h).solve(identity);
-      inverse = inverse * scaled(gradient_squares_) * inverse.transpose() * (components / freedom);
+      inverse = inverse * scaled(gradient_squares_) * inverse.transpose();
+      inverse *= gradient_bias_.factor(double(rank));
     }
     result.degrees_of_freedom = int(freedom);
     result.covariance = Eigen::MatrixXd::Zero(size_, size_);
@@ -609,7 +611,8 @@ private:
   Eigen::VectorXd right_, gradient_;     ///< Qᵀr, Jᵀr
   Eigen::VectorXd scale_;                ///< largest norms of columns of the Jacobian so far
   Eigen::VectorXd step_;
-  bool is_final_ = false; ///< true to compute these two, for the covariance
+  bool is_final_ = false; ///< true to compute these, for the covariance
+  gradient_bias<double> gradient_bias_;
   /// Σ gᵢgᵢᵀ of the gradients of single losses; H − JᵀJ, H with the curvature of the loss
   Eigen::MatrixXd gradient_squares_ = Eigen::MatrixXd::Zero(size_, size_),
                   curvature_change_ = gradient_squares_;

@@ -374,10 +374,25 @@ public:
     return blocks_[i * (Band + 1) + i - j];
   }
 
+  /// Multiplies all entries by a factor.
+  void scale(const R& factor) {
+    for (block& each : blocks_) {
+      each *= factor;
+    }
+  }
   /// Multiplies the diagonal by a factor.
   void scale_diagonal(const R& factor) {
     for (std::size_t i = 0; i < rows(); ++i) {
       at(i, i).diagonal() *= factor;
+    }
+  }
+
+  /// Calls f(i, j) for every block of the lower half.
+  void for_each_block(const auto& f) const {
+    for (std::size_t i = 0; i < rows(); ++i) {
+      for (std::size_t j = first_of(i); j <= i; ++j) {
+        f(i, j);
+      }
     }
   }
 
@@ -424,6 +439,36 @@ public:
         part(k) -= at(i, k).transpose().lazyProduct(y);
       }
     }
+  }
+
+  /// The blocks of the inverse in the band, with the factors L: selected inversion (Takahashi,
+  /// Fagan and Chen, 1973). From the last row up,
+  ///
+  /// Σⱼᵢ = −Σₖ Σⱼₖ Lₖᵢ Lᵢᵢ⁻¹ for j > i, Σᵢᵢ = (Lᵢᵢ Lᵢᵢᵀ)⁻¹ − Σₖ Σₖᵢᵀ Lₖᵢ Lᵢᵢ⁻¹, k > i.
+  [[nodiscard]] block_band_matrix selected_inverse() const {
+    block_band_matrix inverse;
+    inverse.set_zero(rows());
+    for (std::size_t i = rows(); i-- > 0;) {
+      block unit = block::Identity(); // Lᵢᵢ⁻¹
+      at(i, i).template triangularView<Eigen::Lower>().solveInPlace(unit);
+      const std::size_t last = std::min(i + Band, rows() - 1);
+      inverse.at(i, i) = unit.transpose().lazyProduct(unit);
+      for (std::size_t k = i + 1; k <= last; ++k) {
+        const block factor = at(k, i).lazyProduct(unit);
+        for (std::size_t j = i + 1; j <= last; ++j) {
+          if (j >= k) {
+            inverse.at(j, i).noalias() -= inverse.at(j, k).lazyProduct(factor);
+          } else {
+            inverse.at(j, i).noalias() -= inverse.at(k, j).transpose().lazyProduct(factor);
+          }
+        }
+      }
+      for (std::size_t k = i + 1; k <= last; ++k) {
+        inverse.at(i, i).noalias() -=
+            inverse.at(k, i).transpose().lazyProduct(at(k, i).lazyProduct(unit).eval());
+      }
+    }
+    return inverse;
   }
 
 private:

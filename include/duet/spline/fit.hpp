@@ -18,6 +18,7 @@
 #include <duet/spline/blocks.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/fit_start.hpp>
+#include <duet/spline/fit_statistics.hpp>
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/matrix_rows.hpp>
 #include <duet/spline/orientations.hpp>
@@ -31,6 +32,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -58,13 +60,15 @@ struct fit_options {
   /// `outlier_threshold`, are then |Lᵢ⁻¹ rᵢ| in standard deviations, Σᵢ = Lᵢ Lᵢᵀ, and
   /// `characteristic_length` has no effect. Empty, the default: errors of one size.
   std::vector<Eigen::MatrixXd> covariances = {};
-  int max_iterations = 100; ///< maximum number of Levenberg–Marquardt iterations
+  int max_iterations = 100;      ///< maximum number of Levenberg–Marquardt iterations
+  bool keeps_covariance = false; ///< true to make `fit_result::covariance` available
 };
 
 /// Fitted curve and the distances of the samples from it.
 template <CurveType Spline>
 struct fit_result {
   using real_type = typename Spline::real_type;
+  using covariance_type = curve_covariance<Spline>;
   Spline curve; ///< fitted curve, with the given knots
   /// Residual |2 log(S(uᵢ)* Qᵢ)| of each sample: in radians; for poses the root of the sum of
   /// squares of the angle and (distance/characteristic length); with `fit_options::covariances` in
@@ -74,6 +78,30 @@ struct fit_result {
   int iterations; ///< number of Levenberg–Marquardt iterations
   real_type
       outlier_threshold; ///< outlier threshold in effect: larger residuals counted as outliers
+  real_type inlier_rms;  ///< as `rms`, of the residuals up to `outlier_threshold`
+  /// Number of components of the samples that count, less those of the control points.
+  int degrees_of_freedom;
+  /// A sentence if the residuals are not random: they change their signs too rarely for
+  /// independent errors (runs test), as they do if the knots are too wide for the motion. Else
+  /// empty.
+  std::string remark;
+  /// For those who extend duet: terms of the covariance, with `fit_options::keeps_covariance`.
+  std::optional<
+      detail::sandwich_terms<real_type, covariance_type::dimension, std::size_t(Spline::order) - 1>>
+      terms;
+
+  /// Covariance of the control points and the motion, to first order in the errors:
+  /// σ²(JᵀWJ)⁻¹ with σ² = Σ wᵢ|rᵢ|²/`degrees_of_freedom`, NaN without any; (JᵀJ)⁻¹ of whitened
+  /// residuals if there are covariances; with a finite outlier threshold H⁻¹(Σ gᵢgᵢᵀ)H⁻¹
+  /// (sandwich) of the gradients gᵢ of single losses, corrected for the number of control points,
+  /// and the Hessian H of their sum.
+  ///
+  /// \throws invalid_input without `fit_options::keeps_covariance`
+  [[nodiscard]] covariance_type covariance() const {
+    detail::require(terms.has_value(), "duet: fit_result: there is no covariance (set ",
+                    "fit_options::keeps_covariance)");
+    return {curve, terms->covariance()};
+  }
 
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
@@ -81,6 +109,9 @@ struct fit_result {
     f("rms", rms);
     f("iterations", iterations);
     f("outlier_threshold", outlier_threshold);
+    f("inlier_rms", inlier_rms);
+    f("degrees_of_freedom", degrees_of_freedom);
+    f("remark", remark);
   }
 };
 
@@ -117,6 +148,31 @@ void require_samples_for_control_points(const bspline_basis<Order, R>& basis,
             ", which acts on parameters from ", low, " to ", high, " (", advice, ")");
     ++sample;
   }
+}
+
+/// Root of the weighted mean square of the residuals up to a limit, which does not overflow; empty
+/// weights: all equal.
+template <class R>
+[[nodiscard]] R root_mean_square(const std::vector<R>& residuals,
+                                 const std::vector<double>& weights, const R& limit) {
+  using std::sqrt;
+  const auto counts = [&](const R& residual) { return !(residual > limit); };
+  R largest(0);
+  for (const R& residual : residuals) {
+    if (counts(residual) && !(residual <= largest)) {
+      largest = residual;
+    }
+  }
+  R squares(0), sum(0); // of residuals relative to the largest
+  for (std::size_t i = 0; i < residuals.size(); ++i) {
+    if (counts(residuals[i])) {
+      const R ratio = largest > 0 ? R(residuals[i] / largest) : R(0);
+      const R weight = weights.empty() ? R(1) : R(weights[i]);
+      squares += weight * (ratio * ratio);
+      sum += weight;
+    }
+  }
+  return largest - largest == 0 && sum > 0 ? R(largest * sqrt(squares / sum)) : largest;
 }
 
 } // namespace detail
@@ -173,17 +229,16 @@ template <CurveType Spline, class R, detail::SampleOf<Spline> T>
       "the others are outliers; use fewer knots there");
   const int iterations = problem.solve();
   const std::vector<R> residuals = problem.residuals();
-  using std::sqrt;
-  const R largest = *std::max_element(residuals.begin(), residuals.end());
-  R squares(0), weights(0); // of residuals relative to the largest, so that they do not overflow
-  for (std::size_t i = 0; i < residuals.size(); ++i) {
-    const R ratio = largest > 0 ? R(residuals[i] / largest) : R(0);
-    const R weight = options.weights.empty() ? R(1) : R(options.weights[i]);
-    squares += weight * (ratio * ratio);
-    weights += weight;
-  }
-  const R rms = largest - largest == 0 ? R(largest * sqrt(squares / weights)) : largest;
-  return {problem.curve(basis), residuals, rms, iterations, problem.outlier_threshold()};
+  const R threshold = problem.outlier_threshold();
+  return {problem.curve(basis),
+          residuals,
+          detail::root_mean_square(residuals, options.weights, std::numeric_limits<R>::infinity()),
+          iterations,
+          threshold,
+          detail::root_mean_square(residuals, options.weights, threshold),
+          problem.degrees_of_freedom(),
+          problem.remark(),
+          options.keeps_covariance ? std::optional(problem.covariance_terms()) : std::nullopt};
 }
 
 /// Rejected: rotations for a curve of poses, or poses for a curve of rotations.
@@ -268,6 +323,7 @@ protected:
     return controls;
   }
 
+  [[nodiscard]] bool is_whitened() const { return !whitening_.empty(); }
   [[nodiscard]] R weight_of(std::size_t i) const {
     return sample_weights_.empty() ? R(1) : R(sample_weights_[i]);
   }
@@ -378,7 +434,7 @@ private:
       } else {
         block = unfolded(m).transpose();
       }
-      if (!whitening_.empty()) {
+      if (is_whitened()) {
         block = block.lazyProduct(whitening(i).transpose()).eval();
       } else if constexpr (dimension == 6) {
         block.template leftCols<3>() /= characteristic_length_;
@@ -466,6 +522,7 @@ class bspline_fit : bspline_residuals<T, Order> {
   using typename residual_type::R;
   using typename residual_type::tangent;
   using vector = Eigen::Matrix<R, Eigen::Dynamic, 1>;
+  using matrix_type = block_band_matrix<R, dimension, std::size_t(Order) - 1>;
 
 public:
   bspline_fit(const basis_type& basis, const std::vector<R>& u, std::vector<element> data,
@@ -516,6 +573,49 @@ public:
 
   [[nodiscard]] std::vector<R> residuals() const { return residual_type::residuals(controls_); }
 
+  [[nodiscard]] int degrees_of_freedom() const {
+    int count = -int(controls_.size());
+    for (std::size_t i = 0; i < samples().size(); ++i) {
+      count += counts(i);
+    }
+    return dimension * count;
+  }
+  /// Sentence on residuals that are not random.
+  [[nodiscard]] std::string remark() const {
+    std::vector<tangent> residuals;
+    typename residual_type::last_span last;
+    for (std::size_t i = 0; i < samples().size(); ++i) {
+      if (counts(i)) {
+        residuals.push_back(residual_at(i, controls_, last));
+      }
+    }
+    return remark_on_runs(residuals);
+  }
+  /// Terms of the covariance of the control points.
+  [[nodiscard]] sandwich_terms<R, dimension, std::size_t(Order) - 1> covariance_terms() {
+    const R freedom(degrees_of_freedom());
+    matrix_type products; // Σ gᵢ gᵢᵀ; for plain least squares its expectation
+    const R cost = assemble(R(1), &products);
+    if (is_robust()) {
+      const std::vector<R> sizes = residuals();
+      gradient_bias<R> bias;
+      for (std::size_t i = 0; i < sizes.size(); ++i) {
+        const bool is_inlier = sizes[i] <= limits_[i];
+        if (counts(i)) {
+          bias.add(sizes[i], dimension, this->weight_of(i),
+                   is_inlier ? R(1) : R(limits_[i] / sizes[i]), R(is_inlier ? 1 : 0));
+        }
+      }
+      products.scale(bias.factor(R(dimension * int(controls_.size()))));
+    } else {
+      products = normal_;
+      if (!this->is_whitened()) {
+        products.scale(freedom > 0 ? R(2 * cost / freedom) : std::numeric_limits<R>::quiet_NaN());
+      }
+    }
+    return {normal_, products};
+  }
+
   /// Minimises the cost over the control points; returns the number of steps.
   ///
   /// \throws no_convergence if the iteration does not converge
@@ -524,7 +624,7 @@ public:
   /// The problem at the control points so far, for `levenberg_marquardt`.
   [[nodiscard]] R linearise() {
     is_bold_ = must_converge_ && is_robust();
-    const R cost = assemble(is_bold_);
+    const R cost = assemble(is_bold_ ? R(0.9) : R(0));
     if (++descent_steps_ >
         10) { // Gauss–Newton steps alone are mostly enough, and faster at the end
       changes_.arrive(-gradient_);
@@ -543,7 +643,7 @@ public:
     }
     if (is_bold_) {
       is_bold_ = false;
-      static_cast<void>(assemble(false));
+      static_cast<void>(assemble(R(0)));
       return true;
     }
     return false;
@@ -627,30 +727,42 @@ private:
   /// Assembles JᵀWJ and −JᵀW r at the control points, W the weights of Huber's loss; returns the
   /// cost there.
   ///
-  /// \param is_bold  true to omit most of the curvature along residuals beyond the limit, which the
-  ///                 loss does not have: steps are then correct near the solution, but possibly too
-  ///                 long far from it; with the curvature they are too short
-  [[nodiscard]] R assemble(bool is_bold) {
+  /// \param omitted   share of the curvature along residuals beyond the limit to omit. The loss has
+  ///                  none there: with a share of 1 the matrix is its second derivative. Steps with
+  ///                  most of it omitted are correct near the solution, but possibly too long far
+  ///                  from it; with all of it they are too short.
+  /// \param products  receives the sum of gᵢgᵢᵀ, gᵢ the gradients of single losses, if not null
+  [[nodiscard]] R assemble(const R& omitted, matrix_type* products = nullptr) {
     R cost(0);
     gradient_.setZero(Eigen::Index(controls_.size()) * dimension);
     normal_.set_zero(controls_.size());
     typename residual_type::last_span last;
-    Eigen::Matrix<R, unknowns, unknowns> squares = Eigen::Matrix<R, unknowns, unknowns>::Zero();
-    const auto flush = [&](std::size_t span) { // called once for all samples on a span
+    using square_of_span = Eigen::Matrix<R, unknowns, unknowns>;
+    square_of_span squares = square_of_span::Zero(), squares_of_gradients = squares;
+    const auto flush = [](std::size_t span, square_of_span& from, matrix_type& to) {
       for (std::size_t a = 0; a < std::size_t(Order); ++a) {
         for (std::size_t b = 0; b <= a; ++b) {
-          normal_.at(span + a, span + b) += squares.template block<dimension, dimension>(
+          to.at(span + a, span + b) += from.template block<dimension, dimension>(
               Eigen::Index(a) * dimension, Eigen::Index(b) * dimension);
         }
       }
-      squares.setZero();
+      from.setZero();
     };
+    const auto flush_all = [&](std::size_t span) { // called once for all samples on a span
+      flush(span, squares, normal_);
+      if (products) {
+        flush(span, squares_of_gradients, *products);
+      }
+    };
+    if (products) {
+      products->set_zero(controls_.size());
+    }
     for (std::size_t i = 0; i < samples().size(); ++i) {
       if (!counts(i)) {
         continue;
       }
       if (first()[i] != last.first && last.first != std::size_t(-1)) {
-        flush(last.first);
+        flush_all(last.first);
       }
       const auto [value, gradient] = this->linearised(i, controls_, last);
       const R length = size_of(value), sample_weight = this->weight_of(i);
@@ -663,13 +775,17 @@ private:
       for (int a = 0; a < unknowns; ++a) { // by columns, which Eigen handles fast
         squares.col(a).noalias() += gradient.lazyProduct(weighted.row(a).transpose());
       }
-      if (weight < sample_weight && is_bold) {
+      if (weight < sample_weight && omitted > 0) {
         const Eigen::Matrix<R, unknowns, 1> along = gradient * (value / length);
-        squares -= R(0.9) * weight * along.lazyProduct(along.transpose());
+        squares -= omitted * weight * along.lazyProduct(along.transpose());
+      }
+      if (products) {
+        const Eigen::Matrix<R, unknowns, 1> of_loss = weighted * value;
+        squares_of_gradients += of_loss.lazyProduct(of_loss.transpose());
       }
     }
     if (last.first != std::size_t(-1)) {
-      flush(last.first);
+      flush_all(last.first);
     }
     return cost;
   }
@@ -729,7 +845,7 @@ private:
   R step_{0}, damping_{0};                ///< largest coordinate of the step, and its damping
   int iterations_ = 0, descent_steps_ = 0;
   bool must_converge_ = false, is_bold_ = false;
-  block_band_matrix<R, dimension, std::size_t(Order) - 1> normal_, factors_;
+  matrix_type normal_, factors_;
   vector gradient_, last_step_; ///< negative gradient
   gradient_changes<R> changes_;
 };
