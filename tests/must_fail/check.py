@@ -179,7 +179,7 @@ def main():
         compiles, log = compiler(f"{table.path.stem}_control", text, *(snippets[0].flags if is_file else []),
                                  is_precompiled=not is_file)
         if not compiles:
-            faults.append(f"{log}\nthe right ways do not compile")
+            faults.append(f"{log}\nthe correct forms do not compile")
     if is_file:
         faults += [f"{snippet.name}: {fault}" for snippet in snippets for form in range(1, snippet.forms + 1)
                    if (fault := fault_alone(compiler, table, snippet, form))]
