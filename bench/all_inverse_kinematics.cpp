@@ -7,7 +7,6 @@
 /// solutions, and the processor time per goal. Arguments: number of goals of each kind (1000), seed
 /// (1).
 
-#include "../src/robotics/branches/branch_search.hpp"
 #include "../src/robotics/branches/chain_loop.hpp"
 #include "../src/robotics/branches/singular_value.hpp"
 

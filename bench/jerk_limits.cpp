@@ -222,7 +222,7 @@ void compare(unsigned seeds) {
           duet::time_parametrisation_options{.jerk = limits});
       const curve path = duet::detail::hermite_curve(
           problem.polygon, duet::detail::natural_cubic_slopes(problem.polygon));
-      const auto start = duet::detail::timed_by_accelerations(problem, path);
+      const auto start = duet::detail::min_acceleration_motion(problem, path);
       double best = std::numeric_limits<double>::infinity();
       for (const auto& each : {start, duet::detail::timed_within_jerks(problem, path)}) {
         const auto arc_lengths = duet::detail::arc_lengths_of(each, 300, problem.polygon.s.back());

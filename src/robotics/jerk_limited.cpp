@@ -557,6 +557,22 @@ timed_path trajectory_from_path_velocity(const std::vector<joint_cubic>& curve,
   return result;
 }
 
+std::vector<double> arc_lengths_of(const timed_path& path, std::size_t n, double length) {
+  std::vector<double> result;
+  std::size_t at = 0;
+  double s = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double t = path.duration * double(i) / double(n);
+    for (; at + 1 < path.pieces.size() && path.pieces[at + 1].scaling.time <= t; ++at) {
+      s += path.pieces[at].path.length;
+    }
+    const auto& [scaling, edge] = path.pieces[at];
+    result.push_back(std::min(s + scaling.at(t, edge.length).s, length));
+  }
+  result.push_back(length);
+  return result;
+}
+
 namespace {
 
 /// Checks that second derivatives of a curve are continuous, as finite jerks require.
@@ -616,24 +632,6 @@ struct jerk_search_result {
   [[nodiscard]] std::size_t end() const { return reached[1] < reached[0]; }
   [[nodiscard]] bool is_feasible() const { return reached[end()] == 1; }
 };
-
-/// Path arguments s of a motion at n + 1 equidistant times; the last one is the length of the path.
-[[nodiscard]] std::vector<double> arc_lengths_of(const timed_path& path, std::size_t n,
-                                                 double length) {
-  std::vector<double> result;
-  std::size_t at = 0;
-  double s = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    const double t = path.duration * double(i) / double(n);
-    for (; at + 1 < path.pieces.size() && path.pieces[at + 1].scaling.time <= t; ++at) {
-      s += path.pieces[at].path.length;
-    }
-    const auto& [scaling, edge] = path.pieces[at];
-    result.push_back(std::min(s + scaling.at(t, edge.length).s, length));
-  }
-  result.push_back(length);
-  return result;
-}
 
 /// Near-minimum-time trajectory within velocity, acceleration and jerk limits. Its squared path
 /// velocity is a B-spline of a parameter τ that is proportional to the time of another motion, in a

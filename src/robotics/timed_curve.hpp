@@ -204,6 +204,10 @@ struct timed_path {
                                                        std::size_t n,
                                                        const Eigen::VectorXd& squared_velocity);
 
+/// Path arguments s of a motion at n + 1 equidistant times; the last one is the length of the path.
+[[nodiscard]] std::vector<double> arc_lengths_of(const timed_path& path, std::size_t n,
+                                                 double length);
+
 /// Near-minimum-time motion along a curve within velocity, acceleration and jerk limits.
 ///
 /// \throws invalid_input for velocities at ends with which no motion is found
