@@ -1,10 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#define EIGEN_RUNTIME_NO_MALLOC
+
 #include "kinematics/arms.hpp"
 #include "kinematics/everything.hpp"
 #include "support/allocations.hpp"
 
 #include <duet/io/urdf.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 #include <duet/kinematics/sweep.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 
@@ -46,6 +49,28 @@ TEST_CASE("poses, jacobians: sweeps on one core allocate no memory") {
   const std::size_t during = duet_test::allocations - before;
   CHECK(during == 0);
   CHECK(columns.back().norm() > 1);
+}
+
+TEST_CASE("joint_trajectory: evaluation into the same state uses no heap") {
+  const Eigen::VectorXd one = Eigen::VectorXd::Ones(7);
+  const joint_trajectory trajectory({{{0, 1, .5}, {0 * one, one, 2 * one, -one, 1}}}, {0, .7});
+  const auto expected = trajectory(.5);
+  joint_state<Eigen::VectorXd> state = trajectory(.1);
+  const std::size_t before = duet_test::allocations;
+  Eigen::internal::set_is_malloc_allowed(false);
+  trajectory(.5, state);
+  Eigen::internal::set_is_malloc_allowed(true);
+  CHECK(duet_test::allocations == before);
+  // s = t + t²/4 by hand, and the derivatives of the path.
+  const double s = .5 + .5 * .25 / 2, speed = 1.25, rate = .5;
+  CHECK(state.value[3] == doctest::Approx(s + 2 * s * s - s * s * s).epsilon(1e-15));
+  const double slope = 1 + 4 * s - 3 * s * s, bend = 4 - 6 * s;
+  CHECK(state.velocity[3] == doctest::Approx(speed * slope).epsilon(1e-15));
+  CHECK(state.acceleration[3] ==
+        doctest::Approx(rate * slope + speed * speed * bend).epsilon(1e-15));
+  CHECK(state.value == expected.value);
+  CHECK(state.velocity == expected.velocity);
+  CHECK(state.acceleration == expected.acceleration);
 }
 
 TEST_CASE("kinematic_tree: poses and Jacobians allocate only their results") {

@@ -332,11 +332,19 @@ public:
   ///
   /// \throws invalid_input for t outside 0 … duration()
   [[nodiscard]] joint_state<Eigen::VectorXd> operator()(double t) const {
+    joint_state<Eigen::VectorXd> state;
+    (*this)(t, state);
+    return state;
+  }
+  /// As above, in memory of the caller: no heap from the second call on.
+  void operator()(double t, joint_state<Eigen::VectorXd>& state) const {
     const auto& [scaling, path] = piece_at(t);
     const auto [s, speed, acceleration, jerk] = scaling.at(t, path.length);
-    const Eigen::VectorXd slope = path.first(s);
-    return {path.value(s), Eigen::VectorXd(speed * slope),
-            Eigen::VectorXd(acceleration * slope + speed * speed * path.second(s))};
+    const auto& [c0, c1, c2, c3, length] = path;
+    state.value = c0 + s * (c1 + s * (c2 + s * c3));
+    state.velocity = c1 + s * (2 * c2 + 3 * s * c3);
+    state.acceleration = acceleration * state.velocity + speed * speed * (2 * c2 + 6 * s * c3);
+    state.velocity *= speed;
   }
   /// Jerk at time t, the derivative of the acceleration; at a jump, one of both values.
   ///
