@@ -3,6 +3,9 @@
 
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/quaternion_order.hpp>
 #include <duet/quaternion/rotation.hpp>
@@ -83,6 +86,14 @@ struct jacobian_sample {
 [[nodiscard]] inline quaternion<double> rotation_at(const jacobian_part& part,
                                                     const Eigen::VectorXd& state) {
   return normalized(load_quaternion(state.data() + part.state, quaternion_order::wxyz));
+}
+/// Pose that a state stores; of a rotation, about the origin.
+[[nodiscard]] inline dual_quaternion<double> pose_at(const jacobian_part& part,
+                                                     const Eigen::VectorXd& state) {
+  const quaternion<double> q = rotation_at(part, state);
+  return part.type == jacobian_part::kind::pose
+             ? pose(q, vector3<double>(state.segment<3>(part.state + 4)))
+             : dual_quaternion<double>(q);
 }
 [[nodiscard]] inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;

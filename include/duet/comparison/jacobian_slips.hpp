@@ -202,43 +202,31 @@ private:
           intermediate z;
           z.arguments = {&m, &n};
           z.part = {m.type, message(m.name, is_back ? "^-1 " : " ", n.name), 0, 0, m.dimension};
+          const jacobian_part whole{m.type, "", 0, 0, m.dimension};
           z.evaluate = [=, &m, &n](const vector& x) {
             // In body axes: of a^-1 b, -Ad(b^-1 a) and 1; of a b, Ad(b^-1) and 1. In fixed axes: of
             // a^-1 b, -Ad(a^-1) and Ad(a^-1); of a b, 1 and Ad(a).
-            const matrix a = adjoint_of(m, x), b = adjoint_of(n, x),
-                         one = matrix::Identity(m.dimension, m.dimension);
+            const auto a = pose_at(m, x), b = pose_at(n, x);
+            const auto adjoint = [&](const dual_quaternion<double>& c) -> matrix {
+              return Ad(c).bottomRightCorner(m.dimension, m.dimension);
+            };
+            const matrix one = matrix::Identity(m.dimension, m.dimension);
             matrix j = matrix::Zero(m.dimension, columns);
             if (is_right) {
               j.middleCols(m.first, m.dimension) =
-                  is_back ? matrix(-b.inverse() * a) : matrix(b.inverse());
+                  is_back ? matrix(-adjoint(conj(b) * a)) : adjoint(conj(b));
               j.middleCols(n.first, n.dimension) = one;
             } else {
-              j.middleCols(m.first, m.dimension) = is_back ? matrix(-a.inverse()) : one;
-              j.middleCols(n.first, n.dimension) = is_back ? matrix(a.inverse()) : a;
+              j.middleCols(m.first, m.dimension) = is_back ? matrix(-adjoint(conj(a))) : one;
+              j.middleCols(n.first, n.dimension) = adjoint(is_back ? conj(a) : a);
             }
             vector value = vector::Zero(m.state_size());
-            const quaternion<double> q = rotation_at(m, x);
-            set_rotation(value, {m.type, "", 0, 0, m.dimension},
-                         quaternion<double>((is_back ? conj(q) : q) * rotation_at(n, x)));
-            if (m.type == kind::pose) {
-              const Eigen::Matrix3d r = rotation_of_part(m, x);
-              const Eigen::Vector3d t = x.segment<3>(m.state + 4), u = x.segment<3>(n.state + 4);
-              value.segment<3>(4) =
-                  is_back ? Eigen::Vector3d(r.transpose() * (u - t)) : Eigen::Vector3d(r * u + t);
-            }
+            set_pose(value, whole, (is_back ? conj(a) : a) * b);
             return jacobian_evaluation{value, j.template cast<long double>(), 0};
           };
           z.set = [=, &m, &n](vector x, const vector& value) {
-            const quaternion<double> q = rotation_at(m, x);
-            const jacobian_part whole{m.type, "", 0, 0, m.dimension};
-            set_rotation(x, n,
-                         quaternion<double>((is_back ? q : conj(q)) * rotation_at(whole, value)));
-            if (m.type == kind::pose) {
-              const Eigen::Matrix3d r = rotation_matrix(q);
-              const Eigen::Vector3d t = x.segment<3>(m.state + 4), u = value.segment<3>(4);
-              x.segment<3>(n.state + 4) =
-                  is_back ? Eigen::Vector3d(r * u + t) : Eigen::Vector3d(r.transpose() * (u - t));
-            }
+            const auto a = pose_at(m, x);
+            set_pose(x, n, (is_back ? a : conj(a)) * pose_at(whole, value));
             return x;
           };
           list.push_back(std::move(z));
@@ -248,15 +236,11 @@ private:
     return list;
   }
 
-  [[nodiscard]] static matrix adjoint_of(const jacobian_part& m, const vector& x) {
-    const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, x));
-    matrix out = matrix::Zero(m.dimension, m.dimension);
-    out.bottomRightCorner(3, 3) = r;
-    if (m.type == kind::pose) {
-      out.topLeftCorner(3, 3) = r;
-      out.topRightCorner(3, 3) = cross_matrix(x.segment<3>(m.state + 4)) * r;
+  static void set_pose(vector& x, const jacobian_part& part, const dual_quaternion<double>& a) {
+    set_rotation(x, part, rotation(a));
+    if (part.type == kind::pose) {
+      x.segment<3>(part.state + 4) = translation(a);
     }
-    return out;
   }
 
   /// Slips in derivatives by stored numbers. These are not unique where numbers are bound together:

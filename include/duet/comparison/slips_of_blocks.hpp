@@ -408,32 +408,22 @@ protected:
     return m.is_result ? s.truth.value : s.state;
   }
 
+  [[nodiscard]] static dual_quaternion<double> pose_of(const jacobian_sample& s, const motion& m) {
+    const auto a = pose_at(*m.part, state_of(s, m));
+    return m.other != nullptr ? conj(pose_at(*m.other, s.state)) * a : a;
+  }
   [[nodiscard]] static Eigen::Matrix3d rotation_of(const jacobian_sample& s, const motion& m) {
-    const Eigen::Matrix3d r = rotation_matrix(rotation_at(*m.part, state_of(s, m)));
-    return m.other != nullptr
-               ? Eigen::Matrix3d(rotation_matrix(rotation_at(*m.other, s.state)).transpose() * r)
-               : r;
+    return rotation_matrix(rotation(pose_of(s, m)));
   }
 
   /// Adjoint matrix of size 3 or 6; false for other sizes.
   [[nodiscard]] static bool adjoint(const jacobian_sample& s, const motion& m, Eigen::Index size,
                                     matrix& out) {
-    const Eigen::Matrix3d r = rotation_of(s, m);
-    if (size == 3) {
-      out = r;
-    } else if (size == 6) {
-      out = matrix::Zero(6, 6);
-      out.topLeftCorner<3, 3>() = out.bottomRightCorner<3, 3>() = r;
-      if (m.part->type == kind::pose) {
-        Eigen::Vector3d t = state_of(s, m).segment<3>(m.part->state + 4);
-        if (m.other != nullptr && m.other->type == kind::pose) {
-          t = rotation_matrix(rotation_at(*m.other, s.state)).transpose() *
-              (t - s.state.segment<3>(m.other->state + 4));
-        }
-        out.topRightCorner<3, 3>() = cross_matrix(t) * r;
-      }
+    if (size != 3 && size != 6) {
+      return false;
     }
-    return size == 3 || size == 6;
+    out = Ad(pose_of(s, m)).bottomRightCorner(size, size);
+    return true;
   }
 
   [[nodiscard]] static matrix power_of(const matrix& m, int power) {
