@@ -160,7 +160,7 @@ struct jacobian_sample {
 }
 
 [[nodiscard]] inline double largest_entry(const Eigen::MatrixXd& m) {
-  return m.size() > 0 ? m.cwiseAbs().maxCoeff() : 0;
+  return m.size() > 0 ? m.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() : 0;
 }
 
 DUET_ABI_END

@@ -3,6 +3,7 @@
 
 #include <duet/comparison/jacobian_problem.hpp>
 #include <duet/comparison/slips_of_terms.hpp>
+#include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 
@@ -90,7 +91,8 @@ private:
     std::function<std::pair<Eigen::Vector3d, Eigen::Vector3d>(const vector&)> rotated{};
   };
 
-  /// Points moved by rotations and poses and back, and products of two rotations or poses.
+  /// Points moved by rotations and poses and back, products of two rotations or poses, and
+  /// rotations by vectors.
   [[nodiscard]] std::vector<intermediate> intermediates() const {
     std::vector<intermediate> list;
     const Eigen::Index columns = tangent_size(problem_.arguments);
@@ -233,7 +235,68 @@ private:
         }
       }
     }
+    add_increments(list);
     return list;
+  }
+
+  /// Rotations exp((v - w) t) by a vector or a difference of two, also times a number, as by an
+  /// angular velocity less its bias in a time step.
+  void add_increments(std::vector<intermediate>& list) const {
+    const bool is_right = problem_.side == perturbation::right;
+    std::vector<const jacobian_part*> vectors = {nullptr}, numbers = {nullptr};
+    for (const jacobian_part& a : problem_.arguments) {
+      if (a.type == kind::vector && a.dimension == 3) {
+        vectors.push_back(&a);
+      } else if (a.type == kind::number) {
+        numbers.push_back(&a);
+      }
+    }
+    for (const jacobian_part* v : vectors) {
+      for (const jacobian_part* w : vectors) {
+        for (const jacobian_part* t : numbers) {
+          if (v == nullptr || v == w) {
+            continue;
+          }
+          intermediate z;
+          z.part = {kind::rotation,
+                    message("exp(",
+                            w != nullptr ? message("(", v->name, " - ", w->name, ")") : v->name,
+                            t != nullptr ? " " + t->name : "", ")"),
+                    0, 0, 3};
+          for (const jacobian_part* each : {v, w, t}) {
+            if (each != nullptr) {
+              z.arguments.push_back(each);
+            }
+          }
+          const auto offset = [w](const vector& x) -> Eigen::Vector3d {
+            return w != nullptr ? Eigen::Vector3d(x.segment<3>(w->state)) : Eigen::Vector3d::Zero();
+          };
+          const auto time = [t](const vector& x) { return t != nullptr ? x[t->state] : 1.; };
+          z.evaluate = [=, this, part = z.part](const vector& x) {
+            const Eigen::Vector3d rate = x.segment<3>(v->state) - offset(x);
+            const vector3<double> r = time(x) * rate;
+            const Eigen::Matrix3d by_vector = is_right ? right_jacobian(r) : left_jacobian(r);
+            matrix j = matrix::Zero(3, tangent_size(problem_.arguments));
+            j.middleCols(v->first, 3) = time(x) * by_vector;
+            if (w != nullptr) {
+              j.middleCols(w->first, 3) = -time(x) * by_vector;
+            }
+            if (t != nullptr) {
+              j.col(t->first) = rate;
+            }
+            vector value = vector::Zero(4);
+            set_rotation(value, part, from_rotation_vector(r));
+            return jacobian_evaluation{value, j.template cast<long double>(), 0};
+          };
+          z.set = [=, part = z.part](vector x, const vector& value) {
+            x.segment<3>(v->state) =
+                rotation_vector(rotation_at(part, value)) / time(x) + offset(x);
+            return x;
+          };
+          list.push_back(std::move(z));
+        }
+      }
+    }
   }
 
   static void set_pose(vector& x, const jacobian_part& part, const dual_quaternion<double>& a) {

@@ -181,6 +181,9 @@ protected:
 
   [[nodiscard]] static bool fits(const jacobian_sample& s, const scope& at, const matrix& candidate,
                                  double relative = 1e-9) {
+    if (!candidate.allFinite()) {
+      return false; // at a singularity
+    }
     if (s.outer.size() > 0) {
       matrix changed = s.exact;
       changed.block(at.row, at.column, at.rows, at.columns) = candidate;
@@ -192,7 +195,7 @@ protected:
     const double tolerance =
         s.allowed + s.little_error +
         relative * std::max(largest_entry(of(s.exact, at)), largest_entry(candidate));
-    return largest_entry(of(s.written, at) - candidate) <= tolerance; // false if NaN
+    return largest_entry(of(s.written, at) - candidate) <= tolerance;
   }
 
   /// The derivative at another state; NaN where the function refuses it.
@@ -351,6 +354,39 @@ protected:
                     out = std::pow(s.state[a.state], power) * of(s.exact, at);
                     return true;
                   });
+        }
+      }
+    }
+    // Lengths of results, of vectors and of their differences.
+    const auto try_length = [&](const std::string& name, const auto& length) {
+      for (const int power : {1, -1, 2, -2}) {
+        attempt(message("not normalised, or wrong power of a length: scaled by |", name, "|",
+                        power == 1 ? "" : message("^", power)),
+                [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                  out = std::pow(length(s), power) * of(s.exact, at);
+                  return true;
+                });
+      }
+    };
+    for (const jacobian_part& r : problem_.results) {
+      if (!r.is_motion()) {
+        try_length(r.name, [&](const jacobian_sample& s) {
+          return s.truth.value.segment(r.state, r.dimension).norm();
+        });
+      }
+    }
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Eigen::Index a = parts[i].vector_state();
+      if (a >= 0) {
+        try_length(parts[i].name,
+                   [&](const jacobian_sample& s) { return s.state.segment<3>(a).norm(); });
+      }
+      for (std::size_t k = i + 1; k < parts.size() && a >= 0; ++k) {
+        const Eigen::Index b = parts[k].vector_state();
+        if (b >= 0) {
+          try_length(message(parts[i].name, " - ", parts[k].name), [&](const jacobian_sample& s) {
+            return (s.state.segment<3>(a) - s.state.segment<3>(b)).norm();
+          });
         }
       }
     }

@@ -219,9 +219,6 @@ protected:
       if (terms.size() < 4) {
         return;
       }
-      if (getenv("DBG"))
-        fprintf(stderr, "scope %s used %zu terms %zu\n", at.name.c_str(), used.size(),
-                terms[0].size());
       for (std::size_t t = 0; t < terms[0].size(); ++t) {
         for (std::size_t f = 0; f < factors[0].values.size(); ++f) {
           double factor = NAN;
