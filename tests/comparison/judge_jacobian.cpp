@@ -256,6 +256,76 @@ TEST_CASE("integrated rotation: time steps") {
               {{3, 6}});
 }
 
+TEST_CASE("a direction: powers of the length, and no slip at the singularity") {
+  const auto f = [](const auto& p, const auto& t) {
+    using std::sqrt;
+    using S = std::decay_t<decltype(p[0] - t[0])>;
+    const S x = p[0] - t[0], y = p[1] - t[1], z = p[2] - t[2], d = sqrt(x * x + y * y + z * z);
+    return Eigen::Matrix<S, 3, 1>(x / d, y / d, z / d);
+  };
+  const auto inputs =
+      sampler(vectors<3>{2}, vectors<3>{1}).named("p", "t").where([](const auto& p, const auto& t) {
+        return (p - t).norm() > .1;
+      });
+  const auto judge = [&](slip s) {
+    return judge_jacobian(
+        "direction", f,
+        [s](const Vector3d& p, const Vector3d& t) {
+          const double d = (p - t).norm();
+          const Vector3d u = (p - t) / d;
+          const Matrix3d m = (Matrix3d::Identity() - u * u.transpose()) / d;
+          Eigen::Matrix<double, 3, 6> j;
+          j << (s == 1 ? d : 1) * (s == 2 ? -1 : 1) * m, (s == 3 ? 1 / d : 1) * -m;
+          j.row(1) *= s == 4 ? 3 : 1;
+          j(0, 4) *= s == 5 ? 7 : 1;
+          return j;
+        },
+        inputs);
+  };
+  check_slips(judge,
+              {{1, "scaled by |p - t|", "d f / d p"},
+               {2, "sign", "d f / d p"},
+               {3, "scaled by |p - t|^-1", "d f / d t"}},
+              {{1, 3}, {3, 4}, {4, 5}, {2, 5}});
+}
+
+TEST_CASE("a gyroscope: slips in the rotation by a rate less its bias") {
+  const auto f = [](const auto& q, const auto& w, const auto& b, const auto& h) {
+    using S = std::decay_t<decltype((w[0] - b[0]) * h * q.w())>;
+    const vector3<S> r((w[0] - b[0]) * h, (w[1] - b[1]) * h, (w[2] - b[2]) * h);
+    return rotation_vector(quaternion<S>(conj(from_rotation_vector(r)) * q));
+  };
+  const auto inputs = sampler(rotations{1.5}, vectors<3>{2}, vectors<3>{.5}, real_numbers{.1, .5})
+                          .named("q", "w", "b", "h");
+  const auto judge = [&](slip s) {
+    return judge_jacobian(
+        "gyroscope", f,
+        [s](const rotation_type& q, const Vector3d& w, const Vector3d& b, double h) {
+          const vector3<double> r = h * (w - b);
+          const rotation_type e = conj(from_rotation_vector(r)) * q;
+          const Matrix3d outer = right_jacobian_inverse(rotation_vector(e));
+          const Matrix3d back = outer * rotation_matrix(e).transpose();
+          const Matrix3d inner = h * right_jacobian(r);
+          Matrix3d by_b = back * inner;
+          by_b = s == 1   ? Matrix3d(back * h)
+                 : s == 2 ? Matrix3d(back * h * left_jacobian(r))
+                 : s == 3 ? Matrix3d(back * h * right_jacobian(vector3<double>(h * w)))
+                 : s == 4 ? Matrix3d(by_b / h)
+                          : by_b;
+          Eigen::Matrix<double, 3, 10> j;
+          j << outer, -back * inner, by_b, -back * (w - b);
+          return j;
+        },
+        inputs);
+  };
+  check_slips(judge,
+              {{1, "right only at the identity of (exp((w - b) h))", "d (exp((w - b) h)) / d b"},
+               {2, "adjoint: multiplied by Ad((exp((w - b) h)))", "d (exp((w - b) h)) / d b"},
+               {3, "evaluated with 0 for b", "d (exp((w - b) h)) / d b"},
+               {4, "scaled by h^-1", "d f / d b"}},
+              {});
+}
+
 TEST_CASE("derivatives by stored numbers of rotations and poses, in both orders and sides") {
   const auto f = [](const auto& a, const auto& p) { return transform_point(a, p); };
   const auto inputs = sampler(rigid_motions{}, vectors<3>{1}).named("A", "p");

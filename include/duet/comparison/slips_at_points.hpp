@@ -364,6 +364,11 @@ protected:
     for (const jacobian_sample& s : samples_) {
       features.push_back(features_of(s));
     }
+    std::vector<bool> counts; // no slip shows where the block is zero
+    for (const jacobian_sample& s : samples_) {
+      counts.push_back(s.is_wrong || largest_entry(of(s.exact, scopes_.front())) >
+                                         1e-3 * largest_entry(samples_[0].exact));
+    }
     const double pi = constant::pi<double>();
     // Two slips may vanish at the same inputs, so that one block must contain all that is wrong.
     const bool is_one_block =
@@ -371,6 +376,9 @@ protected:
     for (std::size_t f = 0; f < features[0].size() && is_one_block; ++f) {
       double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
       for (std::size_t n = 0; n < samples_.size(); ++n) {
+        if (!counts[n]) {
+          continue;
+        }
         const std::size_t w = samples_[n].is_wrong ? 1 : 0;
         least[w] = std::min(least[w], features[n][f].value);
         most[w] = std::max(most[w], features[n][f].value);
@@ -379,7 +387,7 @@ protected:
       bool has_between = false;
       for (std::size_t n = 0; n < samples_.size(); ++n) {
         const double x = features[n][f].value;
-        if (!samples_[n].is_wrong) {
+        if (!samples_[n].is_wrong && counts[n]) {
           above = x > most[1] ? std::min(above, x) : above;
           below = x < least[1] ? std::max(below, x) : below;
           has_between = has_between || (x >= least[1] && x <= most[1]);

@@ -228,12 +228,18 @@ protected:
             const matrix value = terms[n][t].value * factors[n].values[f];
             if (n == 0) {
               factor = error.cwiseProduct(value).sum() / value.squaredNorm();
+              is_constant = largest_entry(value) > 1e-9; // not round-off of zero
             }
-            is_constant = largest_entry(error - factor * value) <= 4 * used[n]->allowed +
-                                                                       used[n]->little_error +
-                                                                       1e-9 * largest_entry(error);
+            is_constant = is_constant && largest_entry(error - factor * value) <=
+                                             4 * used[n]->allowed + used[n]->little_error +
+                                                 1e-9 * largest_entry(error);
           }
-          if (is_constant && std::abs(factor) > 1e-9) {
+          const auto explains = [&](const jacobian_sample& s) {
+            const matrix value = terms_of(s, at)[t].value * numbers_of(s).values[f];
+            return fits(s, at, of(s.exact, at) + factor * value, 1e-8);
+          };
+          if (is_constant && std::abs(factor) > 1e-9 &&
+              std::all_of(samples_.begin(), samples_.end(), explains)) {
             accept(message("sign of one summand, or one missing or of wrong factor: a multiple of ",
                            f > 0 ? factors[0].names[f] + " " : "", terms[0][t].name),
                    at.name);
