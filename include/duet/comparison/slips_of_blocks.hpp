@@ -119,27 +119,33 @@ protected:
       }
       return list;
     };
+    // A matrix of one row or column is named as a whole.
+    const auto line = [](const char* kind, Eigen::Index i, Eigen::Index count,
+                         const std::string& of) {
+      return count > 1 ? message(kind, " ", i, " of ", of) : of;
+    };
     for (const jacobian_part& r : problem_.results) {
       for (const jacobian_part& a : problem_.arguments) {
         const std::string block = message("d ", r.name, " / d ", a.name);
         for (Eigen::Index i = 0; i < r.dimension; ++i) {
           for (Eigen::Index k = 0; k < a.dimension; ++k) {
-            add_scope(message("entry (", i, ", ", k, ") of ", block), r.first + i, 1, a.first + k,
-                      1, &a, &r);
+            add_scope(r.dimension * a.dimension > 1 ? message("entry (", i, ", ", k, ") of ", block)
+                                                    : block,
+                      r.first + i, 1, a.first + k, 1, &a, &r);
           }
           for (const auto& [half, first] : halves(a)) {
-            add_scope(message("row ", i, " of d ", r.name, " / d ", half), r.first + i, 1, first, 3,
-                      &a, &r);
+            add_scope(line("row", i, r.dimension, message("d ", r.name, " / d ", half)),
+                      r.first + i, 1, first, 3, &a, &r);
           }
-          add_scope(message("row ", i, " of ", block), r.first + i, 1, a.first, a.dimension, &a,
+          add_scope(line("row", i, r.dimension, block), r.first + i, 1, a.first, a.dimension, &a,
                     &r);
         }
         for (Eigen::Index k = 0; k < a.dimension; ++k) {
           for (const auto& [half, first] : halves(r)) {
-            add_scope(message("column ", k, " of d ", half, " / d ", a.name), first, 3, a.first + k,
-                      1, &a, &r);
+            add_scope(line("column", k, a.dimension, message("d ", half, " / d ", a.name)), first,
+                      3, a.first + k, 1, &a, &r);
           }
-          add_scope(message("column ", k, " of ", block), r.first, r.dimension, a.first + k, 1, &a,
+          add_scope(line("column", k, a.dimension, block), r.first, r.dimension, a.first + k, 1, &a,
                     &r);
         }
         for (const auto& [row, first_row] : halves(r)) {
@@ -159,7 +165,8 @@ protected:
                        columns = tangent_size(problem_.arguments);
     for (const jacobian_part& r : problem_.results) {
       for (Eigen::Index i = 0; i < r.dimension; ++i) {
-        add_scope(message("row ", i, " of d ", r.name), r.first + i, 1, 0, columns, nullptr, &r);
+        add_scope(line("row", i, r.dimension, message("d ", r.name)), r.first + i, 1, 0, columns,
+                  nullptr, &r);
       }
       for (const auto& [half, first] : halves(r)) {
         add_scope(message("all of d ", half), first, 3, 0, columns, nullptr, &r);
@@ -168,8 +175,8 @@ protected:
     }
     for (const jacobian_part& a : problem_.arguments) {
       for (Eigen::Index k = 0; k < a.dimension; ++k) {
-        add_scope(message("column ", k, " of d / d ", a.name), 0, rows, a.first + k, 1, &a,
-                  nullptr);
+        add_scope(line("column", k, a.dimension, message("d / d ", a.name)), 0, rows, a.first + k,
+                  1, &a, nullptr);
       }
       for (const auto& [half, first] : halves(a)) {
         add_scope(message("all of d / d ", half), 0, rows, first, 3, &a, nullptr);
