@@ -33,7 +33,7 @@ endforeach()
 file(STRINGS ${folder}/out/trajectory.csv lines LIMIT_COUNT 102)
 list(GET lines 0 header)
 if(NOT header STREQUAL
-    "timestamp,tx,ty,tz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,ax,ay,az,alphax,alphay,alphaz")
+    "timestamp,tx,ty,tz,qx,qy,qz,qw,vx,vy,vz,wx,wy,wz,ax,ay,az,alphax,alphay,alphaz,sd_vx,sd_vy,sd_vz,sd_wx,sd_wy,sd_wz,sd_ax,sd_ay,sd_az,sd_alphax,sd_alphay,sd_alphaz")
   message(FATAL_ERROR "header: ${header}")
 endif()
 list(GET lines 101 line)

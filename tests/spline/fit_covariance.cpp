@@ -297,6 +297,20 @@ TEST_CASE("fit: round-off of a motion in a plane is not remarked upon") {
   CHECK(fitted.remark == "");
 }
 
+TEST_CASE_TEMPLATE("fit: exact samples of a curve are not remarked upon", Q, rotation, pose_type) {
+  const problem<Q> p;
+  const auto fitted = duet::fit<curve<Q>>(p.u, p.exact, p.knots);
+  CHECK(fitted.rms < 1e-13);
+  CHECK(fitted.remark == "");
+  std::vector<double> u;
+  std::vector<Q> samples; // at rest, far from the identity
+  for (int i = 0; i < 60; ++i) {
+    u.push_back(i);
+    samples.push_back(p.exact[7]);
+  }
+  CHECK(duet::fit<curve<Q>>(u, samples, duet::knots_every(u, 10)).remark == "");
+}
+
 TEST_CASE("fit: the root mean square of inliers leaves outliers out") {
   const problem<rotation> p;
   random_source random(2);

@@ -584,12 +584,17 @@ public:
   [[nodiscard]] std::string remark() const {
     std::vector<tangent> residuals;
     typename residual_type::last_span last;
+    double largest = 1; // size of the samples, in the unit of residuals
     for (std::size_t i = 0; i < samples().size(); ++i) {
       if (counts(i)) {
         residuals.push_back(residual_at(i, controls_, last));
+        if constexpr (dimension == 6) {
+          largest = std::max(largest, double(translation(samples()[i]).norm()) /
+                                          options_.characteristic_length);
+        }
       }
     }
-    return remark_on_runs(residuals);
+    return remark_on_runs(residuals, this->is_whitened() ? 1e-6 : 1e-12 * largest);
   }
   /// Terms of the covariance of the control points.
   [[nodiscard]] sandwich_terms<R, dimension, std::size_t(Order) - 1> covariance_terms() {

@@ -152,8 +152,10 @@ namespace detail {
 /// Runs test of Wald and Wolfowitz, component by component: residuals of independent errors change
 /// their signs about every other sample. Returns a sentence on the component with the fewest sign
 /// changes if so few have a probability below 1/1000 in any component; else an empty text.
+///
+/// \param round_off  root mean square of a component that may be round-off, which is not tested
 template <class Tangent>
-[[nodiscard]] std::string remark_on_runs(const std::vector<Tangent>& residuals) {
+[[nodiscard]] std::string remark_on_runs(const std::vector<Tangent>& residuals, double round_off) {
   using std::erfc;
   using std::sqrt;
   constexpr int dimension = Tangent::RowsAtCompileTime;
@@ -170,7 +172,8 @@ template <class Tangent>
   double least = 1e-3;
   std::string remark;
   for (int c = 0; c < dimension; ++c) {
-    if (!(squares[std::size_t(c)] > 1e-12 * largest)) {
+    const double mean = squares[std::size_t(c)] / double(residuals.size());
+    if (!(squares[std::size_t(c)] > 1e-12 * largest && mean > round_off * round_off)) {
       continue; // round-off of a motion in a plane, for example
     }
     double positive = 0, negative = 0, runs = 0, last = 0;
