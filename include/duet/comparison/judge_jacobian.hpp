@@ -667,7 +667,7 @@ DUET_ABI_END
 ///   `options.order`, and seven of a pose, translation first.
 /// \param inputs    a `sampler` of the arguments
 /// \throws invalid_input if the matrix has another size
-/// \throws cancelled if `options.report` returned `false`
+/// \throws cancelled if `options.report` returns `false`
 ///
 /// Example: `judge_jacobian("rotated point", [](const auto& q, const auto& p) { return rotate(q,
 /// p);

@@ -156,7 +156,7 @@ inverse_roots(const char* function, const std::vector<Eigen::MatrixXd>& covarian
 /// estimate, for the covariance H⁻¹(Σ gᵢgᵢᵀ)H⁻¹ of robust estimates. Let ψᵢ = wᵢ ρ′ be the
 /// derivative of a loss, Wᵢ = wᵢ(ρ′/r across the residual, ρ″ along it) that of ψᵢ by the residual,
 /// and h the number of unknowns over that of components. An error of the estimate takes from ψᵢ its
-/// part of WᵢJᵢ(H⁻¹Jᵢᵀψᵢ), so that on average the sum is too small by
+/// part of WᵢJᵢ(H⁻¹Jᵢᵀψᵢ), so that on average the sum is too small by the factor
 ///
 /// 1 − h (2 Σ ψᵢᵀWᵢψᵢ/(τ Σ|ψᵢ|²) − υ/τ²), τ and υ the means of the eigenvalues of W and of W².
 ///
