@@ -11,8 +11,10 @@
 /// types as one type (kinematics/chain_view.hpp), fits (spline/fit.hpp), curves in the caller's
 /// memory (spline/bspline_segment.hpp, quaternion/quaternion_order.hpp), split curves
 /// (spline/split_bspline.hpp), CSV (core/text/csv.hpp), the planner of the lecture notes
-/// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp), and
-/// `interop/`. The headers of the compiled libraries are in duet/io.hpp and duet/robotics.hpp.
+/// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp),
+/// formulas as data (expression/graph/trace.hpp, expression/graph/reverse.hpp) and as code
+/// (expression/code/c.hpp), and `interop/`. The headers of the compiled libraries are in
+/// duet/io.hpp and duet/robotics.hpp.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>

@@ -105,6 +105,11 @@ using constant_t = typename field_traits<real_type_t<T>>::constant_type;
 template <class X>
 inline constexpr bool is_symbolic = false;
 
+/// A number that records its operations, as those of `trace`: nothing is known of its value but
+/// what is written.
+template <class T>
+inline constexpr bool is_recording = false;
+
 /// The integer n for an expression with T: an int if T is over the reals, which all accept one.
 template <class T>
 [[nodiscard]] constexpr auto integer(int n) {

@@ -117,6 +117,20 @@ template <class A, class B>
 /// True if the condition holds in all lanes, here the only one.
 [[nodiscard]] constexpr bool all(std::same_as<bool> auto x) { return x; }
 
+namespace detail {
+
+/// True if the condition is known to hold in any lane: for checks of arguments, which are left out
+/// where numbers are recorded.
+template <class Condition>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr bool surely_any(const Condition& x) {
+  if constexpr (requires { x.is_known(); }) {
+    return x.is_known() && bool(x);
+  } else {
+    return any(x);
+  }
+}
+
+} // namespace detail
 } // namespace duet
 
 namespace duet::detail {

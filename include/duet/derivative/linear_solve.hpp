@@ -118,7 +118,7 @@ void require_regular(const LU& lu) {
     for (Eigen::Index j = 0; j < k; ++j) {
       terms += R(abs(R(factors(k, j) * factors(j, k))));
     }
-    require(!any(pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms)),
+    require(!surely_any(pivot <= R(R(4 * n) * std::numeric_limits<R>::epsilon() * terms)),
             "duet: solve: A is singular: pivot ", k + 1, " of ", n,
             " is only round-off: ", factors(k, k));
   }

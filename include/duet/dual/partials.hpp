@@ -266,6 +266,8 @@ template <class T>
 [[nodiscard]] constexpr auto is_structural_zero(const T& x) {
   if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_structural_zero(part); });
+  } else if constexpr (is_recording<T>) {
+    return x.is_constant() && x.number() == 0;
   } else {
     return x == T(0);
   }
@@ -277,6 +279,8 @@ template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto is_all_finite(const T& x) {
   if constexpr (Infinitesimal<T>) {
     return x.all_of([](const auto& part) { return is_all_finite(part); });
+  } else if constexpr (is_recording<T>) {
+    return true;
   } else if constexpr (Real<T>) {
     return quiet_less_equal(T(0), T(x - x));
   } else {

@@ -131,6 +131,11 @@ template <int N, Real T>
 /// c_n(s) of a real number.
 template <int N, Real T>
 [[nodiscard]] DUET_ALWAYS_INLINE T stumpff_of_real(const T& s) {
+  if constexpr (is_recording<T>) {
+    if (!s.is_constant()) {
+      return recorded_stumpff(s, N);
+    }
+  }
   return select(
       N < 2 ? s <= T(1) : !is_beyond_series(s),
       [&]() DUET_INLINE_LAMBDA { return stumpff_of_small<N>(s); },
@@ -237,6 +242,8 @@ template <Scalar T>
 [[nodiscard]] inline T arc_ratio(const T& s, const T& w) {
   if constexpr (Infinitesimal<T>) {
     return detail::lift(rule::arc_ratio{}, s, w);
+  } else if constexpr (detail::is_recording<T>) {
+    return recorded_arc_ratio(s, w);
   } else {
     using std::atan2;
     using std::sqrt;
@@ -280,6 +287,10 @@ template <class R>
 /// difference.
 template <Real R>
 [[nodiscard]] DUET_ALWAYS_INLINE std::array<R, 3> first_stumpff_functions(const R& z) {
+  if constexpr (is_recording<R>) {
+    const R c1 = stumpff_of_real<1>(z);
+    return {stumpff_of_real<0>(z), c1, rule::stumpff<1>{}.slope(z, c1)};
+  }
   return select(
       z <= R(1),
       [&]() DUET_INLINE_LAMBDA {

@@ -56,7 +56,7 @@ pose(const quaternion<A>& rotation, const vector3<B>& translation) {
   using real = lane_type_t<A>;
   constexpr double tolerance = std::numeric_limits<real>::digits > 24 ? 1e-6 : 1e-3;
   const auto alpha = detail::innermost_of(rotation);
-  if (any(abs(squared_norm(alpha) - 1) > tolerance)) [[unlikely]] {
+  if (detail::surely_any(abs(squared_norm(alpha) - 1) > tolerance)) [[unlikely]] {
     detail::raise_not_unit(alpha);
   }
   return detail::pose_of_unit(rotation, translation);
@@ -131,8 +131,8 @@ template <class T>
 /// \throws invalid_input if the last row is not 0 0 0 1, and as `from_rotation_matrix`
 template <class T>
 [[nodiscard]] dual_quaternion<T> from_transform_matrix(const Eigen::Matrix<T, 4, 4>& m) {
-  detail::require(all(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 &&
-                      innermost(m(3, 2)) == 0 && innermost(m(3, 3)) == 1),
+  detail::require(!detail::surely_any(!(innermost(m(3, 0)) == 0 && innermost(m(3, 1)) == 0 &&
+                                        innermost(m(3, 2)) == 0 && innermost(m(3, 3)) == 1)),
                   "duet: from_transform_matrix: the last row is ", innermost(m(3, 0)), " ",
                   innermost(m(3, 1)), " ", innermost(m(3, 2)), " ", innermost(m(3, 3)),
                   " (expected 0 0 0 1)");

@@ -25,6 +25,13 @@ struct moving_value {
   Q value;        ///< the rotation or pose
   V velocity;     ///< ω or [v; ω], per unit of the parameter
   V acceleration; ///< the derivative of `velocity`, per unit of the parameter
+
+  /// For those who extend duet: the fields with their names.
+  void for_each_field(const auto& f) const {
+    f("value", value);
+    f("velocity", velocity);
+    f("acceleration", acceleration);
+  }
 };
 
 namespace detail {

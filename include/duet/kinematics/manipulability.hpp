@@ -121,7 +121,7 @@ template <SerialChain C, VectorLike X, FrameOnChain<C> At = tip_of_chain>
   using S = detail::chain_scalar<C, X>;
   using vector = detail::joint_vector<S, C::joints>;
   const auto [w, by_entries] = detail::volume_of<true>(detail::tall_jacobian(chain, theta, at));
-  if (any(innermost(w) == 0)) {
+  if (detail::surely_any(innermost(w) == 0)) {
     detail::raise(invalid_input(
         "duet: manipulability_gradient: the Jacobian is singular at this configuration"));
   }

@@ -173,11 +173,12 @@ template <class A, class B, class T, class Side>
 [[nodiscard]] DUET_ALWAYS_INLINE vector3<T> half_arc(const quaternion<A>& a, const quaternion<B>& b,
                                                      const T& cosine, const Side& other_side,
                                                      const char* function) {
-  if (any(innermost(cosine) == 0)) [[unlikely]] {
+  if (surely_any(innermost(cosine) == 0)) [[unlikely]] {
     require_not_zero(b, function);
   }
   // a* a has no vector part. Subtracting it first avoids cancellation for a small rotation.
-  using end = std::conditional_t<Batched<T>, T, B>; // lanes of a batch may differ in sign
+  // Lanes of a batch may differ in sign, and recorded numbers have either.
+  using end = std::conditional_t<Batched<T> || is_recording<real_type_t<T>>, T, B>;
   const quaternion<end> aligned = select(
       other_side, [&] { return quaternion<end>(-b); }, [&] { return quaternion<end>(b); });
   const quaternion<T> difference = conj(a) * (aligned - a);

@@ -82,7 +82,7 @@ template <class T>
 
 template <class T>
 void require_not_zero(const quaternion<T>& q, const char* function) {
-  if (any(is_zero(q))) {
+  if (surely_any(is_zero(q))) {
     raise(invalid_input(std::string("duet: ") + function + ": the quaternion is zero"));
   }
 }
@@ -98,8 +98,12 @@ template <class F, class T>
 template <class Condition, class T, class F, class G>
 [[nodiscard]] DUET_ALWAYS_INLINE auto by_range(const Condition& is_in_range, const quaternion<T>& q,
                                                const F& usual, const G& extreme) {
-  return select(is_in_range, usual,
-                [&] { return by_lane([&](const auto& p) { return of_scaled(extreme, p); }, q); });
+  if constexpr (is_recording<real_type_t<T>>) { // recorded for numbers in range
+    return usual();
+  } else {
+    return select(is_in_range, usual,
+                  [&] { return by_lane([&](const auto& p) { return of_scaled(extreme, p); }, q); });
+  }
 }
 
 } // namespace detail

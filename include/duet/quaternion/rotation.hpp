@@ -39,7 +39,7 @@ from_axis_angle(const vector3<T>& n, const S& a) {
   using R = detail::differentiable_t<promote_t<T, S>>;
   using U = detail::as_real_of<T, R>;
   const quaternion<U> direction(U(0), U(n[0]), U(n[1]), U(n[2]));
-  detail::require(!any(detail::is_zero(direction)),
+  detail::require(!detail::surely_any(detail::is_zero(direction)),
                   "duet: from_axis_angle: the axis is the zero vector");
   const quaternion<U> axis = normalized(direction);
   const R half = R(a) / 2;

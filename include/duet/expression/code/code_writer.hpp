@@ -1,0 +1,596 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/version.hpp>
+#include <duet/expression/graph/evaluate.hpp>
+#include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/graph.hpp>
+#include <duet/expression/graph/graph_text.hpp>
+#include <duet/expression/graph/recorded.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <concepts>
+#include <cstddef>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Common parts of the emitters of C, C++, Python and MATLAB: names that compile everywhere, and
+/// the statements of a formula in order. For those who extend duet.
+
+namespace duet::expression {
+
+/// Options of formulas as code.
+struct code_options {
+  /// First sentence of the function's comment; by default none.
+  std::string description = {};
+  /// `float` instead of `double`, in C and C++.
+  bool is_single_precision = false;
+  /// Matrices row by row (as C's arrays of arrays); otherwise column by column (as Eigen, Fortran).
+  bool is_row_major = true;
+};
+
+namespace detail {
+
+/// The decimal digits of x that make it again, with a point or an exponent.
+[[nodiscard]] inline std::string number_literal(double x) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr;
+  std::string text(digits.data(), end);
+  if (text.find_first_of(".en") == std::string::npos) {
+    text += ".0";
+  }
+  return text;
+}
+/// Of the float nearest to x.
+[[nodiscard]] inline std::string float_literal(double x) {
+  std::array<char, 32> digits;
+  const auto end =
+      std::to_chars(digits.data(), digits.data() + digits.size(), static_cast<float>(x)).ptr;
+  std::string text(digits.data(), end);
+  if (text.find_first_of(".en") == std::string::npos) {
+    text += ".0";
+  }
+  return text + "f";
+}
+
+/// Keywords of C, C++, Python and MATLAB, and names that their libraries take or that look like
+/// numbers there.
+[[nodiscard]] inline const std::set<std::string>& reserved_names() {
+  static const std::set<std::string> names = {"alignas",
+                                              "alignof",
+                                              "and",
+                                              "and_eq",
+                                              "as",
+                                              "asm",
+                                              "assert",
+                                              "async",
+                                              "atomic",
+                                              "auto",
+                                              "await",
+                                              "bitand",
+                                              "bitor",
+                                              "bool",
+                                              "break",
+                                              "case",
+                                              "catch",
+                                              "char",
+                                              "class",
+                                              "classdef",
+                                              "co_await",
+                                              "co_return",
+                                              "co_yield",
+                                              "compl",
+                                              "complex",
+                                              "concept",
+                                              "const",
+                                              "consteval",
+                                              "constexpr",
+                                              "constinit",
+                                              "continue",
+                                              "decltype",
+                                              "def",
+                                              "default",
+                                              "del",
+                                              "delete",
+                                              "do",
+                                              "double",
+                                              "dynamic_cast",
+                                              "elif",
+                                              "else",
+                                              "elseif",
+                                              "end",
+                                              "end_try_catch",
+                                              "endfor",
+                                              "endfunction",
+                                              "endif",
+                                              "endswitch",
+                                              "endwhile",
+                                              "enum",
+                                              "except",
+                                              "explicit",
+                                              "export",
+                                              "extern",
+                                              "false",
+                                              "finally",
+                                              "float",
+                                              "for",
+                                              "friend",
+                                              "from",
+                                              "function",
+                                              "global",
+                                              "goto",
+                                              "if",
+                                              "import",
+                                              "imaginary",
+                                              "in",
+                                              "inline",
+                                              "int",
+                                              "is",
+                                              "lambda",
+                                              "long",
+                                              "mutable",
+                                              "namespace",
+                                              "new",
+                                              "noexcept",
+                                              "nonlocal",
+                                              "not",
+                                              "not_eq",
+                                              "nullptr",
+                                              "operator",
+                                              "or",
+                                              "or_eq",
+                                              "otherwise",
+                                              "parfor",
+                                              "pass",
+                                              "persistent",
+                                              "private",
+                                              "protected",
+                                              "public",
+                                              "raise",
+                                              "register",
+                                              "reinterpret_cast",
+                                              "requires",
+                                              "restrict",
+                                              "return",
+                                              "short",
+                                              "signed",
+                                              "sizeof",
+                                              "spmd",
+                                              "static",
+                                              "static_assert",
+                                              "static_cast",
+                                              "struct",
+                                              "switch",
+                                              "template",
+                                              "this",
+                                              "thread_local",
+                                              "throw",
+                                              "true",
+                                              "try",
+                                              "typedef",
+                                              "typeid",
+                                              "typename",
+                                              "typeof",
+                                              "union",
+                                              "unsigned",
+                                              "until",
+                                              "unwind_protect",
+                                              "using",
+                                              "virtual",
+                                              "void",
+                                              "volatile",
+                                              "wchar_t",
+                                              "while",
+                                              "with",
+                                              "xor",
+                                              "xor_eq",
+                                              "yield",
+                                              "None",
+                                              "True",
+                                              "False",
+                                              "NAN",
+                                              "INFINITY",
+                                              "NaN",
+                                              "nan",
+                                              "inf",
+                                              "Inf",
+                                              "eps",
+                                              "pi",
+                                              "e",
+                                              "i",
+                                              "j",
+                                              "I",
+                                              "J",
+                                              "np",
+                                              "math",
+                                              "ans",
+                                              "main",
+                                              "signgam",
+                                              "y0",
+                                              "y1",
+                                              "yn",
+                                              "j0",
+                                              "j1",
+                                              "jn",
+                                              "gamma",
+                                              "sin",
+                                              "cos",
+                                              "tan",
+                                              "asin",
+                                              "acos",
+                                              "atan",
+                                              "atan2",
+                                              "sinh",
+                                              "cosh",
+                                              "tanh",
+                                              "asinh",
+                                              "acosh",
+                                              "atanh",
+                                              "exp",
+                                              "exp2",
+                                              "expm1",
+                                              "log",
+                                              "log2",
+                                              "log10",
+                                              "log1p",
+                                              "logb",
+                                              "sqrt",
+                                              "cbrt",
+                                              "pow",
+                                              "hypot",
+                                              "erf",
+                                              "erfc",
+                                              "tgamma",
+                                              "lgamma",
+                                              "abs",
+                                              "fabs",
+                                              "floor",
+                                              "ceil",
+                                              "trunc",
+                                              "round",
+                                              "rint",
+                                              "fma",
+                                              "fmod",
+                                              "remainder",
+                                              "remquo",
+                                              "drem",
+                                              "fmax",
+                                              "fmin",
+                                              "fdim",
+                                              "frexp",
+                                              "ldexp",
+                                              "modf",
+                                              "scalb",
+                                              "significand",
+                                              "isnan",
+                                              "isinf",
+                                              "isfinite",
+                                              "signbit",
+                                              "copysign",
+                                              "div",
+                                              "index",
+                                              "time",
+                                              "exit",
+                                              "abort",
+                                              "free",
+                                              "malloc",
+                                              "select",
+                                              "std",
+                                              "Eigen",
+                                              "unix",
+                                              "linux",
+                                              "real",
+                                              "imag",
+                                              "numel",
+                                              "size",
+                                              "fix",
+                                              "rem",
+                                              "mod",
+                                              "max",
+                                              "min",
+                                              "sum",
+                                              "zeros",
+                                              "reshape"};
+  return names;
+}
+
+/// Letters, digits and underscores for a name: Greek letters by their names, other characters by
+/// their codes.
+[[nodiscard]] inline std::string plain_name(const std::string& name) {
+  static constexpr std::array<std::string_view, 25> greek = {
+      "alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
+      "kappa", "lambda", "mu",      "nu",    "xi",      "omicron", "pi",   "rho",   "sigma",
+      "sigma", "tau",    "upsilon", "phi",   "chi",     "psi",     "omega"};
+  std::string result;
+  for (std::size_t k = 0; k < name.size(); ++k) {
+    const auto c = static_cast<unsigned char>(name[k]);
+    const bool is_digit = c >= '0' && c <= '9';
+    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit) {
+      result += is_digit && result.empty() ? "x" : "";
+      result += name[k];
+      continue;
+    }
+    if ((c == 0xCE || c == 0xCF) && k + 1 < name.size()) { // U+0391 to U+03C9 in UTF-8
+      const unsigned code = ((c & 0x1FU) << 6U) | (static_cast<unsigned char>(name[k + 1]) & 0x3FU);
+      const bool is_small = code >= 0x3B1 && code <= 0x3C9;
+      if (is_small || (code >= 0x391 && code <= 0x3A9)) {
+        std::string letter(greek[code - (is_small ? 0x3B1 : 0x391)]);
+        letter[0] = is_small ? letter[0] : static_cast<char>(letter[0] - 'a' + 'A');
+        result += letter;
+        ++k;
+        continue;
+      }
+    }
+    constexpr const char* hexadecimal = "0123456789abcdef";
+    result += result.empty() ? "x" : "";
+    result += hexadecimal[c / 16];
+    result += hexadecimal[c % 16];
+  }
+  return result;
+}
+
+/// Names that differ from each other and from reserved ones.
+class name_table {
+public:
+  /// The name, with underscores behind it as long as it is taken.
+  std::string add(const std::string& name) {
+    std::string result = plain_name(name);
+    while (reserved_names().count(result) > 0 || taken_.count(result) > 0) {
+      result += "_";
+    }
+    taken_.insert(result);
+    return result;
+  }
+  /// A prefix for numbered names, of which none is taken.
+  [[nodiscard]] std::string prefix(std::string text) const {
+    const auto is_taken = [&] {
+      return std::any_of(taken_.begin(), taken_.end(), [&](const std::string& name) {
+        return name.rfind(text, 0) == 0 && name.size() > text.size() &&
+               name.find_first_not_of("0123456789", text.size()) == std::string::npos;
+      });
+    };
+    while (is_taken()) {
+      text += "_";
+    }
+    return text;
+  }
+
+private:
+  std::set<std::string> taken_;
+};
+
+/// x^n by products for |n| ≤ 8, in another formula.
+[[nodiscard]] inline recorded power_by_products(const recorded& x, int n) {
+  if (n > 8 || n < -8) {
+    return recorded::of(operation::pow, x, recorded(n));
+  }
+  if (n < 0) {
+    return 1 / power_by_products(x, -n);
+  }
+  if (n == 1) {
+    return x;
+  }
+  const recorded root = power_by_products(x, n / 2);
+  return n % 2 == 0 ? root * root : root * root * x;
+}
+
+/// The formula with whole powers as products, and nothing that its outputs do not need.
+[[nodiscard]] inline formula_graph without_powers(const formula_graph& f) {
+  formula_graph result;
+  for (const named_value& x : f.inputs()) {
+    result.add_input(x);
+  }
+  graph& to = result.operations();
+  const graph& from = f.operations();
+  const std::vector<bool> needed = f.needed();
+  std::vector<int> image(needed.size(), -1);
+  for (int i = 0; i < from.size(); ++i) {
+    if (!needed[std::size_t(i)]) {
+      continue;
+    }
+    const graph_node& n = from[i];
+    std::array<int, 3> x{-1, -1, -1};
+    for (int k = 0; k < operand_count(n.what); ++k) {
+      x[std::size_t(k)] = image[std::size_t(n.operands[std::size_t(k)])];
+    }
+    image[std::size_t(i)] = n.what == operation::number     ? to.number(n.number)
+                            : n.what == operation::variable ? to.variable(n.index)
+                            : n.what == operation::power
+                                ? power_by_products(recorded(to, x[0]), n.index).node_in(to)
+                                : to.apply(n.what, x[0], x[1], x[2], n.index);
+  }
+  for (named_value y : f.outputs()) {
+    for (int& node : y.nodes) {
+      node = image[std::size_t(node)];
+    }
+    result.add_output(std::move(y));
+  }
+  return result;
+}
+
+/// A language: how numbers, functions, conditions, choices and assignments are written, where
+/// operands come as texts.
+template <class L>
+concept CodeLanguage = requires(const L& language, const graph_node& n,
+                                const std::array<bound_text, 3>& x) {
+  { language.number(1.0) } -> std::same_as<std::string>;
+  { language.call(n, x) } -> std::same_as<bound_text>;
+  { language.condition(n, x) } -> std::same_as<bound_text>;
+  { language.choice(x) } -> std::same_as<bound_text>;
+  { language.assignment(std::string(), std::string(), true) } -> std::same_as<std::string>;
+};
+
+/// The statements of a formula, and the texts of its outputs.
+struct code_body {
+  std::vector<std::string> statements;
+  std::vector<std::string> outputs; ///< of each number of the outputs, in order
+  int temporaries = 0;              ///< numbers that have names of their own
+  std::set<int> stumpff;            ///< orders of the Stumpff functions in it
+  bool has_arc_ratio = false;
+};
+
+/// Writes each node as one statement, or, where it is used once and the line has room, into that
+/// which uses it. \param inputs  how the i-th input number is written
+template <CodeLanguage Language>
+[[nodiscard]] code_body write_body(const formula_graph& f, const std::vector<std::string>& inputs,
+                                   const std::string& prefix, const Language& language) {
+  const graph& g = f.operations();
+  const std::vector<bool> needed = f.needed();
+  std::vector<int> uses(needed.size(), 0);
+  for (int i = 0; i < g.size(); ++i) {
+    for (int k = 0; needed[std::size_t(i)] && k < operand_count(g[i].what); ++k) {
+      ++uses[std::size_t(g[i].operands[std::size_t(k)])];
+    }
+  }
+  for (const named_value& y : f.outputs()) {
+    for (const int node : y.nodes) {
+      ++uses[std::size_t(node)];
+    }
+  }
+  code_body body;
+  std::vector<bound_text> texts(needed.size());
+  for (int i = 0; i < g.size(); ++i) {
+    const graph_node& n = g[i];
+    bound_text& text = texts[std::size_t(i)];
+    if (!needed[std::size_t(i)]) {
+      continue;
+    }
+    if (n.what == operation::number) {
+      text = {language.number(n.number), n.number < 0 ? binding::negative : binding::atom};
+      continue;
+    }
+    if (n.what == operation::variable) {
+      text = {inputs[std::size_t(n.index)]};
+      continue;
+    }
+    std::array<bound_text, 3> x;
+    for (int k = 0; k < operand_count(n.what); ++k) {
+      x[std::size_t(k)] = texts[std::size_t(n.operands[std::size_t(k)])];
+    }
+    if (n.what == operation::stumpff) {
+      for (int order = n.index; order >= 0; order -= 2) {
+        body.stumpff.insert(order);
+      }
+    }
+    body.has_arc_ratio = body.has_arc_ratio || n.what == operation::arc_ratio;
+    if (is_condition(n.what)) {
+      text = language.condition(n, x);
+    } else if (n.what == operation::select) {
+      text = language.choice(x);
+    } else if (n.what >= operation::negative && n.what <= operation::quotient) {
+      text = text_of(g, n, x);
+    } else {
+      text = language.call(n, x);
+    }
+    constexpr std::size_t max_inlined = 60;
+    const bool is_inlined = uses[std::size_t(i)] == 1 && text.text.size() <= max_inlined &&
+                            n.what != operation::sin && n.what != operation::cos;
+    if (!is_inlined) {
+      const std::string name = prefix + std::to_string(++body.temporaries);
+      body.statements.push_back(language.assignment(name, text.text, is_condition(n.what)));
+      text = {name};
+    }
+  }
+  for (const named_value& y : f.outputs()) {
+    for (const int node : y.nodes) {
+      body.outputs.push_back(texts[std::size_t(node)].text);
+    }
+  }
+  return body;
+}
+
+/// The position of the k-th number of a value in the order of the code.
+[[nodiscard]] inline int index_in_code(const named_value& x, int k, bool is_row_major) {
+  return x.kind == shape::matrix && is_row_major ? k % x.rows * x.columns + k / x.rows : k;
+}
+
+/// A sentence on a value, for comments.
+[[nodiscard]] inline std::string described(const named_value& x, bool is_row_major) {
+  switch (x.kind) {
+  case shape::scalar:
+    return "scalar";
+  case shape::matrix:
+    return x.columns == 1 ? "vector of " + std::to_string(x.rows)
+                          : std::to_string(x.rows) + " x " + std::to_string(x.columns) +
+                                " matrix, " + (is_row_major ? "row by row" : "column by column");
+  case shape::quaternion:
+    return "quaternion w, x, y, z";
+  case shape::dual_vector:
+    return "dual vector n + eps m: n, then m";
+  case shape::pose:
+    return "dual quaternion: w, x, y, z of the real part, then of the dual part";
+  }
+  return {};
+}
+
+/// The sentences of the comment, without the marks of a comment.
+[[nodiscard]] inline std::vector<std::string>
+comment_lines(const formula_graph& f, const std::string& name, const code_options& options,
+              const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+  std::vector<std::string> lines = {
+      name + (options.description.empty() ? "" : ": " + options.description), ""};
+  const auto list = [&](const char* title, const std::vector<named_value>& values,
+                        const std::vector<std::string>& names) {
+    lines.push_back(title);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      lines.push_back("  " + names[k] + ": " + described(values[k], options.is_row_major));
+    }
+  };
+  list("Inputs:", f.inputs(), inputs);
+  list("Outputs:", f.outputs(), outputs);
+  const operation_counts n = count_operations(f);
+  std::string counts;
+  const auto count = [&](int number, const std::string& one, const char* ending = "s") {
+    if (number > 0) {
+      counts += (counts.empty() ? "" : ", ") + std::to_string(number) + " " + one +
+                (number == 1 ? "" : ending);
+    }
+  };
+  count(n.multiplications, "multiplication");
+  count(n.additions, "addition");
+  count(n.divisions, "division");
+  count(n.sines, "sine-cosine pair");
+  count(n.functions, "other function");
+  count(n.choices, "choice");
+  lines.push_back("Operations: " + (counts.empty() ? "none" : counts) + ".");
+  return lines;
+}
+
+/// The coefficients 1/(2k+order)! with which c_order is summed, and their number.
+[[nodiscard]] inline std::vector<double> stumpff_terms(int order) {
+  const int terms = order < 2 ? 10 : 13;
+  std::vector<double> result;
+  long double factorial = 1;
+  for (int i = 2; i <= order; ++i) {
+    factorial *= i;
+  }
+  for (int k = 0; k < terms; ++k) {
+    result.push_back(static_cast<double>(1 / factorial));
+    factorial *= (2.0L * k + order + 1) * (2.0L * k + order + 2);
+  }
+  return result;
+}
+
+/// Every other term from the `first` on by Horner's rule, in a variable `square`.
+template <class Number>
+[[nodiscard]] std::string horner(const std::vector<double>& terms, std::size_t first,
+                                 const Number& number) {
+  std::string text;
+  std::string closing;
+  for (std::size_t k = first; k < terms.size(); k += 2) {
+    const bool is_last = k + 2 >= terms.size();
+    text += number(terms[k]) + (is_last ? "" : " + square * (");
+    closing += is_last ? "" : ")";
+  }
+  return text + closing;
+}
+
+} // namespace detail
+} // namespace duet::expression

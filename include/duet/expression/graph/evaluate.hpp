@@ -1,0 +1,253 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
+#include <duet/core/scalar_traits.hpp>
+#include <duet/core/select.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/dual/rules/elementary.hpp>
+#include <duet/dual/rules/of_many.hpp>
+#include <duet/dual/stumpff.hpp>
+#include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/graph.hpp>
+#include <duet/expression/graph/recorded.hpp>
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Values of graphs over any scalar: numbers, dual numbers, batches, and recorded numbers, which
+/// make another graph of it.
+
+namespace duet::expression::detail {
+
+/// x^n by halving n, for |n| ≤ 8; beyond that by `pow`, which rounds once.
+template <class S>
+[[nodiscard]] S integer_power_of(const S& x, int n) {
+  using std::pow;
+  if constexpr (duet::detail::is_recording<S>) {
+    return pow(x, S(n));
+  } else {
+    if (n == 0) {
+      return S(1);
+    }
+    if (n > 8 || n < -8) {
+      return S(pow(x, n));
+    }
+    if (n < 0) {
+      return S(1 / integer_power_of(x, -n));
+    }
+    if (n == 1) {
+      return x;
+    }
+    const S root = integer_power_of(x, n / 2);
+    return n % 2 == 0 ? S(root * root) : S(root * root * x);
+  }
+}
+
+/// f(c) of the integral constant c = index.
+template <class F, int... N>
+[[nodiscard]] auto with_constant(int index, const F& f, std::integer_sequence<int, N...>) {
+  decltype(f(std::integral_constant<int, 0>{})) result{};
+  static_cast<void>(
+      ((index == N ? (result = f(std::integral_constant<int, N>{}), true) : false) || ...));
+  return result;
+}
+
+/// Stumpff functions of a higher order occur in derivatives of an order that nobody takes.
+inline constexpr int max_stumpff = 24;
+
+template <class S>
+[[nodiscard]] S stumpff_of_index(const S& x, int index) {
+  duet::detail::require(index < max_stumpff, "duet: a formula with the Stumpff function c_", index);
+  return with_constant(
+      index, [&](auto n) { return S(duet::stumpff<decltype(n)::value>(x)); },
+      std::make_integer_sequence<int, max_stumpff>{});
+}
+
+/// The functions of one number.
+template <class S>
+[[nodiscard]] S function_value(operation what, int index, const S& x) {
+#define DUET_CASE(name)                                                                            \
+  case operation::name: {                                                                          \
+    using std::name;                                                                               \
+    return S(name(x));                                                                             \
+  }
+  switch (what) {
+    DUET_CASE(sqrt)
+    DUET_CASE(cbrt)
+    DUET_CASE(exp)
+    DUET_CASE(exp2)
+    DUET_CASE(expm1)
+    DUET_CASE(log)
+    DUET_CASE(log2)
+    DUET_CASE(log10)
+    DUET_CASE(log1p)
+    DUET_CASE(sin)
+    DUET_CASE(cos)
+    DUET_CASE(tan)
+    DUET_CASE(asin)
+    DUET_CASE(acos)
+    DUET_CASE(atan)
+    DUET_CASE(sinh)
+    DUET_CASE(cosh)
+    DUET_CASE(tanh)
+    DUET_CASE(asinh)
+    DUET_CASE(acosh)
+    DUET_CASE(atanh)
+    DUET_CASE(erf)
+    DUET_CASE(erfc)
+    DUET_CASE(tgamma)
+    DUET_CASE(lgamma)
+    DUET_CASE(abs)
+    DUET_CASE(floor)
+    DUET_CASE(ceil)
+    DUET_CASE(trunc)
+    DUET_CASE(round)
+  case operation::power:
+    return integer_power_of(x, index);
+  case operation::stumpff:
+    return stumpff_of_index(x, index);
+  default:
+    return S(-x);
+  }
+#undef DUET_CASE
+}
+
+/// The functions of two numbers.
+template <class S>
+[[nodiscard]] S function_value(operation what, const S& a, const S& b) {
+  using std::atan2;
+  using std::fmod;
+  using std::hypot;
+  using std::pow;
+  using std::remainder;
+  switch (what) {
+  case operation::sum:
+    return S(a + b);
+  case operation::difference:
+    return S(a - b);
+  case operation::product:
+    return S(a * b);
+  case operation::quotient:
+    return S(a / b);
+  case operation::atan2:
+    return S(atan2(a, b));
+  case operation::hypot:
+    return S(hypot(a, b));
+  case operation::pow:
+    return S(pow(a, b));
+  case operation::fmod:
+    return S(fmod(a, b));
+  case operation::remainder:
+    return S(remainder(a, b));
+  default:
+    return S(duet::arc_ratio(a, b));
+  }
+}
+
+/// The values of all nodes that are needed, over S: numbers in one list, conditions in another.
+template <class S>
+class node_values {
+public:
+  using condition = decltype(std::declval<const S&>() < std::declval<const S&>());
+
+  node_values(const graph& g, const std::vector<bool>& needed, const std::vector<S>& inputs)
+      : numbers_(std::size_t(g.size()), S(0)),
+        conditions_(std::size_t(g.size()), condition(false)) {
+    for (int i = 0; i < g.size(); ++i) {
+      if (needed[std::size_t(i)]) {
+        evaluate(g[i], std::size_t(i), inputs);
+      }
+    }
+  }
+
+  [[nodiscard]] const S& operator[](int node) const { return numbers_[std::size_t(node)]; }
+
+private:
+  [[nodiscard]] const S& number(int node) const { return numbers_[std::size_t(node)]; }
+  [[nodiscard]] condition holds(int node) const { return conditions_[std::size_t(node)]; }
+
+  void evaluate(const graph_node& n, std::size_t i, const std::vector<S>& inputs) {
+    const auto [a, b, c] = n.operands;
+    if (is_condition(n.what)) {
+      conditions_[i] = condition_value(n);
+    } else if (n.what == operation::number) {
+      numbers_[i] = S(n.number);
+    } else if (n.what == operation::variable) {
+      numbers_[i] = inputs[std::size_t(n.index)];
+    } else if (n.what == operation::select) {
+      const S& if_true = number(b);
+      const S& if_false = number(c);
+      numbers_[i] = duet_select(
+          holds(a), [&] { return if_true; }, [&] { return if_false; });
+    } else if (n.what == operation::fma) {
+      using std::fma;
+      numbers_[i] = S(fma(number(a), number(b), number(c)));
+    } else if (operand_count(n.what) == 2) {
+      numbers_[i] = function_value<S>(n.what, number(a), number(b));
+    } else {
+      numbers_[i] = function_value<S>(n.what, n.index, number(a));
+    }
+  }
+  template <class F, class G>
+  [[nodiscard]] static S duet_select(const condition& holds, const F& f, const G& g) {
+    using duet::select;
+    return select(holds, f, g);
+  }
+  [[nodiscard]] condition condition_value(const graph_node& n) const {
+    using std::isfinite;
+    using std::isnan;
+    using std::signbit;
+    const auto [a, b, c] = n.operands;
+    switch (n.what) {
+    case operation::less:
+      return number(a) < number(b);
+    case operation::less_equal:
+      return number(a) <= number(b);
+    case operation::equal:
+      return number(a) == number(b);
+    case operation::is_finite:
+      return condition(isfinite(number(a)));
+    case operation::is_nan:
+      return condition(isnan(number(a)));
+    case operation::is_negative:
+      return condition(signbit(number(a)));
+    case operation::both:
+      return holds(a) && holds(b);
+    case operation::either:
+      return holds(a) || holds(b);
+    default:
+      return !holds(a);
+    }
+  }
+
+  std::vector<S> numbers_;
+  std::vector<condition> conditions_;
+};
+
+} // namespace duet::expression::detail
+
+namespace duet::expression {
+
+/// The numbers of the outputs of a formula, one after the other, over any scalar S.
+/// \param inputs  the numbers of the inputs, likewise
+/// \throws invalid_input for another number of inputs
+template <class S>
+[[nodiscard]] std::vector<S> evaluate(const formula_graph& f, const std::vector<S>& inputs) {
+  duet::detail::require(int(inputs.size()) == f.input_size(), "duet: evaluate: the formula has ",
+                        f.input_size(), " input numbers, not ", inputs.size());
+  const detail::node_values<S> values(f.operations(), f.needed(), inputs);
+  std::vector<S> result;
+  for (const named_value& y : f.outputs()) {
+    for (const int node : y.nodes) {
+      result.push_back(values[node]);
+    }
+  }
+  return result;
+}
+
+} // namespace duet::expression

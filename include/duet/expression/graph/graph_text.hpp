@@ -1,0 +1,108 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/text/number_text.hpp>
+#include <duet/expression/graph/graph.hpp>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Names of operations, and nodes of a graph as text.
+
+namespace duet::expression::detail {
+
+/// Of the functions, in the order of `operation`; empty for operators.
+[[nodiscard]] constexpr std::string_view function_name_of(operation what) {
+  constexpr std::array<std::string_view, std::size_t(operation::select) + 1> names = {
+      "",       "",         "",      "",          "",          "",      "",        "",
+      "sqrt",   "cbrt",     "exp",   "exp2",      "expm1",     "log",   "log2",    "log10",
+      "log1p",  "sin",      "cos",   "tan",       "asin",      "acos",  "atan",    "sinh",
+      "cosh",   "tanh",     "asinh", "acosh",     "atanh",     "erf",   "erfc",    "tgamma",
+      "lgamma", "abs",      "floor", "ceil",      "trunc",     "round", "stumpff", "atan2",
+      "hypot",  "pow",      "fmod",  "remainder", "arc_ratio", "fma",   "",        "",
+      "",       "isfinite", "isnan", "signbit",   "",          "",      "",        "select"};
+  return names[std::size_t(what)];
+}
+
+/// Precedence of the outermost operation of a text.
+enum class binding { condition, sum, negative, product, power, atom };
+
+struct bound_text {
+  std::string text;
+  binding strength = binding::atom;
+
+  [[nodiscard]] std::string inside(binding around) const {
+    return strength < around ? "(" + text + ")" : text;
+  }
+};
+
+/// The operation of a node applied to the texts of its operands.
+[[nodiscard]] inline bound_text text_of(const graph& g, const graph_node& n,
+                                        const std::array<bound_text, 3>& x) {
+  using enum operation;
+  const auto infix = [&](const char* sign, binding strength, binding right) -> bound_text {
+    return {x[0].inside(strength) + sign + x[1].inside(right), strength};
+  };
+  switch (n.what) {
+  case number:
+    return {duet::to_text(n.number), n.number < 0 ? binding::negative : binding::atom};
+  case variable:
+    return {g.variable_name(n.index)};
+  case negative:
+    return {"-" + x[0].inside(binding::product), binding::negative};
+  case sum:
+    return infix(" + ", binding::sum, binding::negative);
+  case difference:
+    return infix(" - ", binding::sum, binding::product);
+  case product:
+    return infix(" * ", binding::product, binding::power);
+  case quotient:
+    return infix(" / ", binding::product, binding::power);
+  case power:
+    return {x[0].inside(binding::atom) + "^" + std::to_string(n.index), binding::power};
+  case stumpff:
+    return {"stumpff" + std::to_string(n.index) + "(" + x[0].text + ")"};
+  case less:
+    return infix(" < ", binding::condition, binding::sum);
+  case less_equal:
+    return infix(" <= ", binding::condition, binding::sum);
+  case equal:
+    return infix(" == ", binding::condition, binding::sum);
+  case both:
+    return {x[0].inside(binding::atom) + " && " + x[1].inside(binding::atom), binding::condition};
+  case either:
+    return {x[0].inside(binding::atom) + " || " + x[1].inside(binding::atom), binding::condition};
+  case no:
+    return {"!" + x[0].inside(binding::atom)};
+  default: {
+    std::string text = std::string(function_name_of(n.what)) + "(" + x[0].text;
+    for (int k = 1; k < operand_count(n.what); ++k) {
+      text += ", " + x[std::size_t(k)].text;
+    }
+    return {text + ")"};
+  }
+  }
+}
+
+/// A node as text, in which what is nested deeper than `depth` is left out.
+[[nodiscard]] inline bound_text node_text(const graph& g, int i, int depth) {
+  std::array<bound_text, 3> operands;
+  const graph_node& n = g[i];
+  for (int k = 0; k < operand_count(n.what); ++k) {
+    operands[std::size_t(k)] =
+        depth == 0 ? bound_text{"..."} : node_text(g, n.operands[std::size_t(k)], depth - 1);
+  }
+  return text_of(g, n, operands);
+}
+
+/// For messages.
+[[nodiscard]] inline std::string short_text(const graph& g, int i) {
+  return node_text(g, i, 4).text;
+}
+
+} // namespace duet::expression::detail

@@ -1,0 +1,207 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/dual/rules/elementary.hpp>
+#include <duet/dual/rules/of_many.hpp>
+#include <duet/dual/stumpff.hpp>
+#include <duet/expression/graph/evaluate.hpp>
+#include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/graph.hpp>
+#include <duet/expression/graph/recorded.hpp>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Reverse accumulation: the derivatives of one output with respect to all variables in one sweep
+/// from the output to the inputs, by the rules of dual numbers.
+
+namespace duet::expression::detail {
+
+/// ∂y/∂x of the functions of one number.
+[[nodiscard]] inline recorded slope_of(operation what, int index, const recorded& x,
+                                       const recorded& y) {
+#define DUET_CASE(name)                                                                            \
+  case operation::name:                                                                            \
+    return duet::rule::name{}.slope(x, y);
+  switch (what) {
+    DUET_CASE(sqrt)
+    DUET_CASE(cbrt)
+    DUET_CASE(exp)
+    DUET_CASE(exp2)
+    DUET_CASE(expm1)
+    DUET_CASE(log)
+    DUET_CASE(log2)
+    DUET_CASE(log10)
+    DUET_CASE(log1p)
+    DUET_CASE(tan)
+    DUET_CASE(asin)
+    DUET_CASE(acos)
+    DUET_CASE(atan)
+    DUET_CASE(tanh)
+    DUET_CASE(asinh)
+    DUET_CASE(acosh)
+    DUET_CASE(atanh)
+    DUET_CASE(erf)
+    DUET_CASE(erfc)
+#undef DUET_CASE
+  case operation::sin:
+    return cos(x);
+  case operation::cos:
+    return -sin(x);
+  case operation::sinh:
+    return cosh(x);
+  case operation::cosh:
+    return sinh(x);
+  case operation::abs:
+    return select(
+        signbit(x), [] { return recorded(-1); }, [] { return recorded(1); });
+  case operation::power:
+    return recorded(index) * pow(x, recorded(index - 1));
+  case operation::stumpff:
+    return with_constant(
+        index, [&](auto n) { return duet::rule::stumpff<decltype(n)::value>{}.slope(x, y); },
+        std::make_integer_sequence<int, max_stumpff>{});
+  case operation::tgamma:
+  case operation::lgamma:
+    duet::detail::raise(invalid_input("duet: the derivative of a gamma function has no formula"));
+  default: // floor, ceil, trunc and round are constant by pieces
+    return recorded(0);
+  }
+}
+
+/// The partial derivatives of y = f(a, b).
+[[nodiscard]] inline std::array<recorded, 2> slopes_of(operation what, const recorded& a,
+                                                       const recorded& b, const recorded& y) {
+  switch (what) {
+  case operation::atan2:
+    return duet::rule::atan2{}.slopes(y, a, b);
+  case operation::hypot:
+    return {a / y, b / y};
+  case operation::pow:
+    return {b * pow(a, b - 1), y * log(a)};
+  case operation::fmod:
+    return duet::rule::fmod{}.slopes(y, a, b);
+  case operation::remainder:
+    return duet::rule::remainder{}.slopes(y, a, b);
+  default:
+    return duet::rule::arc_ratio{}.slopes(y, a, b);
+  }
+}
+
+/// Adjoints: the derivatives of a node with respect to the nodes before it, recorded in its graph.
+class adjoints {
+public:
+  /// Of the node `root`, to which all nodes of the inputs are known.
+  adjoints(graph& g, int root) : g_(g), values_(std::size_t(root) + 1) {
+    values_[std::size_t(root)] = recorded(1);
+    for (int i = root; i >= 0; --i) {
+      const recorded& adjoint = values_[std::size_t(i)];
+      if (!(adjoint.is_constant() && adjoint.number() == 0)) {
+        propagate(g_[i], i, adjoint);
+      }
+    }
+  }
+
+  /// With respect to a node.
+  [[nodiscard]] recorded operator[](int node) const {
+    return std::size_t(node) < values_.size() ? values_[std::size_t(node)] : recorded(0);
+  }
+
+private:
+  [[nodiscard]] recorded at(int node) { return {g_, node}; }
+  void add(int node, const recorded& x) {
+    recorded& sum = values_[std::size_t(node)];
+    sum = sum + x;
+  }
+  void propagate(const graph_node n, int i, const recorded adjoint) {
+    const int a = n.operands[0], b = n.operands[1], c = n.operands[2];
+    switch (n.what) {
+    case operation::number:
+    case operation::variable:
+      return;
+    case operation::negative:
+      return add(a, -adjoint);
+    case operation::sum:
+      add(a, adjoint);
+      return add(b, adjoint);
+    case operation::difference:
+      add(a, adjoint);
+      return add(b, -adjoint);
+    case operation::product:
+      if (a == b) {
+        return add(a, 2 * (adjoint * at(a)));
+      }
+      add_unless_number(a, [&] { return adjoint * at(b); });
+      return add_unless_number(b, [&] { return adjoint * at(a); });
+    case operation::quotient: {
+      const recorded share = adjoint / at(b);
+      add_unless_number(a, [&] { return share; });
+      return add_unless_number(b, [&] { return -(share * at(i)); });
+    }
+    case operation::fma:
+      add_unless_number(a, [&] { return adjoint * at(b); });
+      add_unless_number(b, [&] { return adjoint * at(a); });
+      return add_unless_number(c, [&] { return adjoint; });
+    case operation::select: {
+      const recorded_condition condition(g_, a);
+      add_unless_number(b, [&] { return blended(condition, adjoint, recorded(0)); });
+      return add_unless_number(c, [&] { return blended(condition, recorded(0), adjoint); });
+    }
+    default:
+      break;
+    }
+    if (is_condition(n.what)) {
+      return;
+    }
+    if (operand_count(n.what) == 1) {
+      return add(a, adjoint * slope_of(n.what, n.index, at(a), at(i)));
+    }
+    const std::array<recorded, 2> slopes = slopes_of(n.what, at(a), at(b), at(i));
+    add_unless_number(a, [&] { return adjoint * slopes[0]; });
+    add_unless_number(b, [&] { return adjoint * slopes[1]; });
+  }
+  template <class F>
+  void add_unless_number(int node, const F& f) {
+    if (!g_.is_number(node)) {
+      add(node, f());
+    }
+  }
+
+  graph& g_;
+  std::vector<recorded> values_;
+};
+
+} // namespace duet::expression::detail
+
+namespace duet::expression {
+
+/// The formula with, for its only scalar output, the outputs `value` and `gradient`, by reverse
+/// accumulation: at most a few times the operations of the value, however many variables there are.
+/// The gradient has the derivatives by the numbers of the named inputs, in their order; rotations
+/// and poses are taken by their numbers.
+/// \throws invalid_input unless the formula has one scalar output, and for an unknown name
+[[nodiscard]] inline formula_graph reverse_gradient(formula_graph f,
+                                                    const std::vector<std::string>& names) {
+  const std::vector<named_value> outputs = f.take_outputs();
+  duet::detail::require(outputs.size() == 1 && outputs[0].nodes.size() == 1,
+                        "duet: reverse_gradient takes a formula with one scalar output");
+  const detail::adjoints by(f.operations(), outputs[0].nodes[0]);
+  named_value gradient{.name = "gradient", .kind = shape::matrix, .rows = 0};
+  for (const std::string& name : names) {
+    for (const int node : f.input(name).nodes) {
+      gradient.nodes.push_back(by[node].node_in(f.operations()));
+    }
+  }
+  gradient.rows = int(gradient.nodes.size());
+  f.add_output({.name = "value", .nodes = outputs[0].nodes});
+  f.add_output(std::move(gradient));
+  return f;
+}
+
+} // namespace duet::expression

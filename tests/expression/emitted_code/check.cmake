@@ -1,0 +1,40 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# Formulas as code: compiled without a warning by gcc and clang as C99 and as C++, run, and compared with duet.
+#   cmake -D program=<emitted_code> -D folder=<scratch folder> -P check.cmake
+
+function(run)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${folder} RESULT_VARIABLE status OUTPUT_VARIABLE output
+    ERROR_VARIABLE output COMMAND_ECHO NONE)
+  if(NOT status EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}\n${output}")
+  endif()
+  string(STRIP "${output}" output)
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${folder})
+file(MAKE_DIRECTORY ${folder})
+run(${program} ${folder})
+file(GLOB files ${folder}/*.c)
+set(float_files ${files})
+list(FILTER float_files INCLUDE REGEX "_float.c$")
+list(REMOVE_ITEM files ${float_files})
+set(library_float_files ${float_files})
+list(FILTER library_float_files EXCLUDE REGEX "check_float.c$")
+set(strict -Wall -Wextra -Werror -pedantic)
+foreach(compiler IN ITEMS gcc clang)
+  run(${compiler} -std=c99 ${strict} ${files} -lm -o ${compiler})
+  run(./${compiler})
+  message(STATUS "${compiler}, double: ${output}")
+  run(${compiler} -std=c99 ${strict} ${float_files} -lm -o ${compiler}_float)
+  run(./${compiler}_float)
+  message(STATUS "${compiler}, float: ${output}")
+  foreach(file IN LISTS library_float_files)
+    run(${compiler} -std=c99 ${strict} -Wdouble-promotion -Wconversion -fsyntax-only ${file})
+  endforeach()
+  foreach(file IN LISTS files)
+    run(${compiler} -x c++ ${strict} -fsyntax-only ${file})
+  endforeach()
+endforeach()
