@@ -13,7 +13,8 @@
 /// (spline/split_bspline.hpp), CSV (core/text/csv.hpp), the planner of the lecture notes
 /// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp),
 /// formulas as data (expression/graph/trace.hpp, expression/graph/reverse.hpp) and as code
-/// (expression/code/c.hpp), and `interop/`. The headers of the compiled libraries are in
+/// (expression/code/c.hpp), chains and curves as formulas (kinematics/chain_formula.hpp,
+/// spline/curve_formula.hpp), and `interop/`. The headers of the compiled libraries are in
 /// duet/io.hpp and duet/robotics.hpp.
 
 #include <duet/comparison/compare.hpp>

@@ -9,6 +9,7 @@
 #include <duet/dual_quaternion/nearest.hpp>
 #include <duet/duet.hpp>
 #include <duet/io.hpp>
+#include <duet/kinematics/chain_formula.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/kinematics/tree_loop.hpp>
 #include <duet/motion/printed_plan.hpp>
@@ -234,6 +235,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(end_acceleration<>);
   DUET_CHECK(fully_clamped<>);
   DUET_CHECK(fit_options);
+  DUET_CHECK(chain_formula_options);
   DUET_CHECK(motion_covariance<double, 3>);
   DUET_CHECK(interpolation_report);
   DUET_CHECK(span_hint);

@@ -154,6 +154,10 @@ private:
   template <class P, class Hint>
   [[nodiscard]] DUET_ALWAYS_INLINE bool locate(P& u, std::size_t& span, Hint& hint) const {
     const auto& spans = curve().spans();
+    if constexpr (detail::is_recording<real_type_t<P>> && std::is_same_v<Hint, span_hint>) {
+      span = hint.span; // the formula of that span
+      return false;
+    }
     const auto value = static_cast<R>(innermost(u));
     if (!spans.contains(value)) [[unlikely]] {
       const evaluation_point point = clamp_to_domain(value);
