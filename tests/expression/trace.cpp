@@ -229,6 +229,40 @@ TEST_CASE_TEMPLATE("reverse_gradient: as forward, at most three times the value'
   check(product_of_sines);
 }
 
+TEST_CASE("reverse_gradient and reverse_hessian of functions at values") {
+  const auto at = [](int n) {
+    Eigen::VectorXd x(n);
+    for (int i = 0; i < n; ++i) {
+      x[i] = 0.4 + 0.1 * i;
+    }
+    return x;
+  };
+  const auto [y, g] = reverse_gradient(rosenbrock, at(30));
+  const auto expected = duet::gradient(rosenbrock, at(30));
+  CHECK(y == expected.value);
+  CHECK((g - expected.gradient).cwiseAbs().maxCoeff() <
+        1e-13 * expected.gradient.cwiseAbs().maxCoeff());
+
+  const auto f =
+      trace([](auto x, auto a) { return sin(x * a[0]) * exp(a[1]) + a.dot(a) / (2 + x); }, u, v);
+  const formula_graph second = reverse_hessian(f, {"u", "v"});
+  const auto exact = duet::hessian(
+      [](const auto& x) {
+        using T = typename std::decay_t<decltype(x)>::Scalar;
+        using std::exp;
+        using std::sin;
+        const T square = x[1] * x[1] + x[2] * x[2] + x[3] * x[3];
+        return T(sin(x[0] * x[1]) * exp(x[2]) + square / (2 + x[0]));
+      },
+      Eigen::Vector4d(0.3, v0[0], v0[1], v0[2]));
+  const std::vector<double> values =
+      evaluate(second, std::vector<double>{0.3, v0[0], v0[1], v0[2]});
+  REQUIRE(values.size() == 21);
+  for (Eigen::Index i = 0; i < 16; ++i) {
+    CHECK(std::abs(values[5 + std::size_t(i)] - exact.hessian.data()[i]) < 1e-14);
+  }
+}
+
 TEST_CASE("reverse_gradient: every function has the slope of the dual numbers") {
   const auto check = [](const char* name, const auto& f, const std::vector<double>& at) {
     CAPTURE(name);

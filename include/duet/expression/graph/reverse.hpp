@@ -2,6 +2,8 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
+#include <duet/derivative/gradient.hpp>
+#include <duet/dual/dual.hpp>
 #include <duet/dual/rules/elementary.hpp>
 #include <duet/dual/rules/of_many.hpp>
 #include <duet/dual/stumpff.hpp>
@@ -10,7 +12,10 @@
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
 
+#include <Eigen/Core>
+
 #include <array>
+#include <concepts>
 #include <cstddef>
 #include <string>
 #include <type_traits>
@@ -183,8 +188,9 @@ namespace duet::expression {
 
 /// The formula with, for its only scalar output, the outputs `value` and `gradient`, by reverse
 /// accumulation: at most a few times the operations of the value, however many variables there are.
-/// The gradient has the derivatives by the numbers of the named inputs, in their order; rotations
-/// and poses are taken by their numbers.
+/// The gradient has the derivatives with respect to the numbers of the named inputs, in their
+/// order; rotations and poses are taken by their numbers.
+///
 /// \throws invalid_input unless the formula has one scalar output, and for an unknown name
 [[nodiscard]] inline formula_graph reverse_gradient(formula_graph f,
                                                     const std::vector<std::string>& names) {
@@ -203,5 +209,85 @@ namespace duet::expression {
   f.add_output(std::move(gradient));
   return f;
 }
+
+/// The formula with the outputs `value`, `gradient` and `hessian`, symmetric, of its only scalar
+/// output: forward over reverse accumulation, by dual numbers through the gradient.
+///
+/// \throws invalid_input as `reverse_gradient`
+[[nodiscard]] inline formula_graph reverse_hessian(const formula_graph& f,
+                                                   const std::vector<std::string>& names) {
+  using moving = dual<recorded>;
+  const formula_graph gradient = reverse_gradient(f, names);
+  const std::vector<bool> needed = gradient.needed();
+  formula_graph result;
+  std::vector<moving> inputs;
+  for (const named_value& x : f.inputs()) {
+    for (const int node : result.add_input(x).nodes) {
+      inputs.emplace_back(recorded(result.operations(), node));
+    }
+  }
+  const std::vector<int>& slopes = gradient.outputs()[1].nodes;
+  const int n = int(slopes.size());
+  named_value hessian{.name = "hessian", .kind = shape::matrix, .rows = n, .columns = n};
+  hessian.nodes.resize(std::size_t(n) * std::size_t(n));
+  const auto node = [&](const recorded& x) { return x.node_in(result.operations()); };
+  int column = 0;
+  for (const std::string& name : names) {
+    for (const int variable : f.input(name).nodes) {
+      moving& x = inputs[std::size_t(f.operations()[variable].index)];
+      x = moving(x.value(), recorded(1));
+      const detail::node_values<moving> values(gradient.operations(), needed, inputs);
+      x = moving(x.value());
+      if (column == 0) {
+        named_value value{.name = "value"};
+        value.nodes.push_back(node(values[gradient.outputs()[0].nodes[0]].value()));
+        named_value first{.name = "gradient", .kind = shape::matrix, .rows = n};
+        for (const int slope : slopes) {
+          first.nodes.push_back(node(values[slope].value()));
+        }
+        result.add_output(std::move(value));
+        result.add_output(std::move(first));
+      }
+      for (int row = column; row < n; ++row) {
+        const int second = node(values[slopes[std::size_t(row)]].epsilon());
+        hessian.nodes[std::size_t(row + column * n)] = second;
+        hessian.nodes[std::size_t(column + row * n)] = second;
+      }
+      ++column;
+    }
+  }
+  result.add_output(std::move(hessian));
+  return result;
+}
+
+/// The value and the gradient of a function that is generic over scalars, at a column x, by reverse
+/// accumulation; for more than about ten variables cheaper than dual numbers. Each call traces the
+/// function: to evaluate one often, `trace` it once.
+///
+/// \return `value_and_gradient`
+/// \throws invalid_input where the function branches on a value
+template <class F, class X>
+  requires std::derived_from<X, Eigen::MatrixBase<X>> && std::floating_point<typename X::Scalar> &&
+      (X::ColsAtCompileTime == 1) [[nodiscard]] auto reverse_gradient(F&& f, const X& x) {
+    using column = Eigen::Matrix<recorded, X::RowsAtCompileTime, 1>;
+    using S = typename X::Scalar;
+    formula_graph g;
+    const std::vector<int> nodes =
+        g.add_input({.name = "x", .kind = shape::matrix, .rows = int(x.size())}).nodes;
+    column variables(x.size());
+    std::vector<S> numbers;
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
+      variables[i] = recorded(g.operations(), nodes[std::size_t(i)]);
+      numbers.push_back(x[i]);
+    }
+    const recorded y = f(variables);
+    g.add_output({.name = "y", .nodes = {y.node_in(g.operations())}});
+    const std::vector<S> values = evaluate(reverse_gradient(std::move(g), {"x"}), numbers);
+    value_and_gradient<S, Eigen::Matrix<S, X::RowsAtCompileTime, 1>> result;
+    result.value = values[0];
+    result.gradient =
+        Eigen::Map<const Eigen::Matrix<S, X::RowsAtCompileTime, 1>>(values.data() + 1, x.size());
+    return result;
+  }
 
 } // namespace duet::expression
