@@ -182,6 +182,11 @@ private:
   std::vector<recorded> values_;
 };
 
+/// A column of Eigen of floating-point numbers.
+template <class X>
+concept RealColumn = std::derived_from<X, Eigen::MatrixBase<X>> &&
+                     std::floating_point<typename X::Scalar> && X::ColsAtCompileTime == 1;
+
 } // namespace duet::expression::detail
 
 namespace duet::expression {
@@ -266,28 +271,27 @@ namespace duet::expression {
 ///
 /// \return `value_and_gradient`
 /// \throws invalid_input where the function branches on a value
-template <class F, class X>
-  requires std::derived_from<X, Eigen::MatrixBase<X>> && std::floating_point<typename X::Scalar> &&
-      (X::ColsAtCompileTime == 1) [[nodiscard]] auto reverse_gradient(F&& f, const X& x) {
-    using column = Eigen::Matrix<recorded, X::RowsAtCompileTime, 1>;
-    using S = typename X::Scalar;
-    formula_graph g;
-    const std::vector<int> nodes =
-        g.add_input({.name = "x", .kind = shape::matrix, .rows = int(x.size())}).nodes;
-    column variables(x.size());
-    std::vector<S> numbers;
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      variables[i] = recorded(g.operations(), nodes[std::size_t(i)]);
-      numbers.push_back(x[i]);
-    }
-    const recorded y = f(variables);
-    g.add_output({.name = "y", .nodes = {y.node_in(g.operations())}});
-    const std::vector<S> values = evaluate(reverse_gradient(std::move(g), {"x"}), numbers);
-    value_and_gradient<S, Eigen::Matrix<S, X::RowsAtCompileTime, 1>> result;
-    result.value = values[0];
-    result.gradient =
-        Eigen::Map<const Eigen::Matrix<S, X::RowsAtCompileTime, 1>>(values.data() + 1, x.size());
-    return result;
+template <class F, detail::RealColumn X>
+[[nodiscard]] auto reverse_gradient(F&& f, const X& x) {
+  using column = Eigen::Matrix<recorded, X::RowsAtCompileTime, 1>;
+  using S = typename X::Scalar;
+  formula_graph g;
+  const std::vector<int> nodes =
+      g.add_input({.name = "x", .kind = shape::matrix, .rows = int(x.size())}).nodes;
+  column variables(x.size());
+  std::vector<S> numbers;
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    variables[i] = recorded(g.operations(), nodes[std::size_t(i)]);
+    numbers.push_back(x[i]);
   }
+  const recorded y = f(variables);
+  g.add_output({.name = "y", .nodes = {y.node_in(g.operations())}});
+  const std::vector<S> values = evaluate(reverse_gradient(std::move(g), {"x"}), numbers);
+  value_and_gradient<S, Eigen::Matrix<S, X::RowsAtCompileTime, 1>> result;
+  result.value = values[0];
+  result.gradient =
+      Eigen::Map<const Eigen::Matrix<S, X::RowsAtCompileTime, 1>>(values.data() + 1, x.size());
+  return result;
+}
 
 } // namespace duet::expression
