@@ -4,6 +4,8 @@
 #include "support/random.hpp"
 
 #include <duet/dual/math.hpp>
+#include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/trace.hpp>
 #include <duet/interop/multiprecision.hpp>
 
 #include <cstddef>
@@ -40,6 +42,25 @@ struct bounds {
   double expression = slope; ///< bound of both for the formula as an expression
 };
 
+using traced_row = duet::expression::formula_graph;
+
+/// A function of x and d as a formula.
+template <class F>
+traced_row trace_row(const F& f, int size) {
+  using duet::recorded;
+  traced_row g;
+  numbers<recorded> x, d;
+  for (auto* each : {&x, &d}) {
+    const auto& input = g.add_input(
+        {.name = each == &x ? "x" : "d", .kind = duet::expression::shape::matrix, .rows = size});
+    for (const int node : input.nodes) {
+      each->emplace_back(g.operations(), node);
+    }
+  }
+  duet::expression::detail::add_outputs(g, "y", f(x, d));
+  return g;
+}
+
 /// One row of the table.
 struct formula {
   std::string label;
@@ -61,6 +82,8 @@ struct formula {
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> dual;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> taylor;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> nested;
+  /// Both as formulas of x and a direction d: duet's value and derivative, and the closed form.
+  std::function<std::pair<traced_row, traced_row>(int size)> traced;
 };
 
 /// A row by a further method: an expression over symbols, which the compiler differentiates.
@@ -108,7 +131,9 @@ private:
 
 /// `library` and `closed` are templates over the scalar: library(x) → f(x) with duet, and
 /// closed(x, ẋ) → f and ∂f/∂x ẋ written out.
-template <class Library, class Closed>
+///
+/// \tparam IsTraced  false for functions of double and dual numbers alone, which are not traced
+template <bool IsTraced = true, class Library, class Closed>
 formula make_formula(std::string label, std::string text, std::string function, std::string header,
                      std::vector<argument> arguments, const Library& library, const Closed& closed,
                      bounds limits = {},
@@ -141,6 +166,28 @@ formula make_formula(std::string label, std::string text, std::string function, 
     }
     return result;
   };
+  if constexpr (IsTraced) {
+    f.traced = [library, closed](int size) {
+      using duet::recorded;
+      using moving = duet::dual<recorded, 1, duet::derivative_tag<struct inner>>;
+      const auto by_duals = [&](const numbers<recorded>& x, const numbers<recorded>& d) {
+        numbers<moving> s;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          s.push_back(moving(x[i], d[i]));
+        }
+        const numbers<moving> y = library(s);
+        numbers<recorded> result;
+        for (const moving& part : y) {
+          result.push_back(part.value());
+        }
+        for (const moving& part : y) {
+          result.push_back(part.epsilon());
+        }
+        return result;
+      };
+      return std::pair{trace_row(by_duals, size), trace_row(closed, size)};
+    };
+  }
   f.nested = [library](const numbers<double>& x, const numbers<double>& d) {
     numbers<second> s;
     for (std::size_t i = 0; i < x.size(); ++i) {

@@ -20,7 +20,7 @@ read = functools.partial(Path.read_text, encoding="utf-8")
 # `boost/math` is a folder of one.
 LAYERS = {
     "core": "", "dual": "core", "derivative": "dual Eigen", "quaternion": "derivative",
-    "dual_quaternion": "quaternion boost/math", "comparison": "dual_quaternion", "expression": "dual_quaternion boost/mp11",
+    "dual_quaternion": "quaternion boost/math", "comparison": "dual_quaternion", "expression": "dual_quaternion boost/mp11 boost/multiprecision",
     "spline": "dual_quaternion", "kinematics": "dual_quaternion", "motion": "kinematics", "io": "kinematics spline expat.h assimp",
     "robotics": "io motion", "interop": "comparison expression spline robotics boost ceres"}
 ALLOWED = {}

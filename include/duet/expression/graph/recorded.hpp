@@ -158,7 +158,7 @@ public:
   [[nodiscard]] int node() const { return node_; }
 
   /// \throws invalid_input if it is not known: a branch cannot be recorded
-  explicit operator bool() const {
+  explicit(false) operator bool() const {
     if (!is_known()) {
       detail::raise(invalid_input("duet: trace: the function branches on " +
                                   expression::detail::short_text(*graph_, node_) +

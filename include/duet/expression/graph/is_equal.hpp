@@ -1,0 +1,649 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/random_source.hpp>
+#include <duet/expression/graph/algebra.hpp>
+#include <duet/expression/graph/evaluate.hpp>
+#include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/graph.hpp>
+#include <duet/expression/graph/graph_text.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// \file
+/// Proofs that two formulas are equal.
+
+namespace duet::expression {
+
+/// Verdict on the equality of two formulas.
+enum class equality {
+  proved,  ///< equal by algebra, and with values at the same inputs
+  refuted, ///< unequal at an input
+  unknown  ///< neither was found
+};
+
+/// Knowledge of the inputs of formulas, by their names.
+struct assumptions {
+  std::vector<std::string> positive = {}; ///< scalars that are positive
+  std::vector<std::string> nonzero = {};  ///< scalars that are not 0
+  std::vector<std::string> unit = {};     ///< vectors, quaternions and poses of unit norm
+};
+
+/// Verdict on the equality of two formulas, with the input that refutes it.
+struct equality_result {
+  equality verdict = equality::unknown; ///< the verdict
+  std::vector<double> witness = {};     ///< of a refuted equality the numbers of the inputs
+  double first = 0, second = 0;         ///< of a refuted equality the values that differ there
+
+  /// True for a proof alone.
+  [[nodiscard]] explicit operator bool() const { return verdict == equality::proved; }
+};
+
+namespace detail {
+
+/// A condition for a value: of a polynomial, or of an argument that is only known by its text.
+struct value_condition {
+  enum class kind { nonzero, not_negative, positive, other };
+  kind what;
+  polynomial p;
+  std::string text;
+};
+
+/// Formulas as fractions of polynomials.
+class canonical_form {
+public:
+  /// \param bases    unit of the coefficients of each angle, by its text; refined here
+  /// \param stumpff  largest order of the Stumpff functions of each argument, likewise
+  canonical_form(const assumptions& known, std::map<std::string, rational>& bases,
+                 std::map<std::string, int>& stumpff)
+      : known_(known), bases_(bases), stumpff_(stumpff) {}
+
+  /// True if a unit of angles or an order was refined: then all has to be done again.
+  [[nodiscard]] bool must_repeat() const { return must_repeat_; }
+  [[nodiscard]] const fraction_field& field() const { return field_; }
+
+  struct value {
+    fraction number;
+    std::string condition;            ///< of a condition its text
+    std::set<int> needs;              ///< conditions for a value
+    polynomial nonzero_if_true = {};  ///< of a condition: cannot vanish where it holds
+    polynomial nonzero_if_false = {}; ///< likewise where it does not
+  };
+
+  /// The nodes of a formula.
+  [[nodiscard]] std::vector<value> values_of(const formula_graph& f) {
+    const graph& g = f.operations();
+    const std::vector<bool> needed = f.needed();
+    std::vector<value> values(needed.size());
+    add_inputs(f, values);
+    for (int i = 0; i < g.size(); ++i) {
+      if (needed[std::size_t(i)] && !g.is(i, operation::variable)) {
+        values[std::size_t(i)] = value_of(g[i], values);
+      }
+    }
+    return values;
+  }
+
+  /// True if the values are equal as functions, where both have values.
+  [[nodiscard]] bool are_equal(const fraction& a, const fraction& b) {
+    return field_.sum(a, b, -1).above.empty();
+  }
+  /// True if what one of two values needs holds always or is needed by the other as well.
+  [[nodiscard]] bool have_equal_domains(const value& a, const value& b) const {
+    const auto covers = [this](const value& x, const value& y) {
+      return std::all_of(y.needs.begin(), y.needs.end(),
+                         [&](int need) { return x.needs.count(need) > 0 || holds(need); });
+    };
+    return covers(a, b) && covers(b, a);
+  }
+
+private:
+  using kind = value_condition::kind;
+
+  [[nodiscard]] bool holds(int need) const {
+    const value_condition& c = conditions_[std::size_t(need)];
+    return c.what == kind::nonzero        ? field_.ring.sign_of(c.p) != 0
+           : c.what == kind::not_negative ? field_.ring.sign_of(c.p, false) == 1
+           : c.what == kind::positive     ? field_.ring.sign_of(c.p) == 1
+                                          : false;
+  }
+
+  [[nodiscard]] static bool contains(const std::vector<std::string>& names,
+                                     const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  }
+  void add_inputs(const formula_graph& f, std::vector<value>& values) {
+    for (const named_value& x : f.inputs()) {
+      std::vector<int> atoms;
+      for (std::size_t k = 0; k < x.nodes.size(); ++k) {
+        const int a = field_.ring.find_atom("input " + x.name + " " + std::to_string(k));
+        atoms.push_back(a);
+        atom& info = field_.ring[a];
+        info.is_positive = contains(known_.positive, x.name);
+        if (contains(known_.nonzero, x.name)) {
+          nonzero_.insert(a);
+        }
+        if (std::size_t(x.nodes[k]) < values.size()) {
+          values[std::size_t(x.nodes[k])] = {{polynomial_ring::power_of(a, 1)}, {}, {}};
+        }
+      }
+      if (contains(known_.unit, x.name)) { // a pose has the norm of its real part
+        const std::size_t size = x.kind == shape::pose ? 4 : atoms.size();
+        atom& first = field_.ring[atoms[0]];
+        first.degree = 2;
+        first.relation = polynomial_ring::constant(1);
+        for (std::size_t k = 1; k < size; ++k) {
+          polynomial_ring::add(first.relation, polynomial_ring::power_of(atoms[k], 2), -1);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] int condition_of(kind what, const fraction& x) {
+    value_condition c{what, x.above, {}};
+    if (what == kind::nonzero) { // the same up to a factor
+      const rational leading = c.p.empty() ? rational(1) : c.p.begin()->second;
+      for (auto& [m, coefficient] : c.p) {
+        coefficient /= leading;
+      }
+    } else if (!x.below.empty()) {
+      c = {kind::other, {}, std::to_string(int(what)) + field_.text(x)};
+    }
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      if (conditions_[i].what == c.what && conditions_[i].p == c.p &&
+          conditions_[i].text == c.text) {
+        return int(i);
+      }
+    }
+    conditions_.push_back(std::move(c));
+    return int(conditions_.size()) - 1;
+  }
+  void require(value& x, kind what, const fraction& of) {
+    if (what == kind::nonzero) { // each factor apart
+      const auto is_known = [&](int a) {
+        return nonzero_.count(a) > 0 || field_.ring[a].is_positive;
+      };
+      if (of.above.size() == 1) {
+        for (const auto& [a, exponent] : of.above.begin()->first) {
+          if (!is_known(a)) {
+            x.needs.insert(condition_of(kind::nonzero, {polynomial_ring::power_of(a, 1)}));
+          }
+        }
+        return;
+      }
+    }
+    x.needs.insert(condition_of(what, of));
+  }
+  void require_other(value& x, const std::string& text) {
+    value_condition c{kind::other, {}, text};
+    for (std::size_t i = 0; i < conditions_.size(); ++i) {
+      if (conditions_[i].what == kind::other && conditions_[i].text == text) {
+        x.needs.insert(int(i));
+        return;
+      }
+    }
+    conditions_.push_back(std::move(c));
+    x.needs.insert(int(conditions_.size()) - 1);
+  }
+
+  [[nodiscard]] fraction atom_of(const std::string& name) {
+    return {polynomial_ring::power_of(field_.ring.find_atom(name), 1)};
+  }
+  [[nodiscard]] fraction negated(const fraction& x) {
+    return field_.product(fraction_field::constant(-1), x);
+  }
+
+  /// A function that is only known by its argument; odd ones are those of an argument whose first
+  /// term is positive.
+  [[nodiscard]] fraction opaque(const std::string& function, const fraction& x, int parity = 0) {
+    const std::string text = field_.text(x);
+    const std::string other = parity == 0 ? text : field_.text(negated(x));
+    if (other < text) {
+      const fraction f = atom_of(function + "(" + other + ")");
+      return parity == 1 ? negated(f) : f;
+    }
+    return atom_of(function + "(" + text + ")");
+  }
+
+  /// The coefficient c of a term of an angle as a multiple of its unit; 0 if the unit was refined.
+  [[nodiscard]] int multiple(const std::string& term, const rational& c) {
+    const rational size = abs(c);
+    const auto [entry, is_new] = bases_.emplace(term, size);
+    if (is_new) {
+      return c < 0 ? -1 : 1;
+    }
+    const rational ratio = c / entry->second;
+    if (denominator(ratio) == 1 && abs(ratio) <= 24) {
+      return int(numerator(ratio));
+    }
+    const auto common = gcd(numerator(size) * denominator(entry->second),
+                            numerator(entry->second) * denominator(size));
+    const rational finer(common, denominator(size) * denominator(entry->second));
+    if (finer < entry->second && abs(c) / finer <= 24) {
+      entry->second = finer;
+      must_repeat_ = true;
+    }
+    return 0;
+  }
+
+  /// cos x and sin x.
+  [[nodiscard]] std::pair<fraction, fraction> cosine_and_sine(const fraction& x) {
+    if (!x.below.empty()) {
+      return circular_pair(opaque_angle(x));
+    }
+    std::pair<fraction, fraction> result{fraction_field::constant(1), fraction_field::constant(0)};
+    for (const auto& [m, c] : x.above) {
+      const std::string term = field_.ring.text(m);
+      const int n = multiple(term, c);
+      if (n == 0) {
+        return circular_pair(opaque_angle(x));
+      }
+      const auto unit = circular_pair({term + "*" + bases_.at(term).str(), 1});
+      for (int k = 0; k < std::abs(n); ++k) {
+        const fraction sine = n < 0 ? negated(unit.second) : unit.second;
+        const fraction cosine = field_.sum(field_.product(result.first, unit.first),
+                                           field_.product(result.second, sine), -1);
+        result.second = field_.sum(field_.product(result.second, unit.first),
+                                   field_.product(result.first, sine));
+        result.first = cosine;
+      }
+    }
+    return result;
+  }
+  [[nodiscard]] std::pair<std::string, int> opaque_angle(const fraction& x) {
+    const std::string text = field_.text(x), other = field_.text(negated(x));
+    return other < text ? std::pair{other, -1} : std::pair{text, 1};
+  }
+  [[nodiscard]] std::pair<fraction, fraction>
+  circular_pair(const std::pair<std::string, int>& angle) {
+    const fraction sine = atom_of("sin " + angle.first);
+    const int cosine = field_.ring.find_atom("cos " + angle.first);
+    atom& info = field_.ring[cosine];
+    info.degree = 2;
+    info.relation = polynomial_ring::constant(1);
+    polynomial_ring::add(info.relation,
+                         {{monomial{{sine.above.begin()->first[0].first, 2}}, rational(1)}}, -1);
+    return {{polynomial_ring::power_of(cosine, 1)}, angle.second < 0 ? negated(sine) : sine};
+  }
+
+  /// e^x as a product of powers of exponentials.
+  [[nodiscard]] fraction exponential(const fraction& x) {
+    fraction result = fraction_field::constant(1);
+    const auto positive_atom = [this](const std::string& name, int exponent) {
+      const int a = field_.ring.find_atom(name);
+      field_.ring[a].is_positive = true;
+      return fraction{polynomial_ring::power_of(a, exponent)};
+    };
+    if (!x.below.empty()) {
+      return positive_atom("exp " + field_.text(x), 1);
+    }
+    for (const auto& [m, c] : x.above) {
+      const std::string term = field_.ring.text(m);
+      const int n = multiple("exp " + term, c);
+      if (n == 0) {
+        return positive_atom("exp " + field_.text(x), 1);
+      }
+      result = field_.product(
+          result, positive_atom("exp " + term + "*" + bases_.at("exp " + term).str(), n));
+    }
+    return result;
+  }
+
+  [[nodiscard]] fraction root(const fraction& x, int degree) {
+    if (!x.below.empty()) {
+      return opaque("root" + std::to_string(degree), x);
+    }
+    const fraction f = opaque("root" + std::to_string(degree), x);
+    atom& info = field_.ring[f.above.begin()->first[0].first];
+    info.degree = degree;
+    info.relation = x.above;
+    info.is_positive = degree == 2 && field_.ring.sign_of(x.above) == 1;
+    return f;
+  }
+
+  /// c_n(s) by that of the largest order of the same argument: c_n = 1/n! − s c_{n+2}.
+  [[nodiscard]] fraction stumpff_function(const fraction& s, int order) {
+    const std::string text = field_.text(s);
+    int& largest = stumpff_[text];
+    if (order > largest) {
+      must_repeat_ = must_repeat_ || largest > 1 || order > 1;
+      largest = order;
+    }
+    if (largest <= 1) {
+      const fraction f = atom_of("stumpff" + std::to_string(order) + text);
+      if (order == 0) {
+        const fraction c1 = atom_of("stumpff1" + text);
+        atom& info = field_.ring[f.above.begin()->first[0].first];
+        if (s.below.empty() && info.degree == 0) { // c₀² = 1 − s c₁²
+          info.degree = 2;
+          info.relation = polynomial_ring::constant(1);
+          const polynomial square = field_.ring.product(c1.above, c1.above);
+          polynomial_ring::add(info.relation, field_.ring.product(s.above, square), -1);
+        }
+      }
+      return f;
+    }
+    return by_largest_order(s, text, order, largest);
+  }
+  [[nodiscard]] fraction by_largest_order(const fraction& s, const std::string& text, int order,
+                                          int largest) {
+    if (order + 2 > largest) {
+      return atom_of("stumpff" + std::to_string(order) + text);
+    }
+    rational factorial = 1;
+    for (int i = 2; i <= order; ++i) {
+      factorial *= i;
+    }
+    return field_.sum(fraction_field::constant(1 / factorial),
+                      field_.product(s, by_largest_order(s, text, order + 2, largest)), -1);
+  }
+
+  [[nodiscard]] value value_of(const graph_node& n, const std::vector<value>& values) {
+    value result;
+    std::array<const value*, 3> x{};
+    for (int k = 0; k < operand_count(n.what); ++k) {
+      x[std::size_t(k)] = &values[std::size_t(n.operands[std::size_t(k)])];
+      result.needs.insert(x[std::size_t(k)]->needs.begin(), x[std::size_t(k)]->needs.end());
+    }
+    if (is_condition(n.what)) {
+      result.condition = std::to_string(int(n.what));
+      for (int k = 0; k < operand_count(n.what); ++k) {
+        const value& operand = *x[std::size_t(k)];
+        result.condition +=
+            "(" + (operand.condition.empty() ? field_.text(operand.number) : operand.condition) +
+            ")";
+      }
+      note_what_cannot_vanish(n, x, result);
+      return result;
+    }
+    if (n.what == operation::select) {
+      return choice(*x[0], *x[1], *x[2]);
+    }
+    result.number = number_of(n, x, result);
+    return result;
+  }
+
+  /// Divisors that do not vanish where c < p of a number c ≥ 0, or p ≠ 0.
+  void note_what_cannot_vanish(const graph_node& n, const std::array<const value*, 3>& x,
+                               value& result) const {
+    const auto number_in = [](const fraction& f) {
+      const bool is_number =
+          f.below.empty() &&
+          (f.above.empty() || (f.above.size() == 1 && f.above.begin()->first.empty()));
+      return !is_number ? rational(-1) : f.above.empty() ? rational(0) : f.above.begin()->second;
+    };
+    if (n.what == operation::no) {
+      result.nonzero_if_true = x[0]->nonzero_if_false;
+      result.nonzero_if_false = x[0]->nonzero_if_true;
+    } else if (n.what == operation::less && number_in(x[0]->number) >= 0) {
+      result.nonzero_if_true = x[1]->number.above;
+    } else if (n.what == operation::equal && number_in(x[1]->number) == 0) {
+      result.nonzero_if_false = x[0]->number.above;
+    }
+  }
+  [[nodiscard]] bool is_implied(int need, const polynomial& cannot_vanish) const {
+    const value_condition& c = conditions_[std::size_t(need)];
+    if (c.what != kind::nonzero || cannot_vanish.empty()) {
+      return false;
+    }
+    if (cannot_vanish.size() == 1 && c.p.size() == 1) { // none of the atoms of a product vanishes
+      const monomial &of_condition = cannot_vanish.begin()->first, &m = c.p.begin()->first;
+      return std::all_of(m.begin(), m.end(), [&](const auto& factor) {
+        return std::any_of(of_condition.begin(), of_condition.end(),
+                           [&](const auto& known) { return known.first == factor.first; });
+      });
+    }
+    const rational leading = cannot_vanish.begin()->second;
+    return c.p.size() == cannot_vanish.size() &&
+           std::equal(c.p.begin(), c.p.end(), cannot_vanish.begin(),
+                      [&](const auto& a, const auto& b) {
+                        return a.first == b.first && a.second * leading == b.second;
+                      });
+  }
+
+  [[nodiscard]] value choice(const value& condition, const value& b, const value& c) {
+    value result{{}, {}, condition.needs};
+    result.needs.insert(b.needs.begin(), b.needs.end());
+    result.needs.insert(c.needs.begin(), c.needs.end());
+    if (are_equal(b.number, c.number)) {
+      value common{c.number, {}, condition.needs};
+      const auto add_needs = [&](const value& branch, const polynomial& cannot_vanish) {
+        for (const int need : branch.needs) {
+          if (!is_implied(need, cannot_vanish)) {
+            common.needs.insert(need);
+          }
+        }
+      };
+      add_needs(b, condition.nonzero_if_true);
+      add_needs(c, condition.nonzero_if_false);
+      return common;
+    }
+    result.number = atom_of("select(" + condition.condition + field_.text(b.number) +
+                            field_.text(c.number) + ")");
+    return result;
+  }
+
+  [[nodiscard]] fraction number_of(const graph_node& n, const std::array<const value*, 3>& x,
+                                   value& result) {
+    const auto arg = [&](std::size_t k) -> const fraction& { return x[k]->number; };
+    const auto one = [] { return fraction_field::constant(1); };
+    switch (n.what) {
+    case operation::number:
+      if (!std::isfinite(n.number)) {
+        return atom_of("number" + std::to_string(n.number));
+      }
+      return fraction_field::constant(rational(n.number));
+    case operation::negative:
+      return negated(arg(0));
+    case operation::sum:
+      return field_.sum(arg(0), arg(1));
+    case operation::difference:
+      return field_.sum(arg(0), arg(1), -1);
+    case operation::product:
+      return field_.product(arg(0), arg(1));
+    case operation::fma:
+      return field_.sum(field_.product(arg(0), arg(1)), arg(2));
+    case operation::quotient:
+      return field_.product(arg(0), inverse(arg(1), result));
+    case operation::power: {
+      const fraction base = n.index < 0 ? inverse(arg(0), result) : arg(0);
+      fraction product = one();
+      for (int k = 0; k < std::abs(n.index); ++k) {
+        product = field_.product(product, base);
+      }
+      return product;
+    }
+    case operation::sqrt:
+      require(result, kind::not_negative, arg(0));
+      return root(arg(0), 2);
+    case operation::cbrt:
+      return root(arg(0), 3);
+    case operation::exp:
+      return exponential(arg(0));
+    case operation::expm1:
+      return field_.sum(exponential(arg(0)), one(), -1);
+    case operation::log:
+      require(result, kind::positive, arg(0));
+      return logarithm(arg(0));
+    case operation::log1p: {
+      const fraction y = field_.sum(one(), arg(0));
+      require(result, kind::positive, y);
+      return logarithm(y);
+    }
+    case operation::sin:
+      return cosine_and_sine(arg(0)).second;
+    case operation::cos:
+      return cosine_and_sine(arg(0)).first;
+    case operation::tan: {
+      const auto [cosine, sine] = cosine_and_sine(arg(0));
+      return field_.product(sine, inverse(cosine, result));
+    }
+    case operation::sinh:
+    case operation::cosh: {
+      const fraction e = exponential(arg(0)), other = exponential(negated(arg(0)));
+      return field_.product(fraction_field::constant(rational(1, 2)),
+                            field_.sum(e, other, n.what == operation::sinh ? -1 : 1));
+    }
+    case operation::tanh: {
+      const fraction e = exponential(arg(0)), other = exponential(negated(arg(0)));
+      return field_.product(field_.sum(e, other, -1), inverse(field_.sum(e, other), result));
+    }
+    case operation::hypot:
+      return root(field_.sum(field_.product(arg(0), arg(0)), field_.product(arg(1), arg(1))), 2);
+    case operation::abs: {
+      const fraction f = opaque("abs", arg(0), 2);
+      atom& info = field_.ring[f.above.begin()->first[0].first];
+      if (arg(0).below.empty()) {
+        info.degree = 2;
+        info.relation = field_.ring.product(arg(0).above, arg(0).above);
+      }
+      return f;
+    }
+    case operation::erfc:
+      return field_.sum(one(), opaque("erf", arg(0), 1), -1);
+    case operation::stumpff:
+      return stumpff_function(arg(0), n.index);
+    case operation::asin:
+    case operation::atanh:
+      require_other(result, std::string(function_name_of(n.what)) + field_.text(arg(0)));
+      return opaque(std::string(function_name_of(n.what)), arg(0), 1);
+    case operation::atan:
+    case operation::asinh:
+    case operation::erf:
+      return opaque(std::string(function_name_of(n.what)), arg(0), 1);
+    default:
+      break;
+    }
+    std::string text(function_name_of(n.what));
+    text += std::to_string(n.index);
+    for (int k = 0; k < operand_count(n.what); ++k) {
+      text += "(" + field_.text(arg(std::size_t(k))) + ")";
+    }
+    require_other(result, text);
+    return atom_of(text);
+  }
+
+  [[nodiscard]] fraction inverse(const fraction& x, value& result) {
+    if (x.above.empty()) {
+      return atom_of("1/0");
+    }
+    require(result, kind::nonzero, x);
+    return field_.reciprocal(x);
+  }
+  /// log x, of a power of an exponential its exponent.
+  [[nodiscard]] fraction logarithm(const fraction& x) { return opaque("log", x); }
+
+  const assumptions& known_;
+  std::map<std::string, rational>& bases_;
+  std::map<std::string, int>& stumpff_;
+  fraction_field field_;
+  std::vector<value_condition> conditions_;
+  std::set<int> nonzero_;
+  bool must_repeat_ = false;
+};
+
+/// The numbers of an input at which unit norms are kept.
+inline void add_sample(const named_value& x, const assumptions& known, random_source& random,
+                       int round, std::vector<double>& inputs) {
+  const auto contains = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), x.name) != names.end();
+  };
+  const std::size_t begin = inputs.size();
+  const double scale = round % 3 == 0 ? 0.3 : round % 3 == 1 ? 1 : 4;
+  double square = 0;
+  for (int k = 0; k < x.rows * x.columns; ++k) {
+    const double number = random.uniform(-scale, scale);
+    inputs.push_back(contains(known.positive) ? std::abs(number) : number);
+    square += x.kind == shape::pose && k >= 4 ? 0 : number * number;
+  }
+  if (contains(known.unit)) {
+    for (std::size_t k = begin; k < inputs.size(); ++k) {
+      inputs[k] /= std::sqrt(square);
+    }
+    if (x.kind == shape::pose) {
+      double along = 0;
+      for (std::size_t k = 0; k < 4; ++k) {
+        along += inputs[begin + k] * inputs[begin + 4 + k];
+      }
+      for (std::size_t k = 0; k < 4; ++k) {
+        inputs[begin + 4 + k] -= along * inputs[begin + k];
+      }
+    }
+  }
+}
+
+} // namespace detail
+
+/// Tells whether two formulas of the same inputs are equal: proved by algebra, refuted by an input,
+/// or unknown. A proof covers the domain: x/x = 1 is not proved, unless x is assumed not to be 0,
+/// nor is √(x²) = x. The algebra knows sums, products and quotients, powers and roots, multiples
+/// and sums of angles, exponentials, hyperbolic functions and Stumpff functions, with exact
+/// arithmetic of the numbers of both formulas; other functions are equal if their arguments are.
+///
+/// \throws invalid_input if the formulas have other inputs, or outputs of other sizes
+[[nodiscard]] inline equality_result is_equal(const formula_graph& f, const formula_graph& g,
+                                              const assumptions& known = {}) {
+  duet::detail::require(f.inputs().size() == g.inputs().size() &&
+                            f.input_size() == g.input_size() && f.output_size() == g.output_size(),
+                        "duet: is_equal: the formulas have other inputs or outputs");
+  // The numbers of g's inputs in the order of f's.
+  std::vector<std::size_t> indices;
+  for (const named_value& x : g.inputs()) {
+    const named_value& same = f.input(x.name);
+    duet::detail::require(same.nodes.size() == x.nodes.size(), "duet: is_equal: the input '",
+                          x.name, "' has other sizes");
+    for (const int node : same.nodes) {
+      indices.push_back(std::size_t(f.operations()[node].index));
+    }
+  }
+  equality_result result;
+  duet::random_source random(1);
+  for (int round = 0; round < 24; ++round) {
+    std::vector<double> inputs, inputs_of_g;
+    for (const named_value& x : f.inputs()) {
+      detail::add_sample(x, known, random, round, inputs);
+    }
+    for (const std::size_t k : indices) {
+      inputs_of_g.push_back(inputs[k]);
+    }
+    const std::vector<double> a = evaluate(f, inputs), b = evaluate(g, inputs_of_g);
+    for (std::size_t k = 0; k < a.size(); ++k) {
+      const double size = std::max(std::abs(a[k]), std::abs(b[k]));
+      if (std::isfinite(size) && size < 1e6 && std::abs(a[k] - b[k]) > 1e-6 * (1 + size)) {
+        return {equality::refuted, inputs, a[k], b[k]};
+      }
+    }
+  }
+  std::map<std::string, detail::rational> bases;
+  std::map<std::string, int> stumpff;
+  for (int round = 0; round < 12; ++round) {
+    detail::canonical_form form(known, bases, stumpff);
+    const auto a = form.values_of(f), b = form.values_of(g);
+    if (form.must_repeat() && !form.field().ring.is_too_large()) {
+      continue;
+    }
+    bool is_proved = !form.must_repeat() && !form.field().ring.is_too_large();
+    for (std::size_t k = 0; k < f.outputs().size() && is_proved; ++k) {
+      const std::vector<int>&of_f = f.outputs()[k].nodes, &of_g = g.outputs()[k].nodes;
+      for (std::size_t i = 0; i < of_f.size() && is_proved; ++i) {
+        const auto &x = a[std::size_t(of_f[i])], &y = b[std::size_t(of_g[i])];
+        is_proved = form.are_equal(x.number, y.number) && form.have_equal_domains(x, y);
+      }
+    }
+    is_proved = is_proved && !form.field().ring.is_too_large();
+    result.verdict = is_proved ? equality::proved : equality::unknown;
+    return result;
+  }
+  return result;
+}
+
+} // namespace duet::expression

@@ -1,0 +1,137 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "support/message.hpp"
+
+#include <duet/derivative/derivative.hpp>
+#include <duet/dual/stumpff.hpp>
+#include <duet/expression/graph/is_equal.hpp>
+#include <duet/expression/graph/trace.hpp>
+#include <duet/expression/symbol.hpp>
+#include <duet/quaternion/exponential.hpp>
+#include <duet/quaternion/rotation.hpp>
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+
+namespace test_expression_is_equal {
+namespace {
+
+using namespace duet::expression;
+using duet::vector3;
+
+constexpr symbol<"x"> x;
+constexpr symbol<"y"> y;
+constexpr vector_symbol<"v"> v;
+constexpr quaternion_symbol<"q"> q;
+constexpr quaternion_symbol<"p"> p;
+
+template <class F, class G>
+equality verdict(const F& f, const G& g, const assumptions& known) {
+  return is_equal(trace(f, x, y), trace(g, x, y), known).verdict;
+}
+
+} // namespace
+
+// Two terms in x and y, then what is assumed.
+#define DUET_VERDICT(expected, first, second, ...)                                                 \
+  CHECK_MESSAGE(verdict([]([[maybe_unused]] auto x, [[maybe_unused]] auto y) { return first; },    \
+                        []([[maybe_unused]] auto x, [[maybe_unused]] auto y) { return second; },   \
+                        assumptions{__VA_ARGS__}) == equality::expected,                           \
+                #first " and " #second)
+
+TEST_CASE("is_equal proves identities") {
+  DUET_VERDICT(proved, x + y, y + x);
+  DUET_VERDICT(proved, (x + y) * (x - y), x * x - y * y);
+  DUET_VERDICT(proved, x * x * x - 1, (x - 1) * (x * x + x + 1));
+  DUET_VERDICT(proved, sin(x) * sin(x) + cos(x) * cos(x), 1 + 0 * x);
+  DUET_VERDICT(proved, sin(2 * x), 2 * sin(x) * cos(x));
+  DUET_VERDICT(proved, sin(3 * x), 3 * sin(x) - 4 * pow(sin(x), 3));
+  DUET_VERDICT(proved, cos(x / 2) * cos(x / 2), (1 + cos(x)) / 2);
+  DUET_VERDICT(proved, sin(x + y), sin(x) * cos(y) + cos(x) * sin(y));
+  DUET_VERDICT(proved, exp(x + y), exp(x) * exp(y));
+  DUET_VERDICT(proved, exp(2 * x) - 1, expm1(x) * (exp(x) + 1));
+  DUET_VERDICT(proved, tanh(x), (exp(2 * x) - 1) / (exp(2 * x) + 1));
+  DUET_VERDICT(proved, cosh(x) * cosh(x) - sinh(x) * sinh(x), 1 + 0 * x);
+  DUET_VERDICT(proved, x / sqrt(1 + x * x), x * sqrt(1 + x * x) / (1 + x * x));
+  DUET_VERDICT(proved, (x * cos(x) - sin(x)) / (x * x), cos(x) / x - sin(x) / (x * x));
+  DUET_VERDICT(proved, hypot(x, y) * hypot(x, y), x * x + y * y);
+  DUET_VERDICT(proved, erfc(-x), 1 + erf(x));
+  DUET_VERDICT(proved,
+               duet::derivative(
+                   [](auto t) {
+                     using std::sin;
+                     return sin(t * t) / t;
+                   },
+                   x)
+                   .derivative,
+               2 * cos(x * x) - sin(x * x) / (x * x));
+}
+
+TEST_CASE("is_equal proves no equality that does not hold everywhere") {
+  DUET_VERDICT(unknown, x / x, 1 + 0 * x);
+  DUET_VERDICT(proved, x / x, 1 + 0 * x, .nonzero = {"x"});
+  DUET_VERDICT(refuted, sqrt(x * x), x);
+  DUET_VERDICT(unknown, sqrt(x) * sqrt(x), x);
+  DUET_VERDICT(proved, sqrt(x) * sqrt(x), x, .positive = {"x"});
+  DUET_VERDICT(unknown, log(x * y), log(x) + log(y));
+  DUET_VERDICT(unknown, x * (1 + 1e-12), x);
+  DUET_VERDICT(refuted, x * (1 + 1e-3), x);
+  DUET_VERDICT(unknown, tan(x) * cos(x), sin(x));
+  DUET_VERDICT(unknown, (x * x - 1) / (x - 1), x + 1);
+  DUET_VERDICT(unknown, 1 / (1 / x), x);
+  DUET_VERDICT(refuted, x - y, y - x);
+  DUET_VERDICT(unknown, 0.1 * x + 0.2 * x, 0.3 * x); // as numbers they differ
+}
+
+TEST_CASE("is_equal: choices whose branches are equal where they are taken") {
+  DUET_VERDICT(unknown,
+               duet::select(
+                   x > 5, [&] { return 1 + 0 * x; }, [&] { return x / x; }),
+               1 + 0 * x);
+  DUET_VERDICT(proved,
+               duet::select(
+                   x == 0, [&] { return 1 + 0 * x; }, [&] { return x / x; }),
+               1 + 0 * x);
+  DUET_VERDICT(proved,
+               duet::select(
+                   x * x > 4, [&] { return x / x; }, [&] { return 1 + 0 * x; }),
+               1 + 0 * x);
+  // so are the two forms of the derivative of a Stumpff function
+  DUET_VERDICT(proved,
+               duet::derivative([](auto t) { return duet::stumpff<1>(t * t); }, x).derivative,
+               x * (duet::stumpff<3>(x * x) - duet::stumpff<2>(x * x)));
+}
+
+TEST_CASE("is_equal: rotations") {
+  const auto norm_of_rotated = trace(
+      [](auto a, auto b) {
+        const auto r = duet::rotate(a, b);
+        return r.dot(r);
+      },
+      q, v);
+  const auto norm = trace([](auto, auto b) { return b.dot(b); }, q, v);
+  CHECK(is_equal(norm_of_rotated, norm, {.unit = {"q"}}).verdict == equality::proved);
+  CHECK(is_equal(norm_of_rotated, norm).verdict != equality::proved);
+  const auto exponential = trace([](auto a) { return squared_norm(duet::exp(a)); }, v);
+  CHECK(is_equal(exponential, trace([](auto a) { return 1 + 0 * a[0]; }, v)).verdict ==
+        equality::proved);
+  const auto product = trace([](auto a, auto b) { return duet::conj(a * b); }, q, p);
+  CHECK(
+      is_equal(product, trace([](auto a, auto b) { return duet::conj(b) * duet::conj(a); }, q, p)));
+  CHECK(
+      is_equal(product, trace([](auto b, auto a) { return duet::conj(b) * duet::conj(a); }, p, q)));
+  const equality_result wrong =
+      is_equal(product, trace([](auto a, auto b) { return duet::conj(a) * duet::conj(b); }, q, p));
+  CHECK(wrong.verdict == equality::refuted);
+  CHECK(wrong.witness.size() == 8);
+  CHECK(std::abs(wrong.first - wrong.second) > 1e-6);
+  const std::string message = duet_test::message_of<duet::invalid_input>(
+      [&] { static_cast<void>(is_equal(norm, product)); });
+  CHECK(message.find("other inputs or outputs") != std::string::npos);
+}
+
+#undef DUET_VERDICT
+
+} // namespace test_expression_is_equal
