@@ -14,6 +14,7 @@
 #include <charconv>
 #include <concepts>
 #include <cstddef>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -33,7 +34,11 @@ struct code_options {
   /// `float` instead of `double`, in C and C++.
   bool is_single_precision = false;
   /// Matrices row by row (as C's arrays of arrays); otherwise column by column (as Eigen, Fortran).
+  /// In C only: other languages have matrices.
   bool is_row_major = true;
+  /// Sines and cosines of an angle together by duet's algorithm instead of the library's, in C and
+  /// C++ of `double`: the same bits on every machine that does not fuse products with sums.
+  bool has_own_sines = false;
 };
 
 namespace detail {
@@ -60,244 +65,44 @@ namespace detail {
   return text + "f";
 }
 
-/// Keywords of C, C++, Python and MATLAB, and names that their libraries take or that look like
-/// numbers there.
+/// Keywords of C, C++, Python, MATLAB and Octave, and names that their libraries take or that look
+/// like numbers there.
 [[nodiscard]] inline const std::set<std::string>& reserved_names() {
-  static const std::set<std::string> names = {"alignas",
-                                              "alignof",
-                                              "and",
-                                              "and_eq",
-                                              "as",
-                                              "asm",
-                                              "assert",
-                                              "async",
-                                              "atomic",
-                                              "auto",
-                                              "await",
-                                              "bitand",
-                                              "bitor",
-                                              "bool",
-                                              "break",
-                                              "case",
-                                              "catch",
-                                              "char",
-                                              "class",
-                                              "classdef",
-                                              "co_await",
-                                              "co_return",
-                                              "co_yield",
-                                              "compl",
-                                              "complex",
-                                              "concept",
-                                              "const",
-                                              "consteval",
-                                              "constexpr",
-                                              "constinit",
-                                              "continue",
-                                              "decltype",
-                                              "def",
-                                              "default",
-                                              "del",
-                                              "delete",
-                                              "do",
-                                              "double",
-                                              "dynamic_cast",
-                                              "elif",
-                                              "else",
-                                              "elseif",
-                                              "end",
-                                              "end_try_catch",
-                                              "endfor",
-                                              "endfunction",
-                                              "endif",
-                                              "endswitch",
-                                              "endwhile",
-                                              "enum",
-                                              "except",
-                                              "explicit",
-                                              "export",
-                                              "extern",
-                                              "false",
-                                              "finally",
-                                              "float",
-                                              "for",
-                                              "friend",
-                                              "from",
-                                              "function",
-                                              "global",
-                                              "goto",
-                                              "if",
-                                              "import",
-                                              "imaginary",
-                                              "in",
-                                              "inline",
-                                              "int",
-                                              "is",
-                                              "lambda",
-                                              "long",
-                                              "mutable",
-                                              "namespace",
-                                              "new",
-                                              "noexcept",
-                                              "nonlocal",
-                                              "not",
-                                              "not_eq",
-                                              "nullptr",
-                                              "operator",
-                                              "or",
-                                              "or_eq",
-                                              "otherwise",
-                                              "parfor",
-                                              "pass",
-                                              "persistent",
-                                              "private",
-                                              "protected",
-                                              "public",
-                                              "raise",
-                                              "register",
-                                              "reinterpret_cast",
-                                              "requires",
-                                              "restrict",
-                                              "return",
-                                              "short",
-                                              "signed",
-                                              "sizeof",
-                                              "spmd",
-                                              "static",
-                                              "static_assert",
-                                              "static_cast",
-                                              "struct",
-                                              "switch",
-                                              "template",
-                                              "this",
-                                              "thread_local",
-                                              "throw",
-                                              "true",
-                                              "try",
-                                              "typedef",
-                                              "typeid",
-                                              "typename",
-                                              "typeof",
-                                              "union",
-                                              "unsigned",
-                                              "until",
-                                              "unwind_protect",
-                                              "using",
-                                              "virtual",
-                                              "void",
-                                              "volatile",
-                                              "wchar_t",
-                                              "while",
-                                              "with",
-                                              "xor",
-                                              "xor_eq",
-                                              "yield",
-                                              "None",
-                                              "True",
-                                              "False",
-                                              "NAN",
-                                              "INFINITY",
-                                              "NaN",
-                                              "nan",
-                                              "inf",
-                                              "Inf",
-                                              "eps",
-                                              "pi",
-                                              "e",
-                                              "i",
-                                              "j",
-                                              "I",
-                                              "J",
-                                              "np",
-                                              "math",
-                                              "ans",
-                                              "main",
-                                              "signgam",
-                                              "y0",
-                                              "y1",
-                                              "yn",
-                                              "j0",
-                                              "j1",
-                                              "jn",
-                                              "gamma",
-                                              "sin",
-                                              "cos",
-                                              "tan",
-                                              "asin",
-                                              "acos",
-                                              "atan",
-                                              "atan2",
-                                              "sinh",
-                                              "cosh",
-                                              "tanh",
-                                              "asinh",
-                                              "acosh",
-                                              "atanh",
-                                              "exp",
-                                              "exp2",
-                                              "expm1",
-                                              "log",
-                                              "log2",
-                                              "log10",
-                                              "log1p",
-                                              "logb",
-                                              "sqrt",
-                                              "cbrt",
-                                              "pow",
-                                              "hypot",
-                                              "erf",
-                                              "erfc",
-                                              "tgamma",
-                                              "lgamma",
-                                              "abs",
-                                              "fabs",
-                                              "floor",
-                                              "ceil",
-                                              "trunc",
-                                              "round",
-                                              "rint",
-                                              "fma",
-                                              "fmod",
-                                              "remainder",
-                                              "remquo",
-                                              "drem",
-                                              "fmax",
-                                              "fmin",
-                                              "fdim",
-                                              "frexp",
-                                              "ldexp",
-                                              "modf",
-                                              "scalb",
-                                              "significand",
-                                              "isnan",
-                                              "isinf",
-                                              "isfinite",
-                                              "signbit",
-                                              "copysign",
-                                              "div",
-                                              "index",
-                                              "time",
-                                              "exit",
-                                              "abort",
-                                              "free",
-                                              "malloc",
-                                              "select",
-                                              "std",
-                                              "Eigen",
-                                              "unix",
-                                              "linux",
-                                              "real",
-                                              "imag",
-                                              "numel",
-                                              "size",
-                                              "fix",
-                                              "rem",
-                                              "mod",
-                                              "max",
-                                              "min",
-                                              "sum",
-                                              "zeros",
-                                              "reshape"};
+  static const std::set<std::string> names = [] {
+    constexpr std::string_view words =
+        "alignas alignof and and_eq as asm assert async atomic auto await bitand bitor bool "
+        "break case catch char class classdef co_await co_return co_yield compl complex "
+        "concept const consteval constexpr constinit continue decltype def default del delete "
+        "do double dynamic_cast elif else elseif end end_try_catch endfor endfunction endif "
+        "endswitch endwhile enum except explicit export extern false finally float for friend "
+        "from function global goto if import imaginary in inline int is lambda long mutable "
+        "namespace new noexcept nonlocal not not_eq nullptr operator or or_eq otherwise parfor "
+        "pass persistent private protected public raise register reinterpret_cast requires "
+        "restrict return short signed sizeof spmd static static_assert static_cast struct "
+        "switch template this thread_local "
+        "throw true try typedef typeid typename typeof union unsigned until unwind_protect "
+        "using virtual void volatile wchar_t while with xor xor_eq yield None True False NAN "
+        "INFINITY NaN nan inf Inf eps pi e i j I J np math ans main signgam y0 y1 yn j0 j1 jn "
+        "gamma sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 "
+        "expm1 log log2 log10 log1p logb sqrt cbrt pow hypot erf erfc tgamma lgamma abs fabs "
+        "floor ceil trunc round rint fma fmod remainder remquo drem fmax fmin fdim frexp ldexp "
+        "modf scalb significand isnan isinf isfinite signbit copysign div index time exit "
+        "abort free malloc select std Eigen unix linux real imag numel size fix rem mod max "
+        "min sum zeros reshape char8_t char16_t char32_t arguments enumeration events methods "
+        "properties end_unwind_protect endparfor unwind_protect_cleanup endclassdef "
+        "endenumeration endevents endmethods endproperties endspmd endarguments NA gammaln "
+        "nthroot sign errno stdin stdout stderr NULL EOF BUFSIZ HUGE HUGE_VAL OVERFLOW "
+        "UNDERFLOW DOMAIN SING PLOSS TLOSS near far error single i386 sincos exp10 pow10 "
+        "nearbyint lrint llrint lround llround ilogb nextafter nexttoward scalbn scalbln "
+        "finite lgamma_r isreal functools Fraction";
+    std::set<std::string> result;
+    for (std::size_t begin = 0; begin < words.size();) {
+      const std::size_t end = std::min(words.find(' ', begin), words.size());
+      result.emplace(words.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    return result;
+  }();
   return names;
 }
 
@@ -339,9 +144,13 @@ namespace detail {
 /// Names that differ from each other and from reserved ones.
 class name_table {
 public:
-  /// The name, with underscores behind it as long as it is taken.
+  /// The name, with underscores behind it as long as it is taken, and x before one that languages
+  /// or helper functions reserve.
   std::string add(const std::string& name) {
     std::string result = plain_name(name);
+    if (result.rfind('_', 0) == 0 || result.rfind("duet_", 0) == 0) {
+      result.insert(0, "x");
+    }
     while (reserved_names().count(result) > 0 || taken_.count(result) > 0) {
       result += "_";
     }
@@ -433,7 +242,15 @@ struct code_body {
   std::vector<std::string> outputs; ///< of each number of the outputs, in order
   int temporaries = 0;              ///< numbers that have names of their own
   std::set<int> stumpff;            ///< orders of the Stumpff functions in it
-  bool has_arc_ratio = false;
+  std::set<operation> functions;    ///< functions, conditions and choices in it
+  bool has_sine_pairs = false;      ///< of the language's own
+};
+
+/// A language that can take sine and cosine of an angle in one statement.
+template <class L>
+concept HasSinePairs = requires(const L& language) {
+  { language.has_own_sines() } -> std::same_as<bool>;
+  { language.sine_pair(std::string(), std::string(), std::string()) } -> std::same_as<std::string>;
 };
 
 /// Writes each node as one statement, or, where it is used once and the line has room, into that
@@ -456,6 +273,8 @@ template <CodeLanguage Language>
   }
   code_body body;
   std::vector<bound_text> texts(needed.size());
+  std::map<int, std::array<std::string, 2>> pairs; // sine and cosine by the node of the angle
+  const auto new_name = [&] { return prefix + std::to_string(++body.temporaries); };
   for (int i = 0; i < g.size(); ++i) {
     const graph_node& n = g[i];
     bound_text& text = texts[std::size_t(i)];
@@ -479,7 +298,22 @@ template <CodeLanguage Language>
         body.stumpff.insert(order);
       }
     }
-    body.has_arc_ratio = body.has_arc_ratio || n.what == operation::arc_ratio;
+    if constexpr (HasSinePairs<Language>) {
+      if (language.has_own_sines() && (n.what == operation::sin || n.what == operation::cos)) {
+        const auto [pair, is_new] = pairs.try_emplace(n.operands[0]);
+        if (is_new) {
+          pair->second = {new_name(), new_name()};
+          body.statements.push_back(
+              language.sine_pair(x[0].text, pair->second[0], pair->second[1]));
+          body.has_sine_pairs = true;
+        }
+        text = {pair->second[n.what == operation::sin ? 0 : 1]};
+        continue;
+      }
+    }
+    if (n.what > operation::quotient) {
+      body.functions.insert(n.what);
+    }
     if (is_condition(n.what)) {
       text = language.condition(n, x);
     } else if (n.what == operation::select) {
@@ -493,7 +327,7 @@ template <CodeLanguage Language>
     const bool is_inlined = uses[std::size_t(i)] == 1 && text.text.size() <= max_inlined &&
                             n.what != operation::sin && n.what != operation::cos;
     if (!is_inlined) {
-      const std::string name = prefix + std::to_string(++body.temporaries);
+      const std::string name = new_name();
       body.statements.push_back(language.assignment(name, text.text, is_condition(n.what)));
       text = {name};
     }
@@ -511,15 +345,15 @@ template <CodeLanguage Language>
   return x.kind == shape::matrix && is_row_major ? k % x.rows * x.columns + k / x.rows : k;
 }
 
-/// A sentence on a value, for comments.
-[[nodiscard]] inline std::string described(const named_value& x, bool is_row_major) {
+/// A sentence on a value, for comments. \param order  of matrices, behind a comma
+[[nodiscard]] inline std::string described(const named_value& x, const std::string& order) {
   switch (x.kind) {
   case shape::scalar:
     return "scalar";
   case shape::matrix:
-    return x.columns == 1 ? "vector of " + std::to_string(x.rows)
-                          : std::to_string(x.rows) + " x " + std::to_string(x.columns) +
-                                " matrix, " + (is_row_major ? "row by row" : "column by column");
+    return x.columns == 1
+               ? "vector of " + std::to_string(x.rows)
+               : std::to_string(x.rows) + " x " + std::to_string(x.columns) + " matrix" + order;
   case shape::quaternion:
     return "quaternion w, x, y, z";
   case shape::dual_vector:
@@ -530,21 +364,88 @@ template <CodeLanguage Language>
   return {};
 }
 
+/// Text that ends no comment and no line.
+[[nodiscard]] inline std::string comment_text(std::string text) {
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char before = k > 0 ? text[k - 1] : ' ';
+    if (static_cast<unsigned char>(text[k]) < ' ' || text[k] == '\\') {
+      text[k] = ' ';
+    } else if ((text[k] == '/' && before == '*') || (text[k] == '*' && before == '/')) {
+      text[k] = ' ';
+    } else if (text[k] == '"') {
+      text[k] = '\'';
+    }
+  }
+  return text;
+}
+
+/// The names of a function's inputs and outputs, and those that are taken.
+struct code_names {
+  name_table table;
+  std::string function;
+  std::vector<std::string> inputs, outputs;
+
+  /// \param others  names that the code of the function takes, too
+  /// \throws invalid_input for a name that is no identifier
+  code_names(const formula_graph& f, const std::string& name, const char* emitter,
+             const std::vector<std::string>& others = {})
+      : function(name) {
+    duet::detail::require(!name.empty() && plain_name(name) == name && name[0] != '_' &&
+                              reserved_names().count(name) == 0,
+                          "duet: ", emitter, ": '", name, "' is no name for a function");
+    static_cast<void>(table.add(name));
+    for (const std::string& other : others) {
+      static_cast<void>(table.add(other));
+    }
+    for (const named_value& x : f.inputs()) {
+      inputs.push_back(table.add(x.name));
+    }
+    for (const named_value& y : f.outputs()) {
+      outputs.push_back(table.add(y.name));
+    }
+  }
+};
+
+/// True if an output needs a number of the input.
+[[nodiscard]] inline bool is_used(const named_value& x, const std::vector<bool>& needed) {
+  return std::any_of(x.nodes.begin(), x.nodes.end(),
+                     [&](int node) { return needed[std::size_t(node)]; });
+}
+
+/// The texts of all numbers of the inputs. \param at  (value, name, row, column) of a number
+template <class F>
+[[nodiscard]] std::vector<std::string> input_texts(const formula_graph& f, const code_names& names,
+                                                   const F& at) {
+  std::vector<std::string> result;
+  for (std::size_t k = 0; k < f.inputs().size(); ++k) {
+    const named_value& x = f.inputs()[k];
+    for (int i = 0; i < x.rows * x.columns; ++i) {
+      result.push_back(x.kind == shape::scalar ? names.inputs[k]
+                                               : at(x, names.inputs[k], i % x.rows, i / x.rows));
+    }
+  }
+  return result;
+}
+
 /// The sentences of the comment, without the marks of a comment.
-[[nodiscard]] inline std::vector<std::string>
-comment_lines(const formula_graph& f, const std::string& name, const code_options& options,
-              const std::vector<std::string>& inputs, const std::vector<std::string>& outputs) {
+/// \param describe  the sentence on a value
+template <class Describe>
+[[nodiscard]] std::vector<std::string>
+comment_lines(const formula_graph& f, const code_names& names, const code_options& options,
+              const Describe& describe) {
   std::vector<std::string> lines = {
-      name + (options.description.empty() ? "" : ": " + options.description), ""};
+      names.function +
+          (options.description.empty() ? "" : ": " + comment_text(options.description)),
+      ""};
   const auto list = [&](const char* title, const std::vector<named_value>& values,
-                        const std::vector<std::string>& names) {
+                        const std::vector<std::string>& texts) {
     lines.push_back(title);
     for (std::size_t k = 0; k < values.size(); ++k) {
-      lines.push_back("  " + names[k] + ": " + described(values[k], options.is_row_major));
+      lines.push_back("  " + texts[k] + ": " + describe(values[k]));
     }
   };
-  list("Inputs:", f.inputs(), inputs);
-  list("Outputs:", f.outputs(), outputs);
+  list("Inputs:", f.inputs(), names.inputs);
+  list("Outputs:", f.outputs(), names.outputs);
   const operation_counts n = count_operations(f);
   std::string counts;
   const auto count = [&](int number, const std::string& one, const char* ending = "s") {
@@ -560,7 +461,28 @@ comment_lines(const formula_graph& f, const std::string& name, const code_option
   count(n.functions, "other function");
   count(n.choices, "choice");
   lines.push_back("Operations: " + (counts.empty() ? "none" : counts) + ".");
+  lines.push_back("Written by duet " DUET_VERSION_STRING "; free of licence conditions.");
   return lines;
+}
+
+/// Texts with commas between them.
+[[nodiscard]] inline std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) {
+    text += (text.empty() ? "" : ", ") + part;
+  }
+  return text;
+}
+
+/// Lines behind a margin.
+[[nodiscard]] inline std::string indented(const std::vector<std::string>& lines,
+                                          const std::string& margin = "  ") {
+  std::string text;
+  for (const std::string& line : lines) {
+    const std::string whole = margin + line;
+    text += whole.substr(0, whole.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
 }
 
 /// The coefficients 1/(2k+order)! with which c_order is summed, and their number.
@@ -576,6 +498,15 @@ comment_lines(const formula_graph& f, const std::string& name, const code_option
     factorial *= (2.0L * k + order + 1) * (2.0L * k + order + 2);
   }
   return result;
+}
+
+/// 1/n!
+[[nodiscard]] inline double inverse_factorial(int n) {
+  double factorial = 1;
+  for (int i = 2; i <= n; ++i) {
+    factorial *= i;
+  }
+  return 1 / factorial;
 }
 
 /// Every other term from the `first` on by Horner's rule, in a variable `square`.

@@ -27,11 +27,11 @@ enum class shape {
 
 /// An input or output of a formula.
 struct named_value {
-  std::string name;           ///< its name
-  shape kind = shape::scalar; ///< its kind
-  int rows = 1;               ///< of a matrix; otherwise how many numbers it has
-  int columns = 1;            ///< of a matrix; otherwise 1
-  std::vector<int> nodes;     ///< its numbers, by their nodes
+  std::string name;            ///< its name
+  shape kind = shape::scalar;  ///< its kind
+  int rows = 1;                ///< of a matrix; otherwise how many numbers it has
+  int columns = 1;             ///< of a matrix; otherwise 1
+  std::vector<int> nodes = {}; ///< its numbers, by their nodes
 };
 
 /// A formula as data: a function of named inputs with named outputs, by operations on real numbers
