@@ -13,9 +13,11 @@
 /// (spline/split_bspline.hpp), CSV (core/text/csv.hpp), the planner of the lecture notes
 /// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp),
 /// formulas as data (expression/graph/trace.hpp, expression/graph/reverse.hpp), proofs of equality
-/// (expression/graph/is_equal.hpp) and formulas as code (expression/code/c.hpp), chains and curves
-/// as formulas (kinematics/chain_formula.hpp, spline/curve_formula.hpp), and `interop/`. The
-/// headers of the compiled libraries are in duet/io.hpp and duet/robotics.hpp.
+/// (expression/graph/is_equal.hpp), formulas as code of C, C++, Python and MATLAB
+/// (expression/code/c.hpp, expression/code/cpp.hpp, expression/code/python.hpp,
+/// expression/code/matlab.hpp), chains and curves as formulas (kinematics/chain_formula.hpp,
+/// spline/curve_formula.hpp), and `interop/`. The headers of the compiled libraries are in
+/// duet/io.hpp and duet/robotics.hpp.
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/numeric_derivative.hpp>
