@@ -8,6 +8,9 @@
 #include <duet/core/version.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/expression/code/c.hpp>
+#include <duet/expression/code/cpp.hpp>
+#include <duet/expression/code/matlab.hpp>
+#include <duet/expression/code/python.hpp>
 #include <duet/io/urdf.hpp>
 #include <duet/kinematics/chain_formula.hpp>
 
@@ -34,13 +37,14 @@ constexpr const char* usage =
 
 po::options_description options() {
   po::options_description result(usage);
-  result.add_options()("language", po::value<std::string>()->default_value("c"), "c")(
+  result.add_options()("language", po::value<std::string>()->default_value("c"),
+                      "c, cpp (Eigen), python (NumPy) or matlab (Octave)")(
       "frame", po::value<std::string>()->default_value("spatial"),
       "axes of the Jacobian: spatial, body or hybrid")(
       "name", po::value<std::string>()->default_value("forward_kinematics"),
       "name of the function")("output", po::value<std::string>(),
                               "file to write (default: standard output)")(
-      "float", "single precision")("no-jacobian", "without the Jacobian")(
+      "float", "single precision, in C and C++")("no-jacobian", "without the Jacobian")(
       "jacobian-rate", "with the derivative of the Jacobian by time")("help", "this text")(
       "version", "version of duet");
   return result;
@@ -66,7 +70,17 @@ std::string code_in(const std::string& language, const duet::expression::formula
   if (language == "c") {
     return duet::expression::to_c(f, name, how);
   }
-  throw std::runtime_error("--language is '" + language + "' (expected c)");
+  if (language == "cpp") {
+    return duet::expression::to_cpp(f, name, how);
+  }
+  if (language == "python") {
+    return duet::expression::to_python(f, name, how);
+  }
+  if (language == "matlab") {
+    return duet::expression::to_matlab(f, name, how);
+  }
+  throw std::runtime_error("--language is '" + language +
+                           "' (expected c, cpp, python or matlab)");
 }
 
 /// The sentences of the function's comment: links, joints in order, units.

@@ -76,11 +76,13 @@ namespace detail {
   std::size_t next = 0;
   for (std::size_t k = 0; k < f.outputs().size(); ++k) {
     const named_value& y = f.outputs()[k];
+    std::vector<std::string> stores(std::size_t(y.rows * y.columns)); // in the order in memory
     for (int i = 0; i < y.rows * y.columns; ++i) {
-      text += "  " +
-              (y.kind == shape::scalar ? "*" + names.outputs[k] : names.outputs[k] + index(y, i)) +
-              " = " + body.outputs[next++] + ";\n";
+      stores[std::size_t(index_in_code(y, i, options.is_row_major))] =
+          (y.kind == shape::scalar ? "*" + names.outputs[k] : names.outputs[k] + index(y, i)) +
+          " = " + body.outputs[next++] + ";";
     }
+    text += indented(stores);
   }
   text += unused_inputs(f, names) + "}\n";
   return "#include <math.h>\n\n" + language.helpers(body) +

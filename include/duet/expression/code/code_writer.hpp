@@ -427,6 +427,24 @@ template <class F>
   return result;
 }
 
+/// Lines of at most 96 characters, broken at spaces.
+[[nodiscard]] inline std::vector<std::string> wrapped(const std::vector<std::string>& lines) {
+  constexpr std::size_t width = 96;
+  std::vector<std::string> result;
+  for (std::string line : lines) {
+    while (line.size() > width) {
+      const std::size_t space = line.rfind(' ', width);
+      if (space == std::string::npos || space < 4) {
+        break;
+      }
+      result.push_back(line.substr(0, space));
+      line = "    " + line.substr(space + 1);
+    }
+    result.push_back(line);
+  }
+  return result;
+}
+
 /// The sentences of the comment, without the marks of a comment.
 /// \param describe  the sentence on a value
 template <class Describe>
@@ -462,7 +480,7 @@ comment_lines(const formula_graph& f, const code_names& names, const code_option
   count(n.choices, "choice");
   lines.push_back("Operations: " + (counts.empty() ? "none" : counts) + ".");
   lines.push_back("Written by duet " DUET_VERSION_STRING "; free of licence conditions.");
-  return lines;
+  return wrapped(lines);
 }
 
 /// Texts with commas between them.
