@@ -516,13 +516,87 @@ private:
   const jacobian_options& options_;
 };
 
+/// Numbers that vanish where f is zero or an identity.
+[[nodiscard]] inline Eigen::VectorXd deviation_of(const jacobian_problem& problem,
+                                                  Eigen::VectorXd value) {
+  for (const jacobian_part& r : problem.results) {
+    if (r.is_motion()) {
+      const Eigen::Vector3d angle = rotation_vector(rotation_at(r, value));
+      value[r.state] = 0;
+      value.segment<3>(r.state + 1) = angle;
+    }
+  }
+  return value;
+}
+
+/// Inputs at which f is nearly zero, where small rotations between arguments and constants lead to
+/// branches of logarithms: found by Newton's method from some points, where f is smooth.
+///
+/// \param contains  (coordinates): whether it is an input
+template <class Contains, class StateOf>
+[[nodiscard]] std::vector<coordinates>
+points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates>& points,
+                  const Contains& contains, const StateOf& state_of) {
+  std::vector<coordinates> found;
+  const auto moved = [](coordinates point, double factor, const Eigen::VectorXd& step) {
+    for (std::size_t i = 0; i < point.size(); ++i) {
+      point[i] += factor * step[Eigen::Index(i)];
+    }
+    return point;
+  };
+  const auto deviation = [&](const coordinates& point) {
+    return deviation_of(problem, problem.truth(state_of(point)).value);
+  };
+  const auto jacobian = [&](const coordinates& point) {
+    return Eigen::MatrixXd(problem.truth(state_of(point)).jacobian.template cast<double>());
+  };
+  const std::size_t starts = 3, first = points.size() / 2; // random ones
+  const auto search = [&](const coordinates& start) {
+    coordinates point = start;
+    const Eigen::Index size = Eigen::Index(point.size());
+    Eigen::VectorXd f = deviation(point), away = Eigen::VectorXd::Zero(size);
+    for (int step = 0; step < 8 && f.norm() > 1e-11; ++step) {
+      Eigen::MatrixXd slope(f.size(), size);
+      for (Eigen::Index i = 0; i < size; ++i) {
+        slope.col(i) = (deviation(moved(point, 1e-6, Eigen::VectorXd::Unit(size, i))) - f) / 1e-6;
+      }
+      const Eigen::VectorXd change = slope.completeOrthogonalDecomposition().solve(f);
+      point = moved(std::move(point), -1 / std::max(1., change.norm()), change);
+      away += change / std::max(1., change.norm());
+      if (!change.allFinite() || !contains(point)) {
+        return;
+      }
+      f = deviation(point);
+    }
+    away /= std::max(largest_entry(away), 1e-9);
+    const Eigen::MatrixXd here = jacobian(point);
+    if (f.norm() <= 1e-11 &&
+        largest_entry(jacobian(moved(point, 1e-6, away)) - here) < 1e-3 * largest_entry(here)) {
+      for (const double distance : {0., 1e-9, 1e-6, 1e-4, 1e-3, 8e-3}) {
+        const coordinates next = moved(point, distance, away);
+        if (contains(next)) {
+          found.push_back(next);
+        }
+      }
+    }
+  };
+  for (std::size_t n = 0; n < starts && found.empty() && first < points.size(); ++n) {
+    // f may refuse an input.
+    catching<void>([&] { search(points[first + (points.size() - first) * n / starts]); }, [] {});
+  }
+  return found;
+}
+
 /// \param inputs  with `describe` and `contains` of coordinates, which `state_of` makes a state
 template <class Inputs, class StateOf>
 [[nodiscard]] jacobian_judgement
 judged_jacobian(const std::string& label, const jacobian_problem& problem,
-                const std::vector<coordinates>& points, const Inputs& inputs,
-                const StateOf& state_of, const jacobian_options& options) {
+                std::vector<coordinates> points, const Inputs& inputs, const StateOf& state_of,
+                const jacobian_options& options) {
   const jacobian_judge judge(problem, options);
+  const auto contains = [&](const coordinates& point) { return inputs.contains(point); };
+  const std::vector<coordinates> more = points_near_zeros(problem, points, contains, state_of);
+  points.insert(points.begin(), more.begin(), more.end());
   jacobian_judgement result;
   result.label = label;
   result.samples = points.size();
@@ -586,17 +660,15 @@ judged_jacobian(const std::string& label, const jacobian_problem& problem,
             ? wrong[first_slip]
             : std::size_t(std::find(verdicts.begin(), verdicts.end(), result.outcome) -
                           verdicts.begin());
-    const coordinates simplest = simplified(
-        points[worst], [&](const coordinates& point) { return inputs.contains(point); },
-        [&](const coordinates& point) {
-          jacobian_sample s = judge.sample_at(state_of(point));
-          const verdict v = judge.judged(s);
-          const bool is_disagreement =
-              result.outcome == verdict::disagrees || result.outcome == verdict::loses_precision;
-          return is_disagreement ? v == verdict::disagrees &&
-                                       judge.error_of(s) > 1e-6 * judge.error_of(samples[worst])
-                                 : v == result.outcome;
-        });
+    const coordinates simplest = simplified(points[worst], contains, [&](const coordinates& point) {
+      jacobian_sample s = judge.sample_at(state_of(point));
+      const verdict v = judge.judged(s);
+      const bool is_disagreement =
+          result.outcome == verdict::disagrees || result.outcome == verdict::loses_precision;
+      return is_disagreement ? v == verdict::disagrees &&
+                                   judge.error_of(s) > 1e-6 * judge.error_of(samples[worst])
+                             : v == result.outcome;
+    });
     const jacobian_sample s = judge.sample_at(state_of(simplest));
     const auto [row, column] = judge.position_of(s);
     result.simplest =
