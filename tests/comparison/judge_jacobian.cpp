@@ -115,6 +115,13 @@ TEST_CASE("a pinhole camera: slips in blocks, and in factors of the chain") {
           if (s == 15) {
             j.leftCols<3>().swap(j.middleCols<3>(3));
           }
+          if (s == 16) { // one use of the outer factor
+            by_point(0, 2) *= -1;
+            j.middleCols<3>(6) = by_point * r;
+          }
+          if (s == 17) {
+            j.leftCols<3>() = by_point * -r * hat(x);
+          }
           return j;
         },
         inputs, {.samples = 20});
@@ -134,7 +141,9 @@ TEST_CASE("a pinhole camera: slips in blocks, and in factors of the chain") {
                {12, "multiplied by Ad(q) from the right", "d f / d t"},
                {13, "half angle for full angle: factor 1/2", "d f / d q"},
                {14, "scaled by a", "d f / d a"},
-               {15, "permuted or shifted: columns 3, 4, 5, 0, 1, 2", "d f"}},
+               {15, "permuted or shifted: columns 3, 4, 5, 0, 1, 2", "d f"},
+               {16, "sign", "entry (0, 2) of d f / d (q p"},
+               {17, "moment arm about another point: (q p + t) is in its place", "d f / d q"}},
               {{1, 4}, {6, 11}, {13, 14}});
 }
 
@@ -311,6 +320,9 @@ TEST_CASE("a gyroscope: slips in the rotation by a rate less its bias") {
                  : s == 2 ? Matrix3d(back * h * left_jacobian(r))
                  : s == 3 ? Matrix3d(back * h * right_jacobian(vector3<double>(h * w)))
                  : s == 4 ? Matrix3d(by_b / h)
+                 : s == 5 ? Matrix3d(back * h * right_jacobian_inverse(r))
+                 : s == 6 ? Matrix3d(back * h * right_jacobian(vector3<double>(r / 2)))
+                 : s == 7 ? Matrix3d(outer * inner)
                           : by_b;
           Eigen::Matrix<double, 3, 10> j;
           j << outer, -back * inner, by_b, -back * (w - b);
@@ -322,7 +334,10 @@ TEST_CASE("a gyroscope: slips in the rotation by a rate less its bias") {
               {{1, "right only at the identity of (exp((w - b) h))", "d (exp((w - b) h)) / d b"},
                {2, "adjoint: multiplied by Ad((exp((w - b) h)))", "d (exp((w - b) h)) / d b"},
                {3, "evaluated with 0 for b", "d (exp((w - b) h)) / d b"},
-               {4, "scaled by h^-1", "d f / d b"}},
+               {4, "scaled by h^-1", "d f / d b"},
+               {5, "twice (Jacobian for its inverse)", "d (exp((w - b) h)) / d b"},
+               {6, "evaluated with half of h, and the factor right", "d (exp((w - b) h)) / d b"},
+               {7, "multiplied by Ad(exp(f)) from the left", "d f / d b"}},
               {});
 }
 
@@ -349,6 +364,14 @@ TEST_CASE("derivatives by stored numbers of rotations and poses, in both orders 
             } else {
               j << Matrix3d::Identity(), by_v, by_w, rotation_matrix(q);
             }
+            if (s == 6) { // the translation's columns are right
+              j.middleCols<4>(3) << Matrix3d((side == perturbation::right ? -1 : 1) *
+                                             rotation_matrix(q) * hat(p)),
+                  Vector3d::Zero();
+              if (side == perturbation::left) {
+                j.middleCols<3>(3) = -hat(rotation_matrix(q) * p);
+              }
+            }
             if (s == 5) {
               j.middleCols<4>(3) << (side == perturbation::right
                                          ? Matrix3d(-rotation_matrix(q) * hat(p))
@@ -367,9 +390,205 @@ TEST_CASE("derivatives by stored numbers of rotations and poses, in both orders 
                  {3, "the vector part of A x p", "column 0 of d f / d A, by stored numbers"},
                  {4, order == quaternion_order::wxyz ? "w last for w first" : "w first for w last",
                   "d / d A"},
-                 {5, "missing chart factor", "d / d A"}},
+                 {5, "missing chart factor", "d / d A"},
+                 {6, "missing chart factor", "d / d A"}},
                 {{3, 4}});
   }
+}
+
+TEST_CASE("an accelerometer: terms with constants that the function has captured") {
+  const Vector3d arm(.4, -.7, .2);
+  const auto f = [arm](const auto& w, const auto& b) {
+    using S = std::decay_t<decltype(w[0] + b[0])>;
+    const vector3<S> rate(w[0], w[1], w[2]), r{S(arm[0]), S(arm[1]), S(arm[2])};
+    const vector3<S> a = rate.cross(vector3<S>(rate.cross(r)));
+    return vector3<S>(a[0] + b[0], a[1] + b[1], a[2] + b[2]);
+  };
+  const auto inputs = sampler(vectors<3>{2}, vectors<3>{1}).named("w", "b");
+  const auto judge = [&](slip s) {
+    return judge_jacobian("accelerometer", f,
+                          [s, arm](const Vector3d& w, const Vector3d&) {
+                            const Matrix3d one = Matrix3d::Identity();
+                            const Matrix3d by_w = (s == 1 ? -1 : 1) * w.dot(arm) * one +
+                                                  (s == 2 ? -1 : 1) * w * arm.transpose() -
+                                                  (s == 3 ? 1 : 2) * arm * w.transpose();
+                            const Matrix3d by_b =
+                                Vector3d(1, s == 5 ? 1.3 : 1, s == 5 ? .7 : 1).asDiagonal();
+                            Eigen::Matrix<double, 3, 6> j;
+                            j << (s == 4 ? Matrix3d(-hat(w) * hat(arm)) : by_w), by_b;
+                            return j;
+                          },
+                          inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "(w . c) 1, c = (-0.8, 1.4, -0.4)", "d f / d w"},
+               {2, "w c^T", "d f / d w"},
+               {3, "c w^T", "d f / d w"},
+               {4, "the cross matrix of w x c", "d f / d w"}},
+              {{1, 2}, {2, 3}, {5, 0}});
+}
+
+TEST_CASE("a hand and an eye: sums of an identity matrix and an adjoint") {
+  const auto f = [](const auto& x, const auto& a, const auto& b) { return conj(x * b) * (a * x); };
+  const auto inputs =
+      sampler(rigid_motions{}, rigid_motions{}, rigid_motions{}).named("X", "A", "B");
+  const auto judge = [&](slip s) {
+    return judge_jacobian("hand and eye", f,
+                          [s](const pose_type& x, const pose_type& a, const pose_type& b) {
+                            const pose_type e = conj(x * b) * (a * x);
+                            const MatrixXd one = MatrixXd::Identity(6, 6),
+                                           m = Ad(pose_type(conj(e) * conj(b)));
+                            MatrixXd by_b = -Ad(pose_type(conj(e)));
+                            if (s == 4) { // in other axes of the result
+                              const Matrix3d r = rotation_matrix(rotation(a));
+                              by_b.topRows(3) = (r * by_b.topRows(3)).eval();
+                              by_b.bottomRows(3) = (r * by_b.bottomRows(3)).eval();
+                            }
+                            const MatrixXd by_x =
+                                s == 1   ? MatrixXd(one + m)
+                                : s == 2 ? MatrixXd(one - Ad(pose_type(conj(b) * conj(e))))
+                                : s == 3 ? MatrixXd(one - Ad(pose_type(conj(b))))
+                                         : MatrixXd(one - m);
+                            return std::tuple(by_x, MatrixXd(Ad(pose_type(conj(x)))), by_b);
+                          },
+                          inputs, {.samples = 10});
+  };
+  check_slips(judge,
+              {{1, "sign of one summand: all but the identity matrix", "d f / d X"},
+               {2, "exchanged factors: multiplied by Ad(f)", "d f / d X"},
+               {3, "all but the identity matrix multiplied by Ad(f) from the left", "d f / d X"},
+               {4, "multiplied by Ad(A.rotation) from the left", "d f / d B"}},
+              {});
+}
+
+TEST_CASE("a moved twist: halves of vectors, and slips before the change of axes") {
+  const auto f = [](const auto& t, const auto& xi) {
+    const auto q = rotation(t);
+    const auto p = translation(t);
+    using S = std::decay_t<decltype(q.w() * xi[0])>;
+    const vector3<S> v(rotate(q, vector3<S>(xi[0], xi[1], xi[2]))),
+        w(rotate(q, vector3<S>(xi[3], xi[4], xi[5])));
+    const vector3<S> u = vector3<S>(p[0], p[1], p[2]).cross(w);
+    Eigen::Matrix<S, 6, 1> result;
+    result << v[0] + u[0], v[1] + u[1], v[2] + u[2], w[0], w[1], w[2];
+    return result;
+  };
+  const auto inputs = sampler(rigid_motions{}, vectors<6>{1}).named("T", "xi");
+  const auto judge = [&](slip s) {
+    return judge_jacobian("moved twist", f,
+                          [s](const pose_type& t, const Eigen::Matrix<double, 6, 1>& xi) {
+                            const Matrix3d v = hat(xi.head<3>()), w = hat(xi.tail<3>());
+                            MatrixXd inner = MatrixXd::Zero(6, 6);
+                            inner.topLeftCorner<3, 3>() = s == 1 ? v : w;
+                            inner.bottomRightCorner<3, 3>() = w;
+                            (s == 2 ? inner.bottomLeftCorner<3, 3>()
+                                    : inner.topRightCorner<3, 3>()) = v;
+                            const MatrixXd outer = Ad(t);
+                            return std::tuple(MatrixXd(-outer * inner), outer);
+                          },
+                          inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "another vector: xi[0..2] for [3..5]", "d f[0..2] / d T.translation"},
+               {2, "rows and columns [omega; v] for [v; omega]", "d f / d T, in the axes of T"}},
+              {{1, 2}});
+}
+
+TEST_CASE("rotation between two rotations and a captured one: branches where the result is zero") {
+  const rotation_type m = from_rotation_vector(Vector3d(.3, -.2, .4));
+  const auto f = [m](const auto& a, const auto& b) {
+    using S = std::decay_t<decltype(a.w() * b.w())>;
+    const quaternion<S> known{S(m.w()), S(m.x()), S(m.y()), S(m.z())};
+    return rotation_vector(quaternion<S>(conj(known) * (conj(a) * b)));
+  };
+  const auto inputs = sampler(rotations{3.1}, rotations{3.1})
+                          .named("a", "b")
+                          .where([m](const auto& a, const auto& b) {
+                            return rotation_vector(conj(m) * (conj(a) * b)).norm() < 3.05;
+                          });
+  const auto judge = [&](slip s) {
+    return judge_jacobian("to a measured one", f,
+                          [s, m](const rotation_type& a, const rotation_type& b) {
+                            const rotation_type q = conj(m) * (conj(a) * b);
+                            const Vector3d e = rotation_vector(q);
+                            const Matrix3d right = right_jacobian_inverse(e);
+                            const Matrix3d linear = Matrix3d::Identity() + .5 * hat(e);
+                            const Matrix3d back = rotation_matrix(conj(b) * a);
+                            Eigen::Matrix<double, 3, 6> j;
+                            j << -right * (s == 4 ? rotation_matrix(a).transpose() : back),
+                                (s == 1 && e.norm() < 1e-3  ? Matrix3d(linear - hat(e))
+                                 : s == 2 && q.w() < 0      ? Matrix3d(-right)
+                                 : s == 3                   ? linear
+                                 : s == 5 && e.norm() > 2.9 ? linear
+                                                            : right);
+                            return j;
+                          },
+                          inputs, {.samples = 60});
+  };
+  check_slips(judge,
+              {{1, "branch of small values: length of f", "d f / d b"},
+               {2, "sheet of the double cover only: of a", "d f / d b"},
+               {3, "wrong coefficient: a multiple of the squared cross matrix of f", "d f / d b"},
+               {4, "another rotation: that of a^-1", "d (a^-1 b) / d a"},
+               {5, "branch beside a half turn: length of f", "d f / d b"}},
+              {{3, 4}});
+}
+
+TEST_CASE("a rotated vector: coefficients and axes in factors, and two slips that vanish at once") {
+  const auto f = [](const auto& r, const auto& p) { return rotate(from_rotation_vector(r), p); };
+  const auto inputs = sampler(vectors<3>{1.8}, vectors<3>{2}).named("r", "p");
+  const auto judge = [&](slip s) {
+    return judge_jacobian("rotated vector", f,
+                          [s](const Vector3d& r, const Vector3d& p) {
+                            const Matrix3d a = rotation_matrix(from_rotation_vector(r));
+                            Matrix3d j = right_jacobian(r);
+                            j += (s == 1 ? r.norm() : 0) * hat(r) * hat(r);
+                            Eigen::Matrix<double, 3, 6> result;
+                            result << (s == 2   ? Matrix3d(-hat(p) * a * j)
+                                       : s == 3 ? Matrix3d(-a * hat(p + Vector3d(1, 2, 3)) * j)
+                                                : Matrix3d(-a * hat(p) * j)),
+                                (s == 4 ? Matrix3d(a.transpose() + 2 * hat(r.cross(p))) : a);
+                            return result;
+                          },
+                          inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "wrong coefficient: a multiple of the squared cross matrix of r", "d r"},
+               {2, "exchanged factors: multiplied by Ad(exp(r))^-1", "d f / d r"},
+               {3, "(exp(r)) times the cross matrix of c, c = (-1, -2, -3)", "d f / d (exp(r))"}},
+              {{4, 0}});
+}
+
+TEST_CASE("formulas by stored numbers for a vector that is no argument") {
+  const auto f = [](const auto& q, const auto& a, const auto& b, const auto& h) {
+    using S = std::decay_t<decltype(q.w() * a[0] * b[0] * h)>;
+    return rotate(conj(q), vector3<S>(a[0] - b[0] * h, a[1] - b[1] * h, a[2] - b[2] * h));
+  };
+  const auto inputs = sampler(rotations{}, vectors<3>{2}, vectors<3>{1}, real_numbers{.1, 1})
+                          .named("q", "a", "b", "h");
+  const auto judge = [&](slip s) {
+    return judge_jacobian(
+        "displacement", f,
+        [s](const rotation_type& q, const Vector3d& a, const Vector3d& b, double h) {
+          const Vector3d z = a - b * h;
+          const Vector3d v = (s == 2 ? -1 : 1) * Vector3d(q.x(), q.y(), q.z());
+          const Matrix3d back = rotation_matrix(q).transpose();
+          Matrix3d by_v = v.dot(z) * Matrix3d::Identity() + v * z.transpose() - z * v.transpose() +
+                          q.w() * hat(z);
+          by_v(1, 0) += s == 3 ? q.w() * (z[0] - z[2]) : 0;
+          Eigen::Matrix<double, 3, 11> j;
+          j << 2 * (q.w() * z + (s == 1 ? 1 : -1) * v.cross(z)),
+              2 * (s == 4 ? Matrix3d(by_v.transpose()) : by_v), back, -h * back, -back * b;
+          return j;
+        },
+        inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "the vector part of q x (q f)", "column 0 of d f / d q, by stored numbers"},
+               {2, "conjugate rotation", "d f / d q, by stored numbers"},
+               {3, "wrong index in one summand", "entry (1, 1) of d f / d q, by stored numbers"},
+               {4, "transposed", "d f / d q[1..3], by stored numbers"}},
+              {{1, 3}});
 }
 
 TEST_CASE("round-off of code over double is told from slips, also beside one") {

@@ -87,9 +87,14 @@ struct jacobian_sample {
                                                     const Eigen::VectorXd& state) {
   return normalized(load_quaternion(state.data() + part.state, quaternion_order::wxyz));
 }
-/// Pose that a state stores; of a rotation, about the origin.
+/// Pose that a state stores; of a rotation, about the origin; of a vector, the rotation by it, or
+/// by the last three of its numbers.
 [[nodiscard]] inline dual_quaternion<double> pose_at(const jacobian_part& part,
                                                      const Eigen::VectorXd& state) {
+  if (part.type == jacobian_part::kind::vector) {
+    return dual_quaternion<double>(
+        from_rotation_vector(vector3<double>(state.segment<3>(part.state + part.dimension - 3))));
+  }
   const quaternion<double> q = rotation_at(part, state);
   return part.type == jacobian_part::kind::pose
              ? pose(q, vector3<double>(state.segment<3>(part.state + 4)))

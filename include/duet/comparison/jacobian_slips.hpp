@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -38,10 +39,10 @@ public:
       try_other_points();
       try_parts_of_sums();
     }
+    try_summands();
     if (samples_[0].outer.size() == 0) {
       try_columns();
       try_constants();
-      try_summands();
       if (last_ == first_ && last_row_ == first_row_) {
         try_entry();
       }
@@ -56,6 +57,15 @@ public:
         }
         if (slips_.empty()) {
           try_chains();
+        }
+        if (slips_.empty()) {
+          try_other_arms();
+          try_axes_of_results();
+        }
+        for (const jacobian_slip& s : weak_) {
+          if (!slips_.empty()) {
+            accept(s.name, s.block);
+          }
         }
       }
     }
@@ -128,68 +138,46 @@ private:
             if (w != nullptr) {
               z.arguments.push_back(w);
             }
+            const auto offset_at = [is_pose, w, &m](const vector& x) -> Eigen::Vector3d {
+              return is_pose        ? Eigen::Vector3d(x.segment<3>(m.state + 4))
+                     : w != nullptr ? Eigen::Vector3d(x.segment<3>(w->state))
+                                    : Eigen::Vector3d::Zero();
+            };
             z.evaluate = [=, &m, &v](const vector& x) {
-              const Eigen::Matrix3d r = rotation_of_part(m, x);
+              const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+              // By right perturbation: of R p + t, R, -R p^ and R; of R^T (p - t), -1, y^ and R^T.
+              const Eigen::Matrix3d r = rotation_of_part(m, x), back = r.transpose();
               const Eigen::Vector3d point = x.segment<3>(v.state);
-              Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-              if (is_pose) {
-                offset = x.segment<3>(m.state + 4);
-              } else if (w != nullptr) {
-                offset = x.segment<3>(w->state);
-              }
+              const Eigen::Vector3d value = is_back ? Eigen::Vector3d(back * (point - offset_at(x)))
+                                                    : Eigen::Vector3d(r * point + offset_at(x));
               matrix j = matrix::Zero(3, columns);
-              const Eigen::Index omega = m.first + m.dimension - 3;
-              Eigen::Vector3d value;
-              if (is_back) {
-                value = r.transpose() * (point - offset);
-                const Eigen::Vector3d arm = is_pose ? point : Eigen::Vector3d(point - offset);
-                j.middleCols(omega, 3) = is_right
-                                             ? cross_matrix(value)
-                                             : Eigen::Matrix3d(r.transpose() * cross_matrix(arm));
-                j.middleCols(v.first, 3) = r.transpose();
-                if (is_pose) {
-                  j.middleCols(m.first, 3) = is_right
-                                                 ? Eigen::Matrix3d(-Eigen::Matrix3d::Identity())
-                                                 : Eigen::Matrix3d(-r.transpose());
-                } else if (w != nullptr) {
-                  j.middleCols(w->first, 3) = -r.transpose();
-                }
-              } else {
-                value = r * point + offset;
-                j.middleCols(omega, 3) =
-                    is_right ? Eigen::Matrix3d(-r * cross_matrix(point))
-                             : Eigen::Matrix3d(
-                                   -cross_matrix(is_pose ? value : Eigen::Vector3d(r * point)));
-                j.middleCols(v.first, 3) = r;
-                if (is_pose) {
-                  j.middleCols(m.first, 3) = is_right ? r : Eigen::Matrix3d::Identity();
-                } else if (w != nullptr) {
-                  j.middleCols(w->first, 3).setIdentity();
-                }
+              j.middleCols(v.first, 3) = is_back ? back : r;
+              if (is_pose) {
+                j.middleCols(m.first, 3) = is_back ? Eigen::Matrix3d(-one) : r;
+              } else if (w != nullptr) {
+                j.middleCols(w->first, 3) = is_back ? Eigen::Matrix3d(-back) : one;
+              }
+              j.middleCols(m.first + m.dimension - 3, 3) =
+                  is_back ? cross_matrix(value) : Eigen::Matrix3d(-r * cross_matrix(point));
+              if (!is_right) {
+                const matrix adjoint = Ad(conj(pose_at(m, x)));
+                j.middleCols(m.first, m.dimension) *=
+                    adjoint.bottomRightCorner(m.dimension, m.dimension).eval();
               }
               return jacobian_evaluation{value, j.template cast<long double>(), 0};
             };
             z.rotated = [=, &m, &v](const vector& x) {
               const Eigen::Matrix3d r = rotation_of_part(m, x);
-              Eigen::Vector3d arm = x.segment<3>(v.state);
-              if (is_back && is_pose) {
-                arm -= x.segment<3>(m.state + 4);
-              } else if (is_back && w != nullptr) {
-                arm -= x.segment<3>(w->state);
-              }
-              return std::pair(
-                  Eigen::Vector3d((is_back ? Eigen::Matrix3d(r.transpose()) : r) * arm), arm);
+              const Eigen::Vector3d point = x.segment<3>(v.state);
+              return is_back ? std::pair(Eigen::Vector3d(r.transpose() * (point - offset_at(x))),
+                                         Eigen::Vector3d(point - offset_at(x)))
+                             : std::pair(Eigen::Vector3d(r * point), point);
             };
             z.set = [=, &m, &v](vector x, const vector& value) {
               const Eigen::Matrix3d r = rotation_of_part(m, x);
-              Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-              if (is_pose) {
-                offset = x.segment<3>(m.state + 4);
-              } else if (w != nullptr) {
-                offset = x.segment<3>(w->state);
-              }
-              x.segment<3>(v.state) = is_back ? Eigen::Vector3d(r * value + offset)
-                                              : Eigen::Vector3d(r.transpose() * (value - offset));
+              x.segment<3>(v.state) = is_back
+                                          ? Eigen::Vector3d(r * value + offset_at(x))
+                                          : Eigen::Vector3d(r.transpose() * (value - offset_at(x)));
               return x;
             };
             list.push_back(std::move(z));
@@ -340,13 +328,26 @@ private:
         }
       }
     }
+    std::copy_if(problem_.arguments.begin(), problem_.arguments.end(),
+                 std::back_inserter(part.context),
+                 [](const jacobian_part& a) { return a.is_motion(); });
     try_continued(part, order, nullptr);
+    const bool has_motions = std::any_of(problem_.results.begin(), problem_.results.end(),
+                                         [](const jacobian_part& r) { return r.is_motion(); });
+    for (const jacobian_part& a : problem_.arguments) {
+      if (a.type == kind::rotation && !has_motions && slips_.empty()) {
+        // All of f grows with the square of the norm.
+        try_continued(part, order, [&a](const vector&, const auto& there, const matrix&) {
+          return std::pair(&a, vector(2 * there.value));
+        });
+      }
+    }
     for (const intermediate& z : intermediates()) {
       for (const bool from_vector : {false, true}) {
         if (z.rotated && slips_.empty()) {
           // Change of f with the norm of the quaternion: A times twice what is rotated, or twice
           // its difference to the vector before.
-          try_continued(part, order, [&](const vector& x, const matrix& exact) {
+          try_continued(part, order, [&](const vector& x, const auto&, const matrix& exact) {
             const matrix factor = z.evaluate(x).jacobian.template cast<double>();
             matrix columns = exact;
             for (const jacobian_part& a : problem_.arguments) {
@@ -365,8 +366,8 @@ private:
     }
   }
 
-  using growth =
-      std::function<std::pair<const jacobian_part*, vector>(const vector&, const matrix&)>;
+  using growth = std::function<std::pair<const jacobian_part*, vector>(
+      const vector&, const jacobian_evaluation&, const matrix&)>;
 
   /// \param part    the problem with stored numbers as arguments
   /// \param order   columns of what is returned, in the order of the arguments
@@ -386,7 +387,7 @@ private:
         next += a.type == kind::pose ? 2 : 1;
       }
       if (change) {
-        const auto [argument, by_norm] = change(x, tangent);
+        const auto [argument, by_norm] = change(x, truth, tangent);
         for (const jacobian_part& p : part.arguments) {
           if (p.dimension == 4 && p.state == argument->state) {
             result.middleCols(p.first, 4) += by_norm * x.segment(p.state, 4).transpose();
@@ -415,6 +416,19 @@ private:
     }
   }
 
+  /// Without rows of results, or of halves of them, in which all is right.
+  [[nodiscard]] matrix in_wrong_rows(matrix m) const {
+    for (const jacobian_part& r : problem_.results) {
+      const Eigen::Index size = r.dimension == 6 ? 3 : r.dimension;
+      for (Eigen::Index row = r.first; row < r.first + r.dimension; row += size) {
+        if (last_row_ < row || first_row_ >= row + size) {
+          m.middleRows(row, size).setZero();
+        }
+      }
+    }
+    return m;
+  }
+
   /// Slips in one factor of a chain: the function depends on some arguments through an
   /// intermediate one, J = A Z, and the slip is in A or in Z.
   void try_chains() {
@@ -423,9 +437,15 @@ private:
       for (const jacobian_part* a : z.arguments) {
         std::fill_n(is_column.begin() + a->first, a->dimension, true);
       }
+      // The slip may be in the columns of some arguments alone.
+      std::vector<bool> is_used = is_column;
       bool has_wrong_elsewhere = false;
-      for (Eigen::Index k = first_; k <= last_; ++k) {
-        has_wrong_elsewhere = has_wrong_elsewhere || !is_column[std::size_t(k)];
+      for (const jacobian_part& a : problem_.arguments) {
+        if (last_ < a.first || first_ >= a.first + a.dimension) {
+          std::fill_n(is_used.begin() + a.first, a.dimension, false);
+        } else {
+          has_wrong_elsewhere = has_wrong_elsewhere || !is_column[std::size_t(a.first)];
+        }
       }
       if (has_wrong_elsewhere) {
         continue;
@@ -435,23 +455,29 @@ private:
       for (const jacobian_sample& s : samples_) {
         const jacobian_evaluation middle = z.evaluate(s.state);
         const matrix factor = middle.jacobian.template cast<double>();
-        matrix exact = s.exact, written = s.written;
+        matrix exact = in_wrong_rows(s.exact), written = in_wrong_rows(s.written), used = factor;
         for (Eigen::Index k = 0; k < exact.cols(); ++k) {
           if (!is_column[std::size_t(k)]) {
             exact.col(k).setZero();
             written.col(k).setZero();
           }
+          if (!is_used[std::size_t(k)]) {
+            used.col(k).setZero();
+          }
         }
-        const Eigen::LDLT<matrix> normal(factor * factor.transpose());
-        const auto divided = [&](const matrix& m) {
-          return matrix(normal.solve(factor * m.transpose()).transpose());
+        const auto divided = [](const matrix& m, const matrix& by) {
+          const Eigen::LDLT<matrix> normal(by * by.transpose());
+          return matrix(normal.solve(by * m.transpose()).transpose());
         };
-        const auto is_product = [&](const matrix& m, const matrix& a) {
-          return largest_entry(m - a * factor) <= s.allowed + 1e-9 * largest_entry(m);
-        };
-        const matrix a = divided(exact), b = divided(written);
-        is_chain = is_chain && is_product(exact, a);
-        has_outer = has_outer && is_product(written, b);
+        const matrix a = divided(exact, factor);
+        matrix b = divided(written, used);
+        is_chain = is_chain &&
+                   largest_entry(exact - a * factor) <= s.allowed + 1e-9 * largest_entry(exact);
+        for (Eigen::Index k = 0; k < exact.cols() && has_outer; ++k) {
+          const double error = (written.col(k) - b * used.col(k)).cwiseAbs().maxCoeff();
+          has_outer =
+              !is_used[std::size_t(k)] || error <= s.allowed + 1e-9 * largest_entry(written);
+        }
         if (!is_chain) {
           break;
         }
@@ -484,7 +510,7 @@ private:
           const vector state = z.set(x.head(size), x.tail(x.size() - size));
           jacobian_evaluation there = problem_.truth(state);
           const matrix factor = z.evaluate(state).jacobian.template cast<double>();
-          matrix exact = there.jacobian.template cast<double>();
+          matrix exact = in_wrong_rows(there.jacobian.template cast<double>());
           for (Eigen::Index k = 0; k < exact.cols(); ++k) {
             if (!is_column[std::size_t(k)]) {
               exact.col(k).setZero();
@@ -510,9 +536,35 @@ private:
     }
   }
 
-  void append(const std::vector<jacobian_slip>& more) {
+  /// Slips in the matrix before a change to the axes of an argument.
+  void try_axes_of_results() {
+    const Eigen::Index rows = samples_[0].exact.rows();
+    jacobian_problem part = problem_;
+    part.truth = nullptr;
+    part.written = nullptr;
+    for (const motion& m : motions()) {
+      for (const int power : {1, -1}) {
+        std::vector<jacobian_sample> samples = samples_;
+        matrix axes;
+        for (jacobian_sample& s : samples) {
+          if (!adjoint(s, m, rows, axes)) {
+            return;
+          }
+          const matrix factor = power_of(axes, -power);
+          s.exact = factor * s.exact;
+          s.written = factor * s.written;
+          s.allowed += 1e-12 * largest_entry(s.exact);
+        }
+        append(jacobian_slip_search(part, samples).found(),
+               message(", in the axes of ", m.name, power < 0 ? "^-1" : ""));
+      }
+    }
+  }
+
+  void append(const std::vector<jacobian_slip>& more,
+              const std::string& where = ", inherited through the chain") {
     for (const jacobian_slip& s : more) {
-      accept(s.name, s.block + ", inherited through the chain");
+      accept(s.name, s.block + where);
     }
   }
 };

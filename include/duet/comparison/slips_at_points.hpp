@@ -42,6 +42,19 @@ protected:
     store_quaternion(q, state.data() + part.state, quaternion_order::wxyz);
   }
 
+  template <class Add>
+  static void add_other_axes(const Add& add, const jacobian_part& a, const jacobian_part& b) {
+    for (const bool is_inverse : {false, true}) {
+      add(message("offset in other axes: ", a.name, a.type == kind::pose ? ".translation" : "",
+                  " in those of ", b.name, is_inverse ? "^-1" : ""),
+          [&a, &b, is_inverse](vector& x) {
+            const Eigen::Matrix3d r = rotation_matrix(rotation_at(b, x));
+            const Eigen::Vector3d v = x.segment<3>(a.vector_state());
+            x.segment<3>(a.vector_state()) = (is_inverse ? Eigen::Matrix3d(r.transpose()) : r) * v;
+          });
+    }
+  }
+
   [[nodiscard]] std::vector<other_point> other_points() const {
     std::vector<other_point> list;
     const auto add = [&](std::string name, auto change) {
@@ -83,6 +96,19 @@ protected:
           set_rotation(x, a, conj(q));
         });
       }
+      if (a.type == kind::vector && size == 4) {
+        add(message("conjugate rotation: sign of ", a.name, "[1..3]"),
+            [&a](vector& x) { x.segment<3>(a.state + 1) *= -1; });
+      }
+      if (a.type == kind::vector && size == 6) {
+        add(message("[omega; v] for [v; omega] in ", a.name),
+            [&a](vector& x) { x.segment<3>(a.state).swap(x.segment<3>(a.state + 3)); });
+        for (const Eigen::Index to : {0, 3}) {
+          add(message("another vector: ", a.name,
+                      to == 0 ? "[3..5] for [0..2]" : "[0..2] for [3..5]"),
+              [&a, to](vector& x) { x.segment<3>(a.state + to) = x.segment<3>(a.state + 3 - to); });
+        }
+      }
       if (!a.is_motion() || a.type == kind::pose) {
         const Eigen::Index first = a.type == kind::pose ? a.state + 4 : a.state,
                            count = a.type == kind::pose ? 3 : size;
@@ -112,6 +138,12 @@ protected:
         if (count == 1) {
           add(message("1 - ", a.name, " for ", a.name),
               [first](vector& x) { x[first] = 1 - x[first]; });
+          for (const double scale : {.5, 2.}) {
+            add(message("evaluated with ", scale < 1 ? "half of " : "twice ", a.name,
+                        ", and the factor right"),
+                [first, scale](vector& x) { x[first] *= scale; });
+            list.back().factor = [scale](const jacobian_sample&) { return 1 / scale; };
+          }
           for (const int power : {0, 1, -1}) {
             add(message("evaluated with 1 for ", a.name,
                         power == 0   ? ""
@@ -155,21 +187,21 @@ protected:
           }
         }
       }
+      for (const jacobian_part& b : problem_.context) {
+        if (a.type == b.type && a.dimension == b.dimension) {
+          add(message("another state: ", b.name, " for ", a.name),
+              [&a, &b, size](vector& x) { x.segment(a.state, size) = x.segment(b.state, size); });
+        }
+        if (b.vector_state() >= 0 && a.is_motion()) {
+          add_other_axes(add, b, a);
+        }
+      }
       // Vectors and translations in the axes of another rotation, or from another point.
       if (a.vector_state() >= 0) {
         const std::string name = a.name + (a.type == kind::pose ? ".translation" : "");
         for (const jacobian_part& b : problem_.arguments) {
           if (b.is_motion()) {
-            for (const bool is_inverse : {false, true}) {
-              add(message("offset in other axes: ", name, " in those of ", b.name,
-                          is_inverse ? "^-1" : ""),
-                  [&a, &b, is_inverse](vector& x) {
-                    const Eigen::Matrix3d r = rotation_matrix(rotation_at(b, x));
-                    const Eigen::Vector3d v = x.segment<3>(a.vector_state());
-                    x.segment<3>(a.vector_state()) =
-                        (is_inverse ? Eigen::Matrix3d(r.transpose()) : r) * v;
-                  });
-            }
+            add_other_axes(add, a, b);
           }
           if (&b != &a && b.vector_state() >= 0) {
             for (const double sign : {1., -1.}) {
@@ -246,13 +278,15 @@ protected:
                                                                  {"twice", 1},
                                                                  {"half of", -.5},
                                                                  {"wrong coefficient of", NAN}};
+    const std::vector<const jacobian_sample*> some = some_wrong_samples();
     for (int part = 0; part < 3; ++part) {
+      std::vector<bool> is_all(scopes_.size(), true); // the part is a multiple of the whole
       std::vector<std::pair<const std::pair<const char*, double>*, const scope*>> alive;
       for (const auto& change : changes) {
         for (const scope& at : scopes_) {
-          // A coefficient of its own for every sample needs entries to confirm it.
+          // A coefficient of its own for every sample needs entries and samples to confirm it.
           if (!std::isnan(change.second) ||
-              (at.rows * at.columns >= 9 && samples_[0].outer.size() == 0)) {
+              (at.rows * at.columns >= 9 && some.size() > 3 && samples_[0].outer.size() == 0)) {
             alive.emplace_back(&change, &at);
           }
         }
@@ -268,17 +302,19 @@ protected:
         std::erase_if(alive, [&](const auto& pair) {
           const auto& [change, at] = pair;
           double factor = change->second;
-          const matrix some = of(summand, *at);
+          const matrix term = of(summand, *at);
           if (std::isnan(factor)) {
-            const double square = some.squaredNorm();
-            factor = square > 0
-                         ? (of(s.written, *at) - of(s.exact, *at)).cwiseProduct(some).sum() / square
-                         : 0;
+            factor = coefficient(of(s.written, *at) - of(s.exact, *at), term);
+            const matrix all = of(s.exact, *at);
+            if (s.is_wrong &&
+                largest_entry(term - coefficient(term, all) * all) > 1e-6 * largest_entry(term)) {
+              is_all[std::size_t(at - scopes_.data())] = false;
+            }
           }
           // The part of an even function is what is left of a difference.
           const double round_off = 4e-16 * std::abs(factor) * largest_entry(s.exact) /
                                    std::max(largest_entry(s.written), largest_entry(s.exact));
-          return !fits(s, *at, of(s.exact, *at) + factor * some, 1e-9 + round_off);
+          return !fits(s, *at, of(s.exact, *at) + factor * term, 1e-9 + round_off);
         });
         if (alive.empty()) {
           break;
@@ -288,7 +324,8 @@ protected:
         return !std::isnan(pair.first->second);
       });
       for (const auto& [change, at] : alive) {
-        if (is_multiple && std::isnan(change->second)) {
+        if (std::isnan(change->second) &&
+            (is_multiple || is_all[std::size_t(at - scopes_.data())])) {
           continue;
         }
         accept(message(change->first, " one summand: the part ",
@@ -306,7 +343,7 @@ protected:
     std::string name;
     double value;
     bool is_angle;
-    bool has_sign; ///< of a quaternion, else a length
+    bool has_sign; ///< else a length
   };
 
   [[nodiscard]] std::vector<feature> features_of(const jacobian_sample& s) const {
@@ -319,13 +356,15 @@ protected:
           const Eigen::Vector3d v(q.x(), q.y(), q.z());
           list.push_back({message("angle of ", p.name), 2 * std::atan2(v.norm(), std::abs(q.w())),
                           true, false});
-          list.push_back({message("scalar part of ", p.name), q.w(), false, true});
           axes.push_back(v);
         }
         if (p.vector_state() >= 0) {
           const Eigen::Vector3d v = state.segment<3>(p.vector_state());
           list.push_back({message("length of ", p.name), v.norm(), true, false});
           axes.push_back(v);
+        } else if (p.type == kind::vector && p.dimension == 6) {
+          list.push_back({message("length of ", p.name, "[3..5]"),
+                          state.segment<3>(p.state + 3).norm(), true, false});
         } else if (p.type == kind::number) {
           list.push_back({message("size of ", p.name), std::abs(state[p.state]), true, false});
           list.push_back({message("sign of ", p.name), state[p.state], false, true});
@@ -342,7 +381,6 @@ protected:
         list.push_back({message("angle of ", m.name),
                         2 * std::atan2(std::hypot(q.x(), q.y(), q.z()), std::abs(q.w())), true,
                         false});
-        list.push_back({message("scalar part of ", m.name), q.w(), false, true});
       }
     }
     double apart = 0;
@@ -356,6 +394,22 @@ protected:
     }
     return list;
   }
+
+  /// True if what is written is right wherever it is wrong, with the opposite quaternion.
+  [[nodiscard]] bool is_of_one_sheet(const jacobian_part& a) const {
+    return std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+      if (!s.is_wrong) {
+        return true;
+      }
+      vector x = s.state;
+      x.segment<4>(a.state) *= -1;
+      const matrix there = to_tangent(problem_, x, problem_.written(x));
+      return largest_entry(there - derivative_at(x)) <= 10 * s.allowed;
+    });
+  }
+
+  /// Names that describe two slips as well, if these vanish there: listed beside others only.
+  std::vector<jacobian_slip> weak_;
 
   /// Regions of wrong inputs: a branch for small angles or near a half turn, one sheet of the
   /// double cover, everywhere but at the identity or for commuting rotations.
@@ -373,6 +427,12 @@ protected:
     // Two slips may vanish at the same inputs, so that one block must contain all that is wrong.
     const bool is_one_block =
         scopes_.front().argument != nullptr && scopes_.front().result != nullptr;
+    for (const jacobian_part& a : problem_.arguments) {
+      if (a.is_motion() && is_one_block && is_of_one_sheet(a)) {
+        accept(message("right on one sheet of the double cover only: of ", a.name),
+               scopes_.front().name);
+      }
+    }
     for (std::size_t f = 0; f < features[0].size() && is_one_block; ++f) {
       double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
       for (std::size_t n = 0; n < samples_.size(); ++n) {
@@ -390,7 +450,8 @@ protected:
         if (!samples_[n].is_wrong && counts[n]) {
           above = x > most[1] ? std::min(above, x) : above;
           below = x < least[1] ? std::max(below, x) : below;
-          has_between = has_between || (x >= least[1] && x <= most[1]);
+          // Errors may vanish with the value itself.
+          has_between = has_between || (x <= most[1] && x >= std::max(least[1], .1 * most[1]));
         }
       }
       const feature& about = features[0][f];
@@ -399,29 +460,27 @@ protected:
       }
       if (about.has_sign) {
         if ((most[1] < 0 && least[0] >= 0) || (least[1] > 0 && most[0] <= 0)) {
-          accept(message(about.name.substr(0, 4) == "sign"
-                             ? "right for one sign only of "
-                             : "right on one sheet of the double cover only: ",
-                         about.name, most[1] < 0 ? " < 0" : " > 0", " is wrong"),
+          accept(message("right for one sign only of ", about.name, most[1] < 0 ? " < 0" : " > 0",
+                         " is wrong"),
                  scopes_.front().name);
         }
       } else if (about.is_angle && !has_between && most[1] < .5 && above < INFINITY) {
         accept(message("only in the branch of small values: ", about.name, " up to ",
                        to_text(float(most[1])), " wrong, from ", to_text(float(above)), " right"),
                scopes_.front().name);
-      } else if (about.is_angle && about.name.substr(0, 5) == "angle" && !has_between &&
-                 least[1] > pi - .5 && below > -INFINITY) {
+      } else if (about.is_angle && !has_between && least[1] > pi - .5 && most[1] < pi + 1e-6 &&
+                 below > -INFINITY) {
         accept(message("only in the branch beside a half turn: ", about.name, " from ",
                        to_text(float(least[1])), " wrong, up to ", to_text(float(below)), " right"),
                scopes_.front().name);
       } else if (about.is_angle && most[0] < least[1] && most[0] < 1e-3 &&
                  about.name.substr(0, 5) == "angle") {
-        accept(
-            message("right only at the identity: ", about.name, " up to ", to_text(float(most[0]))),
-            scopes_.front().name);
+        weak_.push_back({message("right only at the identity: ", about.name, " up to ",
+                                 to_text(float(most[0]))),
+                         scopes_.front().name});
       } else if (about.name == "commuting" && most[0] < least[1] && most[0] < 1e-3) {
-        accept("right only for commuting rotations: where all axes are parallel",
-               scopes_.front().name);
+        weak_.push_back({"right only for commuting rotations: where all axes are parallel",
+                         scopes_.front().name});
       }
     }
   }

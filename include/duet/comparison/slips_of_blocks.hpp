@@ -224,7 +224,8 @@ protected:
       list.push_back(&samples_[wrong - 1 - n * wrong / count]);
     }
     const auto error = [](const jacobian_sample* x) {
-      return largest_entry(x->written - x->exact);
+      return largest_entry(x->outer.size() > 0 ? matrix(x->written - x->outer * x->exact)
+                                               : matrix(x->written - x->exact));
     };
     std::sort(list.begin(), list.end(), [&](const jacobian_sample* x, const jacobian_sample* y) {
       return error(x) > error(y);
@@ -294,6 +295,19 @@ protected:
       out = -m.transpose();
       return m.rows() == m.cols() && m.rows() > 1;
     });
+    // Sums of an identity matrix, or minus one, and something else.
+    for (const double one : {1., -1.}) {
+      for (const auto& [name, factor] : {std::pair("sign of", -1.), std::pair("missing:", 0.),
+                                         std::pair("twice", 2.), std::pair("half of", .5)}) {
+        attempt_change(
+            message(name, " one summand: all but ", one < 0 ? "minus " : "", "the identity matrix"),
+            [one, factor = factor](const matrix& m, matrix& out) {
+              const matrix identity = one * matrix::Identity(m.rows(), m.cols());
+              out = identity + factor * (m - identity);
+              return m.rows() == m.cols() && m.rows() > 1;
+            });
+      }
+    }
     attempt_change("Jacobian of the inverse", [](const matrix& m, matrix& out) {
       if (m.rows() != m.cols() || m.rows() == 1) {
         return false;
@@ -351,8 +365,7 @@ protected:
         return true;
       });
     }
-    std::vector<jacobian_part> parts = problem_.arguments;
-    parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
+    const std::vector<jacobian_part> parts = parts_of_state();
     for (const jacobian_part& a : parts) {
       for (const int power : {1, -1, 2, -2}) {
         if (a.type == kind::number) {
@@ -418,15 +431,24 @@ protected:
     }
   }
 
-  /// A rotation or pose, or one relative to another, at a sample.
+  /// Arguments, and further numbers of the state.
+  [[nodiscard]] std::vector<jacobian_part> parts_of_state() const {
+    std::vector<jacobian_part> parts = problem_.arguments;
+    parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
+    return parts;
+  }
+
+  /// A rotation or pose, or one relative to another, at a sample; or a rotation by a vector.
   struct motion {
     std::string name;
     const jacobian_part* part;            ///< of an argument or result
     const jacobian_part* other = nullptr; ///< the rotation relative to this one
     bool is_result = false;
+    bool is_alone = false; ///< the rotation of a pose alone
   };
 
-  [[nodiscard]] std::vector<motion> motions() const {
+  /// \param with_vectors  also the rotations by vectors, and of poses alone
+  [[nodiscard]] std::vector<motion> motions(bool with_vectors = false) const {
     std::vector<motion> list;
     for (const jacobian_part& a : problem_.arguments) {
       if (a.is_motion()) {
@@ -441,7 +463,18 @@ protected:
     }
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = i + 1; k < count; ++k) {
-        list.push_back({message(list[i].name, "^-1 ", list[k].name), list[k].part, list[i].part});
+        list.push_back({list[i].name + "^-1 " + list[k].name, list[k].part, list[i].part});
+      }
+    }
+    for (const bool is_result : {true, false}) {
+      for (const jacobian_part& v : is_result ? problem_.results : problem_.arguments) {
+        if (with_vectors && v.type == kind::pose) {
+          list.push_back({v.name + ".rotation", &v, nullptr, is_result, true});
+        }
+        if (with_vectors && v.type == kind::vector && v.dimension % 3 == 0 && v.dimension < 7) {
+          list.push_back(
+              {"exp(" + v.name + (v.dimension == 6 ? "[3..5])" : ")"), &v, nullptr, is_result});
+        }
       }
     }
     return list;
@@ -453,7 +486,9 @@ protected:
 
   [[nodiscard]] static dual_quaternion<double> pose_of(const jacobian_sample& s, const motion& m) {
     const auto a = pose_at(*m.part, state_of(s, m));
-    return m.other != nullptr ? conj(pose_at(*m.other, s.state)) * a : a;
+    return m.other != nullptr ? conj(pose_at(*m.other, s.state)) * a
+           : m.is_alone       ? dual_quaternion<double>(rotation(a))
+                              : a;
   }
   [[nodiscard]] static Eigen::Matrix3d rotation_of(const jacobian_sample& s, const motion& m) {
     return rotation_matrix(rotation(pose_of(s, m)));
@@ -476,7 +511,7 @@ protected:
 
   void try_frames() {
     matrix factor;
-    for (const motion& m : motions()) {
+    for (const motion& m : motions(true)) {
       const bool is_relative = m.other != nullptr;
       for (const int power : {1, -1, 2, -2}) {
         const bool is_right = problem_.side == perturbation::right;
@@ -484,24 +519,29 @@ protected:
             is_right ? "left perturbation for right" : "right perturbation for left";
         const std::string which =
             message("Ad(", m.name, ")", power == 1 ? "" : message("^", power));
-        const auto right = [&](const jacobian_sample& s, const scope& at, matrix& out) {
-          if (!adjoint(s, m, at.columns, factor)) {
-            return false;
-          }
-          out = of(s.exact, at) * power_of(factor, power);
-          return true;
+        // Of all, or of all but an identity matrix.
+        const auto multiplied = [&](bool is_left, double one) -> hypothesis {
+          return [&, is_left, one](const jacobian_sample& s, const scope& at, matrix& out) {
+            if (!adjoint(s, m, is_left ? at.rows : at.columns, factor) ||
+                (one != 0 && at.rows != at.columns)) {
+              return false;
+            }
+            const matrix identity = one * matrix::Identity(at.rows, at.columns);
+            out = of(s.exact, at) - identity;
+            out = identity + (is_left ? matrix(power_of(factor, power) * out)
+                                      : matrix(out * power_of(factor, power)));
+            return true;
+          };
         };
-        const auto left = [&](const jacobian_sample& s, const scope& at, matrix& out) {
-          if (!adjoint(s, m, at.rows, factor)) {
-            return false;
-          }
-          out = power_of(factor, power) * of(s.exact, at);
-          return true;
-        };
+        for (const bool is_left : {false, true}) {
+          attempt(message("missing or inverted adjoint: all but the identity matrix multiplied by ",
+                          which, " from the ", is_left ? "left" : "right"),
+                  multiplied(is_left, 1));
+        }
         const bool is_own_argument = !is_relative && !m.is_result && power == (is_right ? -1 : 1);
         attempt(message("missing or inverted adjoint: multiplied by ", which, " from the right",
                         is_own_argument ? message(" (of ", m.name, ": ", other, ")") : ""),
-                right);
+                multiplied(false, 0));
         const bool is_own_result = m.is_result && power == (is_right ? 1 : -1);
         attempt(message("other axes or a missing or inverted adjoint: multiplied by ", which,
                         " from the left",
@@ -509,7 +549,35 @@ protected:
                         : power == 1  ? " (spatial for body axes)"
                         : power == -1 ? " (body for spatial axes)"
                                       : ""),
-                left);
+                multiplied(true, 0));
+        if (power * power == 1) {
+          attempt(message("exchanged factors: multiplied by ", which,
+                          " from the left and by its inverse from the right"),
+                  [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                    if (at.rows != at.columns || !adjoint(s, m, at.rows, factor)) {
+                      return false;
+                    }
+                    out = power_of(factor, power) * of(s.exact, at) * power_of(factor, -power);
+                    return true;
+                  });
+        }
+      }
+    }
+    for (const motion& m : motions()) {
+      for (const int power : {1, -1}) {
+        attempt(
+            message("another rotation: that of ", m.name, power < 0 ? "^-1" : "", " in its place"),
+            [&](const jacobian_sample& s, const scope& at, matrix& out) {
+              const matrix exact = of(s.exact, at);
+              out = rotation_of(s, m);
+              out = power < 0 ? matrix(out.transpose()) : out;
+              if (exact.rows() != 3 || exact.cols() != 3 ||
+                  largest_entry(exact * exact.transpose() - matrix::Identity(3, 3)) > 1e-9) {
+                return false;
+              }
+              out *= exact.determinant();
+              return true;
+            });
       }
     }
     try_exponential_jacobians();
@@ -535,11 +603,13 @@ protected:
       for (const double sign : {1., -1.}) {
         for (const bool is_inverse : {false, true}) {
           for (const bool is_left : {false, true}) {
-            for (const double half : {1., .5}) {
+            // The square makes the inverse of one another's.
+            for (const auto& [half, power] :
+                 {std::pair(1., 1), std::pair(.5, 1), std::pair(1., 2)}) {
               if (half == .5 && !from.part->is_motion()) {
                 continue;
               }
-              const auto factor = [&](const jacobian_sample& s) -> matrix {
+              const auto factor = [&, half = half, power = power](const jacobian_sample& s) {
                 const vector& state = from.is_result ? s.truth.value : s.state;
                 const Eigen::Vector3d phi =
                     (from.part->is_motion()
@@ -547,12 +617,15 @@ protected:
                          : Eigen::Vector3d(
                                state.segment<3>(from.part->state + from.part->dimension - 3))) *
                     sign * half;
-                return is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi);
+                return power_of(is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi),
+                                power);
               };
-              const std::string name = message(
-                  "right only at the identity of ", from.name, ": multiplied by the ",
-                  sign > 0 ? "left" : "right", " Jacobian of exp", is_inverse ? ", inverse," : "",
-                  half == 1 ? "" : " at half the angle", " from the ", is_left ? "left" : "right");
+              const std::string name =
+                  message("right only at the identity of ", from.name, ": multiplied by the ",
+                          sign > 0 ? "left" : "right", " Jacobian of exp",
+                          is_inverse ? ", inverse," : "", half == 1 ? "" : " at half the angle",
+                          power == 1 ? "" : " twice (Jacobian for its inverse)", " from the ",
+                          is_left ? "left" : "right");
               attempt(name, [&](const jacobian_sample& s, const scope& at, matrix& out) {
                 if ((is_left ? at.rows : at.columns) != 3) {
                   return false;
@@ -566,6 +639,68 @@ protected:
         }
       }
     }
+  }
+
+  /// Vectors of three components that a term may contain: of arguments and results, also in other
+  /// axes and from other points, of rotations their imaginary part.
+  struct named_vector {
+    std::string name;
+    Eigen::Vector3d value;
+  };
+
+  /// \param with_points  also points moved by rotations and poses, and back
+  [[nodiscard]] const std::vector<named_vector>& vectors_of(const jacobian_sample& s,
+                                                            bool with_points = false) const {
+    std::vector<std::vector<named_vector>>& known = vectors_[with_points ? 1 : 0];
+    known.resize(samples_.size());
+    std::vector<named_vector>& list = known[std::size_t(&s - samples_.data())];
+    if (!list.empty()) {
+      return list;
+    }
+    const std::vector<jacobian_part> parts = parts_of_state();
+    const auto add = [&](const std::vector<jacobian_part>& from, const vector& state) {
+      for (const jacobian_part& a : from) {
+        if (a.vector_state() >= 0) {
+          list.push_back({a.name + (a.type == kind::pose ? ".translation" : ""),
+                          state.segment<3>(a.vector_state())});
+        } else if (a.type == kind::vector && a.dimension == 6) {
+          list.push_back({a.name + "[0..2]", state.segment<3>(a.state)});
+          list.push_back({a.name + "[3..5]", state.segment<3>(a.state + 3)});
+        }
+      }
+    };
+    for (const jacobian_part& a : parts) {
+      if (a.is_motion() || (a.type == kind::vector && a.dimension == 4)) {
+        list.push_back({"the vector part of " + a.name, s.state.segment<3>(a.state + 1)});
+      }
+    }
+    const std::size_t first = list.size();
+    std::vector<jacobian_part> results = problem_.results;
+    std::erase_if(results, [](const jacobian_part& r) { return r.is_motion(); });
+    add(results, s.truth.value);
+    add(parts, s.state);
+    const std::size_t count = list.size();
+    for (const jacobian_part& m : parts) {
+      if (!m.is_motion()) {
+        continue;
+      }
+      const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, s.state));
+      for (std::size_t i = 0; i < count; ++i) {
+        const named_vector v = list[i];
+        list.push_back({"(" + m.name + " " + v.name + ")", r * v.value});
+        list.push_back({"(" + m.name + "^-1 " + v.name + ")", r.transpose() * v.value});
+        for (std::size_t k = first; k < count && with_points && i >= first; ++k) {
+          const named_vector w = list[k];
+          if (k != i && (m.type == kind::rotation || w.name == m.name + ".translation")) {
+            list.push_back(
+                {"(" + m.name + " " + v.name + " + " + w.name + ")", r * v.value + w.value});
+            list.push_back({"(" + m.name + "^-1 (" + v.name + " - " + w.name + "))",
+                            r.transpose() * (v.value - w.value)});
+          }
+        }
+      }
+    }
+    return list;
   }
 
   /// Columns of rotation that contain a moment about a wrong point: J_w + J_v p^ for a vector p of
@@ -620,40 +755,95 @@ protected:
               }
             }
           }
-          for (const scope& at : scopes_) { // a constant arm, by linear least squares
-            if (!covers(at) || samples_[0].outer.size() > 0) {
-              continue;
-            }
-            const std::size_t used = std::min<std::size_t>(samples_.size(), 8);
-            matrix a(Eigen::Index(used) * at.rows * 3, 3);
-            vector b(a.rows());
-            for (std::size_t n = 0; n < used; ++n) {
-              const matrix f = force(samples_[n], at);
-              const matrix difference = of(samples_[n].written, at) - of(samples_[n].exact, at);
-              for (Eigen::Index i = 0; i < at.rows; ++i) {
-                const Eigen::Index row = (Eigen::Index(n) * at.rows + i) * 3;
-                // f p^ = (f x p): row vector f times the cross matrix of p
-                a.middleRows(row, 3) = cross_matrix(Eigen::Vector3d(f.row(i)));
-                b.segment(row, 3) = difference.row(i);
-              }
-            }
-            const Eigen::Vector3d arm = a.colPivHouseholderQr().solve(b);
-            if (arm.allFinite() && arm.norm() > 1e-9) {
-              attempt(message("moment arm about another point: off by the constant (",
-                              to_text(float(arm[0])), ", ", to_text(float(arm[1])), ", ",
-                              to_text(float(arm[2])), ")"),
-                      [&](const jacobian_sample& s, const scope& other, matrix& out) {
-                        if (&other != &at) {
-                          return false;
-                        }
-                        out = of(s.exact, at) + force(s, at) * cross_matrix(arm);
-                        return true;
-                      });
+          for (const scope& at : scopes_) {
+            if (covers(at)) {
+              try_constant_vector(
+                  "moment arm about another point: off by the constant", at,
+                  [&](const jacobian_sample& s, const Eigen::Vector3d& c) -> matrix {
+                    return force(s, at) * cross_matrix(c);
+                  });
             }
           }
         }
       }
     }
+  }
+
+  /// Columns of rotation J_v a^ with another vector a than the right one.
+  void try_other_arms() {
+    for (const jacobian_part& m : problem_.arguments) {
+      const Eigen::Index omega = m.first + m.dimension - 3;
+      for (const jacobian_part& moved : problem_.arguments) {
+        if (!m.is_motion() || moved.vector_state() < 0) {
+          continue;
+        }
+        for (std::size_t n = 0; n < vectors_of(samples_[0], true).size(); ++n) {
+          for (const double sign : {1., -1.}) {
+            attempt(message("moment arm about another point: ",
+                            vectors_of(samples_[0], true)[n].name, " is in its place"),
+                    [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                      if (at.column != omega || at.columns != 3) {
+                        return false;
+                      }
+                      out = sign * s.exact.block(at.row, moved.first, at.rows, 3) *
+                            cross_matrix(vectors_of(s, true)[n].value);
+                      return true;
+                    });
+          }
+        }
+      }
+    }
+  }
+
+  /// Rows of the error in the columns of a rectangle, and what a term of a rectangle makes of it.
+  [[nodiscard]] static matrix error_in(const jacobian_sample& s, const scope& at) {
+    return s.outer.size() > 0
+               ? matrix((s.written - s.outer * s.exact).middleCols(at.column, at.columns))
+               : matrix(of(s.written, at) - of(s.exact, at));
+  }
+  [[nodiscard]] static matrix effect_of(const jacobian_sample& s, const scope& at,
+                                        const matrix& term) {
+    return s.outer.size() > 0 ? matrix(s.outer.middleCols(at.row, at.rows) * term) : term;
+  }
+
+  /// The coefficient of a term in an error.
+  [[nodiscard]] static double coefficient(const matrix& error, const matrix& value) {
+    const double square = value.squaredNorm();
+    return square > 0 ? error.cwiseProduct(value).sum() / square : 0;
+  }
+
+  /// A term that is linear in a constant vector, which is found by least squares.
+  ///
+  /// \param term  (sample, constant): the term
+  template <class Term>
+  bool try_constant_vector(const std::string& name, const scope& at, const Term& term) {
+    const std::vector<const jacobian_sample*> used = some_wrong_samples();
+    if (used.size() < 4) {
+      return false;
+    }
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (const jacobian_sample* s : used) {
+      const matrix error = error_in(*s, at);
+      matrix columns(error.size(), 3);
+      for (int k = 0; k < 3; ++k) {
+        const matrix effect = effect_of(*s, at, term(*s, Eigen::Vector3d::Unit(k)));
+        columns.col(k) = effect.reshaped();
+      }
+      normal += columns.transpose() * columns;
+      right += columns.transpose() * error.reshaped();
+    }
+    const Eigen::Vector3d c = normal.completeOrthogonalDecomposition().solve(right);
+    if (!c.allFinite() || c.norm() < 1e-9 ||
+        !std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+          return fits(s, at, of(s.exact, at) + term(s, c), 1e-8);
+        })) {
+      return false;
+    }
+    accept(message(name, " (", to_text(float(c[0])), ", ", to_text(float(c[1])), ", ",
+                   to_text(float(c[2])), ")"),
+           at.name);
+    return true;
   }
 
   const jacobian_problem& problem_;
@@ -662,6 +852,7 @@ protected:
 
   Eigen::Index first_row_ = 0, last_row_ = -1, first_ = 0, last_ = -1; ///< of the wrong entries
   std::vector<scope> scopes_;
+  mutable std::vector<std::vector<named_vector>> vectors_[2]; ///< of the samples
 
   std::vector<jacobian_slip> slips_;
 };

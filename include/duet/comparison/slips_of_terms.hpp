@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -53,7 +54,13 @@ protected:
         from.push_back(source);
       }
       const bool has_all = std::none_of(from.begin(), from.end(), [](auto c) { return c < 0; });
-      if (has_all && !is_identity) {
+      // Copies of columns are one slip if all come from the same distance.
+      std::set<Eigen::Index> distances;
+      for (std::size_t k = 0; k < from.size(); ++k) {
+        distances.insert(from[k] - at.column - Eigen::Index(k));
+      }
+      distances.erase(0);
+      if (has_all && !is_identity && (is_injective || distances.size() == 1)) {
         std::string list;
         for (const Eigen::Index c : from) {
           list += (list.empty() ? "" : ", ") + std::to_string(c);
@@ -110,144 +117,250 @@ protected:
   void try_constants() {
     for (const scope& at : scopes_) {
       const matrix first = of(samples_[0].written, at) - of(samples_[0].exact, at);
-      if (std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-            return fits(s, at, of(s.exact, at) + first);
-          })) {
+      // Where several right entries are constant as well, any others would be.
+      Eigen::Index count = 0;
+      bool is_whole = true;
+      for (Eigen::Index i = 0; i < first.size(); ++i) {
+        const bool is_wrong = std::abs(first(i)) > samples_[0].allowed;
+        count += is_wrong ? 1 : 0;
+        is_whole = is_whole &&
+                   (!is_wrong || std::all_of(samples_.begin(), samples_.end(), [&](const auto& s) {
+                     return std::abs(of(s.exact, at)(i) - of(samples_[0].exact, at)(i)) < 1e-9;
+                   }));
+      }
+      if ((!is_whole || count < 2) &&
+          std::all_of(samples_.begin(), samples_.end(),
+                      [&](const auto& s) { return fits(s, at, of(s.exact, at) + first); })) {
         accept("one summand: off by a constant", at.name);
         return;
       }
     }
   }
 
-  /// Vectors of three components that a term may contain: of arguments and results, also in other
-  /// axes and from other points, of rotations their imaginary part.
-  struct named_vector {
-    std::string name;
-    Eigen::Vector3d value;
+  /// Numbers that a term may contain: states and components of vectors in other axes.
+  struct numbers {
+    std::vector<std::string> names;
+    std::vector<double> values;
   };
 
-  [[nodiscard]] std::vector<named_vector> vectors_of(const jacobian_sample& s) const {
-    std::vector<named_vector> list;
-    std::vector<jacobian_part> parts = problem_.arguments;
-    parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
-    for (const jacobian_part& a : parts) {
-      if (a.is_motion() || (a.type == kind::vector && a.dimension == 4)) {
-        list.push_back({"the vector part of " + a.name, s.state.segment<3>(a.state + 1)});
+  /// \param with_inverses  also one divided by them
+  [[nodiscard]] numbers numbers_of(const jacobian_sample& s, bool with_inverses = false) const {
+    numbers n;
+    n.names = {"1"};
+    n.values = {1};
+    const auto add = [&](const std::string& name, const Eigen::Ref<const vector>& v) {
+      for (Eigen::Index i = 0; i < v.size(); ++i) {
+        n.names.push_back(v.size() == 1 ? name : name + "[" + std::to_string(i) + "]");
+        n.values.push_back(v[i]);
       }
-      if (a.vector_state() >= 0) {
-        list.push_back({a.name + (a.type == kind::pose ? ".translation" : ""),
-                        s.state.segment<3>(a.vector_state())});
+    };
+    for (const jacobian_part& a : parts_of_state()) {
+      if (a.is_motion()) {
+        const quaternion<double> q = rotation_at(a, s.state);
+        add(a.name, Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
+      }
+      if (a.type == kind::pose) {
+        add(a.name + ".translation", s.state.segment<3>(a.state + 4));
+      } else if (!a.is_motion()) {
+        add(a.name, s.state.segment(a.state, a.dimension));
       }
     }
     for (const jacobian_part& r : problem_.results) {
-      if (r.type == kind::vector && r.dimension == 3) {
-        list.push_back({r.name, s.truth.value.segment<3>(r.state)});
+      if (!r.is_motion() && n.values.size() < 30) {
+        add(r.name, s.truth.value.segment(r.state, r.dimension));
       }
     }
-    const std::size_t count = list.size();
-    for (const jacobian_part& m : parts) {
-      if (m.is_motion()) {
-        const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, s.state));
-        for (std::size_t i = 0; i < count; ++i) {
-          const named_vector v = list[i];
-          list.push_back({message("(", m.name, " ", v.name, ")"), r * v.value});
-          list.push_back({message("(", m.name, "^-1 ", v.name, ")"), r.transpose() * v.value});
+    const std::vector<motion> all = motions();
+    const bool has_poses = std::any_of(all.begin(), all.end(),
+                                       [](const motion& m) { return m.part->type == kind::pose; });
+    for (const named_vector& v : vectors_of(s, has_poses)) {
+      if (v.name[0] == '(' && n.values.size() < 48) {
+        add(v.name, v.value);
+      }
+    }
+    for (std::size_t f = 1, count = n.values.size(); f < count && with_inverses; ++f) {
+      n.names.push_back("1/" + n.names[f]);
+      n.values.push_back(1 / n.values[f]);
+    }
+    return n;
+  }
+
+  /// A term that an error may be a multiple of.
+  struct term {
+    std::string name;
+    matrix value;
+    bool is_weighted = false; ///< also with a coefficient of its own at every sample
+  };
+
+  /// Terms of a row or column of three entries, or of 3 x 3: vectors a, a x b, cross matrices of
+  /// them, a b^T, (a.b) 1, rotations, and their products. Weighted are cross matrices and their
+  /// squares, as in Jacobians of exp, and a b^T, as in derivatives of lengths.
+  [[nodiscard]] std::vector<term> terms_of(const jacobian_sample& s, const scope& at) const {
+    std::vector<term> list;
+    const std::vector<named_vector>& v = vectors_of(s);
+    if (at.rows * at.columns == 3) {
+      const auto add = [&](const std::string& name, const Eigen::Vector3d& x) {
+        list.push_back({name, at.rows == 1 ? matrix(x.transpose()) : matrix(x)});
+      };
+      for (std::size_t a = 0; a < v.size(); ++a) {
+        add(v[a].name, v[a].value);
+        for (std::size_t b = a + 1; b < v.size(); ++b) {
+          add(v[a].name + " x " + v[b].name, v[a].value.cross(v[b].value));
         }
+      }
+      return list;
+    }
+    list.push_back({"the identity matrix", matrix::Identity(3, 3)});
+    const auto add_cross = [&](const std::string& name, const Eigen::Vector3d& x) {
+      const matrix cross = cross_matrix(x);
+      list.push_back({"the cross matrix of " + name, cross, true});
+      list.push_back({"the squared cross matrix of " + name, cross * cross, true});
+    };
+    for (std::size_t a = 0; a < v.size(); ++a) {
+      add_cross(v[a].name, v[a].value);
+      for (std::size_t b = 0; b < v.size(); ++b) {
+        list.push_back(
+            {v[a].name + " " + v[b].name + "^T", v[a].value * v[b].value.transpose(), true});
+        if (b >= a) {
+          list.push_back({"(" + v[a].name + " . " + v[b].name + ") 1",
+                          v[a].value.dot(v[b].value) * matrix::Identity(3, 3)});
+        }
+      }
+    }
+    for (const motion& m : motions()) {
+      const Eigen::Matrix3d r = rotation_of(s, m);
+      if (m.part->type == kind::rotation) {
+        add_cross("log " + m.name, rotation_vector(rotation(pose_of(s, m))));
+      }
+      list.push_back({"the rotation matrix of " + m.name, r});
+      for (const named_vector& x : v) {
+        list.push_back({"the rotation matrix of " + m.name + " times the cross matrix of " + x.name,
+                        r * cross_matrix(x.value)});
       }
     }
     return list;
   }
 
-  /// Errors of a row or column of three entries, or of 3 x 3, that are a constant multiple of a
-  /// vector a, a x b, of the cross matrix of a, of a b^T, (a.b) 1, a rotation, or their products
-  /// with one number.
+  /// Errors that are a multiple of one term and one number: a constant one; or one that differs
+  /// between samples, which nine entries confirm; or a term with a constant vector.
   void try_summands() {
-    struct term {
-      std::string name;
-      matrix value;
-    };
-    const auto terms_of = [&](const jacobian_sample& s, const scope& at) {
-      std::vector<term> list;
-      const std::vector<named_vector> v = vectors_of(s);
-      const bool is_row = at.rows == 1;
-      if (at.rows * at.columns == 3) {
-        const auto add = [&](const std::string& name, const Eigen::Vector3d& x) {
-          list.push_back({name, is_row ? matrix(x.transpose()) : matrix(x)});
-        };
-        for (std::size_t a = 0; a < v.size(); ++a) {
-          add(v[a].name, v[a].value);
-          for (std::size_t b = a + 1; b < v.size(); ++b) {
-            add(message(v[a].name, " x ", v[b].name), v[a].value.cross(v[b].value));
-          }
-        }
-      } else if (at.rows == 3 && at.columns == 3) {
-        list.push_back({"the identity matrix", matrix::Identity(3, 3)});
-        for (std::size_t a = 0; a < v.size(); ++a) {
-          list.push_back({"the cross matrix of " + v[a].name, cross_matrix(v[a].value)});
-          for (std::size_t b = 0; b < v.size(); ++b) {
-            list.push_back(
-                {message(v[a].name, " ", v[b].name, "^T"), v[a].value * v[b].value.transpose()});
-            if (b >= a) {
-              list.push_back({message("(", v[a].name, " . ", v[b].name, ") 1"),
-                              v[a].value.dot(v[b].value) * matrix::Identity(3, 3)});
-            }
-          }
-        }
-        for (const motion& m : motions()) {
-          const Eigen::Matrix3d r = rotation_of(s, m);
-          list.push_back({"the rotation matrix of " + m.name, r});
-          for (const named_vector& x : v) {
-            list.push_back(
-                {message("the rotation matrix of ", m.name, " times the cross matrix of ", x.name),
-                 r * cross_matrix(x.value)});
-          }
-        }
-      }
-      return list;
-    };
+    const std::vector<const jacobian_sample*> used = some_wrong_samples();
     for (const scope& at : scopes_) {
-      if (at.rows * at.columns != 3 && (at.rows != 3 || at.columns != 3)) {
+      const bool is_square = at.rows == 3 && at.columns == 3;
+      if (used.size() < 4 || (at.rows * at.columns != 3 && !is_square)) {
         continue;
       }
-      const std::vector<const jacobian_sample*> used = some_wrong_samples();
       std::vector<std::vector<term>> terms;
       std::vector<numbers> factors;
+      std::vector<matrix> errors;
+      bool is_of_all = true; // a multiple of the whole, and no term of it
       for (const jacobian_sample* s : used) {
         terms.push_back(terms_of(*s, at));
-        factors.push_back(numbers_of(*s));
+        factors.push_back(numbers_of(*s, !is_square));
+        errors.push_back(error_in(*s, at));
+        const matrix all = effect_of(*s, at, of(s->exact, at));
+        is_of_all =
+            is_of_all && largest_entry(errors.back() - coefficient(errors.back(), all) * all) <=
+                             1e-6 * largest_entry(errors.back());
       }
-      if (terms.size() < 4) {
-        return;
-      }
-      for (std::size_t t = 0; t < terms[0].size(); ++t) {
-        for (std::size_t f = 0; f < factors[0].values.size(); ++f) {
-          double factor = NAN;
-          bool is_constant = true;
-          for (std::size_t n = 0; n < terms.size() && is_constant; ++n) {
-            const matrix error = of(used[n]->written, at) - of(used[n]->exact, at);
-            const matrix value = terms[n][t].value * factors[n].values[f];
-            if (n == 0) {
-              factor = error.cwiseProduct(value).sum() / value.squaredNorm();
-              is_constant = largest_entry(value) > 1e-9; // not round-off of zero
+      // Weighted terms by a factor of NAN.
+      const auto explains = [&](const jacobian_sample& s, std::size_t t, std::size_t f,
+                                double factor) {
+        matrix value = terms_of(s, at)[t].value * numbers_of(s, !is_square).values[f];
+        value *=
+            std::isnan(factor) ? coefficient(error_in(s, at), effect_of(s, at, value)) : factor;
+        return fits(s, at, of(s.exact, at) + value, 1e-8);
+      };
+      const auto is_found = [&](std::size_t t, std::size_t f, bool is_weighted) {
+        double factor = NAN;
+        for (std::size_t n = 0; n < used.size(); ++n) {
+          const matrix value = effect_of(*used[n], at, terms[n][t].value * factors[n].values[f]);
+          if (n == 0 && !(largest_entry(value) > 1e-9)) {
+            return false; // round-off of zero
+          }
+          factor = n == 0 || is_weighted ? coefficient(errors[n], value) : factor;
+          if (!(largest_entry(errors[n] - factor * value) <=
+                4 * used[n]->allowed + used[n]->little_error + 1e-9 * largest_entry(errors[n]))) {
+            return false;
+          }
+        }
+        return std::abs(factor) > 1e-9 &&
+               std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+                 return explains(s, t, f, is_weighted ? NAN : factor);
+               });
+      };
+      for (const bool is_weighted : {false, true}) {
+        for (std::size_t t = 0; t < terms[0].size(); ++t) {
+          const std::size_t count = is_weighted ? 1 : factors[0].values.size();
+          for (std::size_t f = 0; f < count; ++f) {
+            if ((!is_weighted || (terms[0][t].is_weighted && !is_of_all)) &&
+                is_found(t, f, is_weighted)) {
+              accept(message("sign of one summand, or one missing or of wrong ",
+                             is_weighted ? "coefficient" : "factor", ": a multiple of ",
+                             f > 0 ? factors[0].names[f] + " " : "", terms[0][t].name),
+                     at.name);
+              return;
             }
-            is_constant = is_constant && largest_entry(error - factor * value) <=
-                                             4 * used[n]->allowed + used[n]->little_error +
-                                                 1e-9 * largest_entry(error);
           }
-          const auto explains = [&](const jacobian_sample& s) {
-            const matrix value = terms_of(s, at)[t].value * numbers_of(s).values[f];
-            return fits(s, at, of(s.exact, at) + factor * value, 1e-8);
-          };
-          if (is_constant && std::abs(factor) > 1e-9 &&
-              std::all_of(samples_.begin(), samples_.end(), explains)) {
-            accept(message("sign of one summand, or one missing or of wrong factor: a multiple of ",
-                           f > 0 ? factors[0].names[f] + " " : "", terms[0][t].name),
-                   at.name);
-            return;
-          }
+        }
+        if (!is_weighted && try_terms_with_constants(at)) {
+          return;
         }
       }
     }
+  }
+
+  /// Terms that are linear in a constant vector, as one that the function has captured.
+  bool try_terms_with_constants(const scope& at) {
+    using constant = Eigen::Vector3d;
+    const auto is_found = [&](const std::string& text, const auto& value) {
+      return try_constant_vector(
+          message("sign of one summand, or one missing or of wrong factor: ", text, ", c ="), at,
+          [&](const jacobian_sample& s, const constant& c) -> matrix {
+            const matrix m = value(s, c);
+            return at.rows == 1 ? matrix(m.transpose()) : m;
+          });
+    };
+    const bool is_square = at.rows * at.columns == 9;
+    for (const motion& m : motions(true)) {
+      for (const bool is_inverse : {false, true}) {
+        if (is_found(message(m.name, is_inverse ? "^-1" : "",
+                             is_square ? " times the cross matrix of c" : " c"),
+                     [&](const jacobian_sample& s, const constant& c) -> matrix {
+                       const matrix r = rotation_of(s, m);
+                       const matrix of_constant = is_square ? matrix(cross_matrix(c)) : matrix(c);
+                       return is_inverse ? matrix(r.transpose() * of_constant)
+                                         : matrix(r * of_constant);
+                     })) {
+          return true;
+        }
+      }
+    }
+    struct form {
+      const char *before, *after;
+      matrix (*value)(const Eigen::Vector3d& x, const constant& c);
+      bool is_square = true;
+    };
+    static constexpr form forms[] = {
+        {"", " x c", [](const auto& x, const auto& c) -> matrix { return x.cross(c); }, false},
+        {"", " c^T", [](const auto& x, const auto& c) -> matrix { return x * c.transpose(); }},
+        {"c ", "^T", [](const auto& x, const auto& c) -> matrix { return c * x.transpose(); }},
+        {"(", " . c) 1",
+         [](const auto& x, const auto& c) -> matrix { return x.dot(c) * matrix::Identity(3, 3); }},
+        {"the cross matrix of ", " x c",
+         [](const auto& x, const auto& c) -> matrix { return cross_matrix(x.cross(c)); }}};
+    for (std::size_t n = 0; n < vectors_of(samples_[0]).size(); ++n) {
+      for (const form& f : forms) {
+        if (f.is_square == is_square &&
+            is_found(message(f.before, vectors_of(samples_[0])[n].name, f.after),
+                     [&](const jacobian_sample& s, const constant& c) {
+                       return f.value(vectors_of(s)[n].value, c);
+                     })) {
+          return true;
+        }
+      }
+    }
+    return false;
   }
 
   /// Columns for stored numbers that follow another convention.
@@ -286,16 +399,20 @@ protected:
       });
       for (const bool is_first : {true, false}) {
         for (const double factor : {1., 2., .5}) {
-          try_reading("missing chart factor L(q)/2: derivatives by tangent coordinates in columns "
-                      "of the quaternion",
-                      [&](const jacobian_sample&, const matrix& m) -> matrix {
-                        matrix out(m.rows(), a.dimension);
-                        if (q > 0) {
-                          out.leftCols(3) = m.leftCols(3);
-                        }
-                        out.rightCols(3) = factor * m.middleCols(q + (is_first ? 0 : 1), 3);
-                        return out;
-                      });
+          for (const bool is_alone : {false, true}) { // the translation's columns are right
+            try_reading("missing chart factor L(q)/2: derivatives by tangent coordinates in "
+                        "columns of the quaternion",
+                        [&](const jacobian_sample& s, matrix m) -> matrix {
+                          const matrix by_rotation =
+                              factor * m.middleCols(q + (is_first ? 0 : 1), 3);
+                          m.middleCols(q, 4).setZero();
+                          matrix out = is_alone || q == 0
+                                           ? charted(s, m, problem_.order, problem_.side)
+                                           : m.leftCols(6);
+                          out.rightCols(3) += by_rotation;
+                          return out;
+                        });
+          }
         }
       }
       if (q > 0) {
@@ -306,58 +423,6 @@ protected:
         });
       }
     }
-  }
-
-  /// Numbers that a term may contain: states and components of vectors in other axes.
-  struct numbers {
-    std::vector<std::string> names;
-    std::vector<double> values;
-  };
-
-  [[nodiscard]] numbers numbers_of(const jacobian_sample& s) const {
-    numbers n;
-    n.names = {"1"};
-    n.values = {1};
-    const auto add = [&](const std::string& name, const Eigen::Ref<const vector>& v) {
-      for (Eigen::Index i = 0; i < v.size(); ++i) {
-        n.names.push_back(v.size() == 1 ? name : message(name, "[", i, "]"));
-        n.values.push_back(v[i]);
-      }
-    };
-    std::vector<jacobian_part> parts = problem_.arguments;
-    parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
-    for (const jacobian_part& a : parts) {
-      if (a.is_motion()) {
-        const quaternion<double> q = rotation_at(a, s.state);
-        add(a.name, Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
-      }
-      if (a.type == kind::pose) {
-        add(a.name + ".translation", s.state.segment<3>(a.state + 4));
-      } else if (!a.is_motion()) {
-        add(a.name, s.state.segment(a.state, a.dimension));
-      }
-    }
-    for (const jacobian_part& r : problem_.results) {
-      if (!r.is_motion() && n.values.size() < 30) {
-        add(r.name, s.truth.value.segment(r.state, r.dimension));
-      }
-    }
-    for (const motion& m : motions()) {
-      for (const jacobian_part& v : problem_.arguments) {
-        if (v.vector_state() >= 0 && !m.is_result && m.other == nullptr && n.values.size() < 34) {
-          const Eigen::Vector3d x = s.state.segment<3>(v.vector_state());
-          const Eigen::Matrix3d r = rotation_of(s, m);
-          add(message("(", m.name, " ", v.name, ")"), r * x);
-          add(message("(", m.name, "^-1 ", v.name, ")"), r.transpose() * x);
-          if (m.part->type == kind::pose && m.part != &v) {
-            const Eigen::Vector3d t = s.state.segment<3>(m.part->state + 4);
-            add(message("(", m.name, " ", v.name, " + t)"), r * x + t);
-            add(message("(", m.name, "^-1 (", v.name, " - t))"), r.transpose() * (x - t));
-          }
-        }
-      }
-    }
-    return n;
   }
 
   /// A single entry: another entry, or one wrong term that is a product of few numbers.
