@@ -21,15 +21,15 @@ namespace {
 using namespace duet::expression;
 using duet::vector3;
 
-constexpr symbol<"x"> x;
-constexpr symbol<"y"> y;
+constexpr symbol<"x"> symbol_x;
+constexpr symbol<"y"> symbol_y;
 constexpr vector_symbol<"v"> v;
 constexpr quaternion_symbol<"q"> q;
 constexpr quaternion_symbol<"p"> p;
 
 template <class F, class G>
 equality verdict(const F& f, const G& g, const assumptions& known) {
-  return is_equal(trace(f, x, y), trace(g, x, y), known).verdict;
+  return is_equal(trace(f, symbol_x, symbol_y), trace(g, symbol_x, symbol_y), known).verdict;
 }
 
 } // namespace

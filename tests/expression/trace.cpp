@@ -203,7 +203,7 @@ const auto product_of_sines = [](const auto& x) {
 TEST_CASE_TEMPLATE("reverse_gradient: as forward, at most three times the value's operations", Size,
                    std::integral_constant<int, 2>, std::integral_constant<int, 6>,
                    std::integral_constant<int, 40>) {
-  constexpr int n = Size::value;
+  static constexpr int n = Size::value;
   const auto check = [](const auto& f) {
     formula_graph g;
     const std::vector<int> nodes =

@@ -231,17 +231,17 @@ private:
   /// angular velocity less its bias in a time step.
   void add_increments(std::vector<intermediate>& list) const {
     const bool is_right = problem_.side == perturbation::right;
-    std::vector<const jacobian_part*> vectors = {nullptr}, numbers = {nullptr};
+    std::vector<const jacobian_part*> vectors = {nullptr}, scalars = {nullptr};
     for (const jacobian_part& a : problem_.arguments) {
       if (a.type == kind::vector && a.dimension == 3) {
         vectors.push_back(&a);
       } else if (a.type == kind::number) {
-        numbers.push_back(&a);
+        scalars.push_back(&a);
       }
     }
     for (const jacobian_part* v : vectors) {
       for (const jacobian_part* w : vectors) {
-        for (const jacobian_part* t : numbers) {
+        for (const jacobian_part* t : scalars) {
           if (v == nullptr || v == w) {
             continue;
           }

@@ -120,9 +120,9 @@ protected:
       return list;
     };
     // A matrix of one row or column is named as a whole.
-    const auto line = [](const char* kind, Eigen::Index i, Eigen::Index count,
+    const auto line = [](const char* what, Eigen::Index i, Eigen::Index count,
                          const std::string& of) {
-      return count > 1 ? message(kind, " ", i, " of ", of) : of;
+      return count > 1 ? message(what, " ", i, " of ", of) : of;
     };
     for (const jacobian_part& r : problem_.results) {
       for (const jacobian_part& a : problem_.arguments) {

@@ -464,17 +464,17 @@ protected:
     const std::size_t count = names.names.size();
     std::vector<double> ratio(values.size());
     // Of the errors, or of the entries as written.
-    const auto is_constant = [&](const auto& term, bool is_entry = false) {
+    const auto is_constant = [&](const auto& ratio_of, bool is_entry = false) {
       const auto number = [&](std::size_t n) {
         return is_entry ? used[n]->written(i, k) : errors[n];
       };
-      const double first = term(values[0]);
+      const double first = ratio_of(values[0]);
       const double factor = number(0) / first;
       if (!std::isfinite(factor)) {
         return false;
       }
       for (std::size_t n = 1; n < values.size(); ++n) {
-        if (!(std::abs(number(n) - factor * term(values[n])) <= 4 * tolerances[n])) {
+        if (!(std::abs(number(n) - factor * ratio_of(values[n])) <= 4 * tolerances[n])) {
           return false;
         }
       }
