@@ -413,6 +413,10 @@ DUET_RECORDED_FUNCTION(remainder)
 }
 /// atan2(√s, w)/√s as one expression::operation, likewise.
 [[nodiscard]] inline recorded recorded_arc_ratio(const recorded& s, const recorded& w) {
+  if (detail::are_constant(s, w)) {
+    const double root = std::sqrt(s.number());
+    return root == 0 && w.number() > 0 ? 1 / w.number() : std::atan2(root, w.number()) / root;
+  }
   return recorded::of(expression::operation::arc_ratio, s, w);
 }
 
