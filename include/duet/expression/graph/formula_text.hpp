@@ -48,7 +48,7 @@ public:
       : f_(f), g_(f.operations()), has_exact_constants_(exact_constants), needed_(f.needed()),
         uses_(needed_.size(), 0), texts_(needed_.size()) {}
 
-  [[nodiscard]] std::string text() {
+  [[nodiscard]] std::string text(bool has_declarations = true) {
     count_uses();
     const bool is_long = measure();
     std::string body;
@@ -69,7 +69,7 @@ public:
     for (std::size_t k = 0; k < f_.outputs().size(); ++k) {
       body += (k == 0 ? "" : ", ") + output(f_.outputs()[k]);
     }
-    return declarations(body, shared > 0) + body;
+    return has_declarations ? declarations(body, shared > 0) + body : body;
   }
 
 private:

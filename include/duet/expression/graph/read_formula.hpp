@@ -35,9 +35,9 @@ namespace duet::expression {
 
 /// Options of `read_formula`.
 struct read_options {
-  std::vector<std::string> scalars;   ///< names of scalar inputs, the first of the formula
-  std::vector<std::string> vectors;   ///< names of vector inputs, which follow
-  std::vector<std::string> rotations; ///< names of quaternion inputs, which follow
+  std::vector<std::string> scalars = {};   ///< names of scalar inputs, the first of the formula
+  std::vector<std::string> vectors = {};   ///< names of vector inputs, which follow
+  std::vector<std::string> rotations = {}; ///< names of quaternion inputs, which follow
   /// True if decimals such as 0.1 and pi shall be exact over scalars of more digits than double:
   /// they become 1/10 and acos(-1). In double their values are the same.
   bool exact_constants = false;

@@ -1,0 +1,229 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <duet/core/errors.hpp>
+#include <duet/core/text/number_text.hpp>
+#include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/graph.hpp>
+#include <duet/expression/graph/graph_text.hpp>
+#include <duet/expression/text.hpp>
+#include <duet/expression/tree/latex_arithmetic.hpp>
+#include <duet/expression/tree/latex_text.hpp>
+#include <duet/expression/tree/printed.hpp>
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// \file
+/// Formulas that are data in LaTeX, as typed formulas are written.
+
+namespace duet::expression {
+
+namespace detail {
+
+/// A name with Greek letters and indices spelt out: `theta1` of `θ₁`.
+[[nodiscard]] inline std::string spelt_out(const std::string& name) {
+  static constexpr std::array letters = {
+      "alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
+      "kappa", "lambda", "mu",      "nu",    "xi",      "omicron", "pi",   "rho",   "varsigma",
+      "sigma", "tau",    "upsilon", "phi",   "chi",     "psi",     "omega"};
+  constexpr unsigned alpha = 0x3B1, index_0 = 0x2080;
+  std::string result;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto byte = [&](std::size_t k) {
+      return i + k < name.size() ? static_cast<unsigned char>(name[i + k]) & 0x3FU : 0U;
+    };
+    const unsigned first = static_cast<unsigned char>(name[i]);
+    const unsigned two = ((first & 0x1FU) << 6U) | byte(1);
+    const unsigned three = ((first & 0xFU) << 12U) | (byte(1) << 6U) | byte(2);
+    if ((first >> 5U) == 6 && two >= alpha && two < alpha + letters.size()) {
+      result += letters[two - alpha];
+      i += 1;
+    } else if ((first >> 4U) == 14 && three >= index_0 && three < index_0 + 10) {
+      result += char('0' + (three - index_0));
+      i += 2;
+    } else {
+      result += name[i];
+    }
+  }
+  return result;
+}
+
+/// The command of a function in LaTeX, or its form with # for the argument; empty for its name.
+[[nodiscard]] inline const char* latex_command(operation what) {
+  using enum operation;
+  switch (what) {
+  case log:
+    return "\\log";
+  case log2:
+    return "\\log_{2}";
+  case log10:
+    return "\\log_{10}";
+  case exp2:
+    return "2^{#}";
+  case sin:
+    return "\\sin";
+  case cos:
+    return "\\cos";
+  case tan:
+    return "\\tan";
+  case asin:
+    return "\\arcsin";
+  case acos:
+    return "\\arccos";
+  case atan:
+    return "\\arctan";
+  case sinh:
+    return "\\sinh";
+  case cosh:
+    return "\\cosh";
+  case tanh:
+    return "\\tanh";
+  case tgamma:
+    return "\\Gamma";
+  case lgamma:
+    return "\\log\\Gamma";
+  case abs:
+    return "\\left|#\\right|";
+  case floor:
+    return "\\left\\lfloor #\\right\\rfloor";
+  case ceil:
+    return "\\left\\lceil #\\right\\rceil";
+  default:
+    return "";
+  }
+}
+
+/// A variable, with the index of a component behind it.
+[[nodiscard]] inline printed latex_variable(const std::string& name) {
+  const std::size_t bracket = name.find('[');
+  const printed letters{latex_name(spelt_out(name.substr(0, bracket)), kind::scalar),
+                        precedence::atom, notation::latex, factor_place::symbol};
+  if (bracket == std::string::npos) {
+    return letters;
+  }
+  printed x = with_index(letters, name.substr(bracket + 1, name.size() - bracket - 2));
+  x.style = notation::latex;
+  x.place = factor_place::symbol;
+  return x;
+}
+
+/// An operation of a graph in LaTeX.
+[[nodiscard]] inline printed latex_node(const graph& g, const graph_node& n,
+                                        const std::array<printed, 3>& x) {
+  using enum operation;
+  const auto style = notation::latex;
+  const auto infix = [&](const char* sign, precedence beside) -> printed {
+    return {x[0].inside(beside) + sign + x[1].inside(beside), precedence::condition, style};
+  };
+  switch (n.what) {
+  case number:
+    return printed_number(style, duet::to_text(n.number));
+  case variable:
+    return latex_variable(g.variable_name(n.index));
+  case negative:
+    return latex_product_of({"-1", precedence::negative_number, style, factor_place::number}, x[0]);
+  case sum:
+    return latex_sum_of(x[0], 1, x[1]);
+  case difference:
+    return latex_sum_of(x[0], -1, x[1]);
+  case product:
+    return latex_product_of(x[0], x[1]);
+  case quotient:
+    return latex_product_of(x[0], x[1], -1);
+  case power:
+    return latex_power(x[0], printed_number(style, std::to_string(n.index)));
+  case pow:
+    return latex_power(x[0], x[1]);
+  case sqrt:
+    return latex_root(x[0]);
+  case exp:
+    return latex_exponential(x[0]);
+  case acos:
+    if (g.is_number(n.operands[0], -1)) {
+      return {"\\pi", precedence::atom, style, factor_place::pi};
+    }
+    break;
+  case hypot: {
+    const printed two = printed_number(style, "2");
+    return latex_root(latex_sum_of(latex_power(x[0], two), 1, latex_power(x[1], two)));
+  }
+  case stumpff: {
+    const std::string letter = "c_{" + std::to_string(n.index) + "}";
+    return printed_call(style, {"", letter.c_str()}, {x[0]});
+  }
+  case fma:
+    return latex_sum_of(latex_product_of(x[0], x[1]), 1, x[2]);
+  case less:
+    return infix(" < ", precedence::sum);
+  case less_equal:
+    return infix(" \\le ", precedence::sum);
+  case equal:
+    return infix(" = ", precedence::sum);
+  case both:
+    return infix(" \\land ", precedence::sum);
+  case either:
+    return infix(" \\lor ", precedence::sum);
+  case no:
+    return {"\\lnot " + x[0].inside(precedence::atom), precedence::product, style};
+  case select:
+    return {"\\begin{cases}" + x[1].text + " & " + x[0].text + "\\\\" + x[2].text +
+                " & \\text{else}\\end{cases}",
+            precedence::atom, style};
+  default:
+    break;
+  }
+  const std::string name(function_name_of(n.what));
+  const function_name written = {name.c_str(), latex_command(n.what)};
+  return operand_count(n.what) == 1 ? printed_call(style, written, {x[0]})
+                                    : printed_call(style, written, {x[0], x[1]});
+}
+
+} // namespace detail
+
+/// The only output of a formula for a paper, to stand in mathematics mode, as `to_latex` writes
+/// typed formulas; vectors as columns, quaternions as (w, x, y, z).
+/// \throws invalid_input for several outputs, and if the formula has more than 2000 operations
+[[nodiscard]] inline std::string to_latex(const formula_graph& f) {
+  using detail::latex_terms;
+  constexpr double max_size = 2000;
+  const graph& g = f.operations();
+  duet::detail::require(f.outputs().size() == 1, "duet: to_latex takes a formula with one output");
+  const std::vector<bool> needed = f.needed();
+  std::vector<double> sizes(needed.size(), 0); // of the tree
+  std::vector<printed> texts(needed.size());
+  for (int i = 0; i < g.size(); ++i) {
+    const std::size_t k = std::size_t(i);
+    if (!needed[k]) {
+      continue;
+    }
+    sizes[k] = 1;
+    std::array<printed, 3> operands;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (g[i].operands[j] >= 0) {
+        sizes[k] += sizes[std::size_t(g[i].operands[j])];
+        operands[j] = texts[std::size_t(g[i].operands[j])];
+      }
+    }
+    duet::detail::require(sizes[k] <= max_size, "duet: to_latex: the formula has more than ",
+                          max_size, " operations");
+    texts[k] = detail::latex_of_kind(detail::latex_node(g, g[i], operands), true);
+  }
+  const named_value& y = f.outputs()[0];
+  std::vector<std::string> numbers;
+  std::string list;
+  for (const int node : y.nodes) {
+    numbers.push_back(
+        detail::latex_text(latex_terms(texts[std::size_t(node)]), detail::fractions::lines).text);
+    list += (list.empty() ? "" : ", ") + numbers.back();
+  }
+  return y.kind == shape::scalar ? numbers[0]
+         : y.kind == shape::matrix
+             ? detail::printed_matrix(notation::latex, std::size_t(y.columns), numbers).text
+             : "\\left(" + list + "\\right)";
+}
+
+} // namespace duet::expression
