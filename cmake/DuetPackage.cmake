@@ -6,6 +6,8 @@ if(duet_libraries AND BUILD_SHARED_LIBS)
   return() # Debian has packages for shared libraries alone
 endif()
 
+# Without the programs, which are of one processor and link shared libraries of Boost.
+set(CPACK_INSTALL_CMAKE_PROJECTS "${PROJECT_BINARY_DIR};duet;Unspecified;/")
 set(CPACK_VERBATIM_VARIABLES ON)
 set(CPACK_GENERATOR DEB)
 set(CPACK_SOURCE_GENERATOR "") # scripts/release makes the archive of the sources

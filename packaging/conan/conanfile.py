@@ -54,6 +54,7 @@ class DuetRecipe(ConanFile):
         toolchain = CMakeToolchain(self)
         toolchain.cache_variables["DUET_BUILD_TESTS"] = False
         toolchain.cache_variables["DUET_BUILD_EXAMPLES"] = False
+        toolchain.cache_variables["DUET_BUILD_PROGRAMS"] = False
         toolchain.cache_variables["CMAKE_DISABLE_FIND_PACKAGE_assimp"] = True
         toolchain.cache_variables["DUET_BUILD_IO"] = bool(self.options.io)
         toolchain.cache_variables["DUET_BUILD_ROBOTICS"] = bool(self.options.robotics)

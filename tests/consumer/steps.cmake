@@ -16,7 +16,7 @@ endmacro()
 # Configures duet without libraries in a build folder: <build> <source> [option ...].
 function(configure_headers build tree)
   run(${CMAKE_COMMAND} -S ${tree} -B ${build} -G ${generator} -DCMAKE_CXX_COMPILER=${compiler}
-    -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_EXAMPLES=OFF -DDUET_BUILD_IO=OFF -DDUET_BUILD_ROBOTICS=OFF ${ARGN})
+    -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_EXAMPLES=OFF -DDUET_BUILD_PROGRAMS=OFF -DDUET_BUILD_IO=OFF -DDUET_BUILD_ROBOTICS=OFF ${ARGN})
 endfunction()
 
 # A project finds duet below a prefix, and a program of it runs: <prefix> <whether it has the libraries>.

@@ -57,7 +57,7 @@ tar xzf "out/$archive"
 (cd origin && git ls-files | sed 's,^,./,' | sort) >committed
 cmp files committed
 "$cmake" -S "duet-$version" -B build -D CMAKE_CXX_COMPILER="$compiler" -D DUET_BUILD_TESTS=OFF \
-  -D DUET_BUILD_EXAMPLES=OFF -D DUET_BUILD_ROBOTICS=OFF -D DUET_BUILD_IO=OFF >/dev/null
+  -D DUET_BUILD_EXAMPLES=OFF -D DUET_BUILD_PROGRAMS=OFF -D DUET_BUILD_ROBOTICS=OFF -D DUET_BUILD_IO=OFF >/dev/null
 "$cmake" --install build --prefix "$folder/prefix" >/dev/null
 "$cmake" -S "$top/tests/consumer/find_package" -B consumer -D CMAKE_CXX_COMPILER="$compiler" \
   -D CMAKE_PREFIX_PATH="$folder/prefix" -D expected_prefix="$folder/prefix" >/dev/null

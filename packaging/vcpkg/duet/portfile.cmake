@@ -13,7 +13,7 @@ if(NOT "io" IN_LIST FEATURES)
 endif()
 
 vcpkg_cmake_configure(SOURCE_PATH "${SOURCE_PATH}"
-  OPTIONS -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_EXAMPLES=OFF -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON ${options})
+  OPTIONS -DDUET_BUILD_TESTS=OFF -DDUET_BUILD_EXAMPLES=OFF -DDUET_BUILD_PROGRAMS=OFF -DCMAKE_DISABLE_FIND_PACKAGE_assimp=ON ${options})
 vcpkg_cmake_install()
 vcpkg_cmake_config_fixup(CONFIG_PATH "${config_folder}")
 vcpkg_fixup_pkgconfig()

@@ -1,0 +1,43 @@
+# Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+# The commands that a page prints in blocks of sh must print what the blocks of text behind them hold.
+#
+# cmake -Dprogram=<duet-check-formula> -Dpage=<file> -Dfolder=<for files> -P page.cmake
+
+cmake_minimum_required(VERSION 3.22)
+
+file(REMOVE_RECURSE ${folder})
+file(MAKE_DIRECTORY ${folder})
+cmake_path(GET program PARENT_PATH programs)
+set(ENV{PATH} "${programs}:$ENV{PATH}")
+file(READ ${page} rest)
+set(count 0)
+while(TRUE)
+  string(FIND "${rest}" "```sh\n" position)
+  if(position EQUAL -1)
+    break()
+  endif()
+  math(EXPR position "${position} + 6")
+  string(SUBSTRING "${rest}" ${position} -1 rest)
+  string(FIND "${rest}" "```" position)
+  string(SUBSTRING "${rest}" 0 ${position} script)
+  math(EXPR position "${position} + 3")
+  string(SUBSTRING "${rest}" ${position} -1 rest)
+  if(NOT rest MATCHES "^\n\n```text\n")
+    continue()
+  endif()
+  string(SUBSTRING "${rest}" 10 -1 rest)
+  string(FIND "${rest}" "```" position)
+  string(SUBSTRING "${rest}" 0 ${position} expected)
+  math(EXPR position "${position} + 3")
+  string(SUBSTRING "${rest}" ${position} -1 rest)
+  execute_process(COMMAND sh -uc "${script}" WORKING_DIRECTORY ${folder} OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(NOT output STREQUAL expected)
+    message(FATAL_ERROR "${script}prints\n${output}but the page says\n${expected}")
+  endif()
+  math(EXPR count "${count} + 1")
+endwhile()
+if(count EQUAL 0)
+  message(FATAL_ERROR "${page} has no commands")
+endif()
+message("${count} commands of ${page} print what it says")
