@@ -77,7 +77,8 @@ namespace duet::expression::detail {
 /// - `component(i, at)`: the last operand's i-th number;
 /// - `declare(kind, name, at)`, `assign(name, at)`, `output(name, at)`: ends of statements.
 ///
-/// Both may throw; the text is read once from left to right. It can run in the compiler.
+/// Both may throw; the text is read once from left to right. It can run in the compiler, where a
+/// builder with a member `error(expected, at)` is told of the first error instead.
 template <class Builder>
 class formula_grammar {
 public:
@@ -142,7 +143,7 @@ private:
     }
   }
   constexpr void advance(std::size_t bytes) {
-    at_ += bytes;
+    at_ = std::min(at_ + bytes, text_.size());
     skip_blanks();
   }
   /// True if the text goes on with the sign, which is then passed.
@@ -197,16 +198,31 @@ private:
 
   // Errors.
 
-  [[noreturn]] constexpr void fail(const char* problem, std::size_t at) const {
+  constexpr void fail(const char* problem, std::size_t at) {
+    if constexpr (requires { builder_.error(problem, at); }) {
+      builder_.error(problem, at);
+      at_ = text_.size(); // what follows ends soon, and finds other errors
+    } else {
+      raise(problem, at);
+    }
+  }
+  constexpr void expected(const char* what) {
+    if constexpr (requires { builder_.error(what, at_); }) {
+      fail(what, at_);
+    } else {
+      raise_expected(what);
+    }
+  }
+  [[noreturn]] void raise(const char* problem, std::size_t at) const {
     duet::detail::raise(invalid_input(
         duet::detail::message("duet: read_formula: column ", column_of(text_, at), ": ", problem)));
   }
-  [[noreturn]] void expected(const char* what) const {
+  [[noreturn]] void raise_expected(const char* what) const {
     duet::detail::raise(
         invalid_input(duet::detail::message("duet: read_formula: column ", column_of(text_, at_),
                                             ": expected ", what, ", got ", current())));
   }
-  constexpr void require(bool condition, const char* what) const {
+  constexpr void require(bool condition, const char* what) {
     if (!condition) {
       expected(what);
     }
