@@ -12,7 +12,10 @@
 /// memory (spline/bspline_segment.hpp, quaternion/quaternion_order.hpp), split curves
 /// (spline/split_bspline.hpp), CSV (core/text/csv.hpp), the planner of the lecture notes
 /// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp),
-/// formulas as data (expression/graph/trace.hpp, expression/graph/reverse.hpp), proofs of equality
+/// formulas as data (expression/graph/trace.hpp, expression/graph/reverse.hpp), from text and as
+/// text and LaTeX (expression/graph/read_formula.hpp, expression/graph/formula_from.hpp,
+/// expression/graph/formula_text.hpp, expression/graph/formula_latex.hpp), their derivatives
+/// (expression/graph/formula_derivative.hpp) and proofs of equality
 /// (expression/graph/is_equal.hpp), formulas as code of C, C++, Python and MATLAB
 /// (expression/code/c.hpp, expression/code/cpp.hpp, expression/code/python.hpp,
 /// expression/code/matlab.hpp), chains and curves as formulas (kinematics/chain_formula.hpp,

@@ -58,9 +58,7 @@ def problem_if(wrong, text):
 
 texts = {path.relative_to(TOP / "include").as_posix(): read(path) for path in sorted((TOP / "include/duet").rglob("*.hpp"))}
 # Sources of compiled libraries in src/<layer>/, and their private headers there and in folders below.
-# (Programs, in src/programs/, are in no layer.)
-sources = {path.relative_to(TOP).as_posix(): read(path) for path in sorted((TOP / "src").rglob("*.[ch]pp"))
-           if "programs" not in path.parts}
+sources = {path.relative_to(TOP).as_posix(): read(path) for path in sorted((TOP / "src").rglob("*.[ch]pp"))}
 includes = {header: re.findall(r"^[ \t]*#[ \t]*include[ \t]*(.*)", text, re.M) for header, text in (texts | sources).items()}
 
 

@@ -1,8 +1,8 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# The commands that a page prints in blocks of sh must print what the blocks of text behind them hold.
+# The commands that docs/check_formula.md prints in blocks of sh must print what the blocks of text behind them hold.
 #
-# cmake -Dprogram=<duet-check-formula> -Dpage=<file> -Dfolder=<for files> -P page.cmake
+# cmake -Dprogram=<duet-check-formula> -Dsource=<duet> -Dfolder=<for files> -P page.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -10,6 +10,7 @@ file(REMOVE_RECURSE ${folder})
 file(MAKE_DIRECTORY ${folder})
 cmake_path(GET program PARENT_PATH programs)
 set(ENV{PATH} "${programs}:$ENV{PATH}")
+set(page ${source}/docs/check_formula.md)
 file(READ ${page} rest)
 set(count 0)
 while(TRUE)
