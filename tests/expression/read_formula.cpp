@@ -322,6 +322,8 @@ TEST_CASE("to_text: a formula reads back as the same formula") {
       "-x^2 - -y + (-x)^3 / (-3) - (x - y) - (x + y)",
       "a/b/c - a/(b/c) + (a*b)*c + a*(b*c) + a/(b*c) + a - (b - c)",
       "x^y^2 + (x^y)^2 + (-2)^x + 2^-x + x^-2 + (2^3)^x + (x/y)^0.5",
+      "-(0.004 * (-0.014)) + (-0.1) * x * 0.3 - 0.7 * -0.9",
+      "2 / -x^2 - (-3 / x) * y + (-3) / 10 - -(2/x/y) + -(3/7)*x",
       "select(x < 1 && !(x == 2) || y >= 2 && isnan(y), -x, max(x, min(y, 3)))",
       "scalar b, a; a - b",
       "scalar unused; a - 1",

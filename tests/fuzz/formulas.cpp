@@ -25,6 +25,7 @@ std::vector<std::string> seeds() {
           "rotation q, p; a = slerp(q, p, t); value = log(a), slope = vec(conj(a)) / 2",
           "select(x < 1 && !(y >= 2) || x == y, max(x, y), abs(-x)) - hypot(x, y, 3)",
           "θ₁ = 2; sin(θ₁*x)^2^x + atan2(x, pi) + fma(x, 2, 3) - stumpff2(x) * inf",
+          "2 / -x^2 - (-3 / x) * y + (-3) / 10 - -(2/x/y)",
           "((((x))))^-(-(-(x))) + normalized([x, y, 0.1])[1]"};
 }
 

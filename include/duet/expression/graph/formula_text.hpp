@@ -60,7 +60,7 @@ public:
         continue;
       }
       texts_[k] = node(g_[i]);
-      if (is_long && is_named(i)) {
+      if (is_long && (is_named(i) || texts_[k].text.size() > max_length)) {
         const std::string name = prefix + std::to_string(++shared);
         body += name + " = " + texts_[k].text + "; ";
         texts_[k] = {name};
@@ -90,7 +90,6 @@ private:
   }
   /// True if names are needed: without, the text would be long or deeply nested.
   [[nodiscard]] bool measure() {
-    constexpr double max_length = 1500;
     depths_.assign(needed_.size(), 0);
     std::vector<double> lengths(needed_.size(), 0);
     double length = 0;
@@ -112,7 +111,7 @@ private:
         length += lengths[std::size_t(node)];
       }
     }
-    return is_deep || length > max_length;
+    return is_deep || length > double(max_length);
   }
   [[nodiscard]] int depth(const graph_node& n) const {
     int result = 0;
@@ -223,6 +222,7 @@ private:
   }
 
   static constexpr int max_depth = 40;
+  static constexpr std::size_t max_length = 1500; ///< without names for common parts
 
   const formula_graph& f_;
   const graph& g_;

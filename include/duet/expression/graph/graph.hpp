@@ -326,9 +326,16 @@ private:
       return factor == 0 ? a : factor == 1 ? b : negated(b);
     }
     if (is_number(b)) {
-      return detail::is_product_exact(factor, (*this)[b].number)
-                 ? value_of(factor * (*this)[b].number)
-                 : -1;
+      const double second = (*this)[b].number;
+      if (detail::is_product_exact(factor, second)) {
+        return value_of(factor * second);
+      }
+      if (factor < 0 || second < 0) {
+        const int sizes =
+            apply(operation::product, value_of(std::abs(factor)), value_of(std::abs(second)));
+        return (factor < 0) != (second < 0) ? negated(sizes) : sizes;
+      }
+      return -1;
     }
     if (factor < 0) {
       return negated(apply(operation::product, value_of(-factor), b));
@@ -350,6 +357,9 @@ private:
     }
     if (is_number(a, 0) && !is_number(b, 0)) {
       return a;
+    }
+    if (is_number(a) && (*this)[a].number < 0) {
+      return negated(apply(operation::quotient, value_of(-(*this)[a].number), b));
     }
     if (!is_number(b)) {
       return -1;
