@@ -5,6 +5,8 @@
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/expression/graph/is_equal.hpp>
+#include <duet/expression/graph/recorded.hpp>
+#include <duet/expression/graph/reverse.hpp>
 #include <duet/expression/graph/trace.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -19,6 +21,7 @@ namespace test_expression_is_equal {
 namespace {
 
 using namespace duet::expression;
+using duet::recorded;
 using duet::vector3;
 
 constexpr symbol<"x"> symbol_x;
@@ -117,6 +120,37 @@ TEST_CASE("is_equal: rotations") {
   const auto exponential = trace([](auto a) { return squared_norm(duet::exp(a)); }, v);
   CHECK(is_equal(exponential, trace([](auto a) { return 1 + 0 * a[0]; }, v)).verdict ==
         equality::proved);
+  // N4 as textbooks have it, which has no value at 0
+  const auto by_half_angle = trace(
+      [](auto a) {
+        const auto length = sqrt(a.dot(a));
+        const auto along = sin(length) / length;
+        return duet::quaternion<recorded>(cos(length), along * a[0], along * a[1], along * a[2]);
+      },
+      v);
+  const auto exp = trace([](auto a) { return duet::exp(a); }, v);
+  CHECK(is_equal(exp, by_half_angle).verdict == equality::unknown);
+  CHECK(is_equal(exp, by_half_angle, {.nonzero = {"v"}}).verdict == equality::proved);
+  CHECK(is_equal(reverse_gradient(trace([](auto a) { return duet::exp(a).x(); }, v), {"v"}),
+                 reverse_gradient(trace(
+                                      [](auto a) {
+                                        const auto length = sqrt(a.dot(a));
+                                        return sin(length) / length * a[0];
+                                      },
+                                      v),
+                                  {"v"}),
+                 {.nonzero = {"v"}})
+            .verdict == equality::proved);
+  const auto log = trace([](auto a) { return vector3<recorded>(duet::log(a).vec()); }, q);
+  const auto by_arc = trace(
+      [](auto a) {
+        const vector3<recorded> w = a.vec();
+        const auto length = sqrt(w.dot(w));
+        return vector3<recorded>(w * (atan2(length, a.w()) / length));
+      },
+      q);
+  CHECK(is_equal(log, by_arc).verdict == equality::unknown);
+
   const auto product = trace([](auto a, auto b) { return duet::conj(a * b); }, q, p);
   CHECK(
       is_equal(product, trace([](auto a, auto b) { return duet::conj(b) * duet::conj(a); }, q, p)));

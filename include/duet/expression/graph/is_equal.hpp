@@ -34,7 +34,7 @@ enum class equality {
 /// Knowledge of the inputs of formulas, by their names.
 struct assumptions {
   std::vector<std::string> positive = {}; ///< scalars that are positive
-  std::vector<std::string> nonzero = {};  ///< scalars that are not 0
+  std::vector<std::string> nonzero = {};  ///< scalars, vectors and rotations that are not 0
   std::vector<std::string> unit = {};     ///< vectors, quaternions and poses of unit norm
 };
 
@@ -111,10 +111,24 @@ private:
 
   [[nodiscard]] bool holds(int need) const {
     const value_condition& c = conditions_[std::size_t(need)];
-    return c.what == kind::nonzero        ? field_.ring.sign_of(c.p) != 0
+    return c.what == kind::nonzero        ? cannot_vanish(c.p)
            : c.what == kind::not_negative ? field_.ring.sign_of(c.p, false) == 1
            : c.what == kind::positive     ? field_.ring.sign_of(c.p) == 1
-                                          : false;
+                                          : !c.p.empty() && cannot_vanish(c.p);
+  }
+  /// True for a polynomial that is of one sign, or a multiple of one that is assumed not to be 0.
+  [[nodiscard]] bool cannot_vanish(const polynomial& p) const {
+    return field_.ring.sign_of(p) != 0 ||
+           std::any_of(nonzero_polynomials_.begin(), nonzero_polynomials_.end(),
+                       [&](const polynomial& known) { return are_proportional(p, known); });
+  }
+  /// True if a is a multiple of b, neither of which is 0.
+  [[nodiscard]] static bool are_proportional(const polynomial& a, const polynomial& b) {
+    const rational leading_a = a.begin()->second, leading_b = b.begin()->second;
+    return a.size() == b.size() &&
+           std::equal(a.begin(), a.end(), b.begin(), [&](const auto& x, const auto& y) {
+             return x.first == y.first && x.second * leading_b == y.second * leading_a;
+           });
   }
 
   [[nodiscard]] static bool contains(const std::vector<std::string>& names,
@@ -129,12 +143,19 @@ private:
         atoms.push_back(a);
         atom& info = field_.ring[a];
         info.is_positive = contains(known_.positive, x.name);
-        if (contains(known_.nonzero, x.name)) {
+        if (contains(known_.nonzero, x.name) && x.nodes.size() == 1) {
           nonzero_.insert(a);
         }
         if (std::size_t(x.nodes[k]) < values.size()) {
           values[std::size_t(x.nodes[k])] = {{polynomial_ring::power_of(a, 1)}, {}, {}};
         }
+      }
+      if (contains(known_.nonzero, x.name) && x.nodes.size() > 1) {
+        polynomial square;
+        for (const int a : atoms) {
+          polynomial_ring::add(square, polynomial_ring::power_of(a, 2));
+        }
+        nonzero_polynomials_.push_back(std::move(square));
       }
       if (contains(known_.unit, x.name)) { // a pose has the norm of its real part
         const std::size_t size = x.kind == shape::pose ? 4 : atoms.size();
@@ -170,7 +191,9 @@ private:
   void require(value& x, kind what, const fraction& of) {
     if (what == kind::nonzero) { // each factor apart
       const auto is_known = [&](int a) {
-        return nonzero_.count(a) > 0 || field_.ring[a].is_positive;
+        const atom& info = field_.ring[a];
+        return nonzero_.count(a) > 0 || info.is_positive ||
+               (info.degree == 2 && is_root(info) && cannot_vanish(info.relation));
       };
       if (of.above.size() == 1) {
         for (const auto& [a, exponent] : of.above.begin()->first) {
@@ -183,8 +206,9 @@ private:
     }
     x.needs.insert(condition_of(what, of));
   }
-  void require_other(value& x, const std::string& text) {
-    value_condition c{kind::other, {}, text};
+  /// A condition that is only known by its text, and holds where a polynomial does not vanish.
+  void require_other(value& x, const std::string& text, const polynomial& sufficient = {}) {
+    value_condition c{kind::other, sufficient, text};
     for (std::size_t i = 0; i < conditions_.size(); ++i) {
       if (conditions_[i].what == kind::other && conditions_[i].text == text) {
         x.needs.insert(int(i));
@@ -193,6 +217,31 @@ private:
     }
     conditions_.push_back(std::move(c));
     x.needs.insert(int(conditions_.size()) - 1);
+  }
+
+  [[nodiscard]] static bool is_root(const atom& x) { return x.name.rfind("root2", 0) == 0; }
+  /// The square root in a product, where it has one with exponent 1; otherwise -1.
+  [[nodiscard]] int root_in(const monomial& m) const {
+    int root = -1;
+    for (const auto& [a, exponent] : m) {
+      if (is_root(field_.ring[a])) {
+        if (root >= 0 || exponent != 1) {
+          return -1;
+        }
+        root = a;
+      }
+    }
+    return root;
+  }
+  /// cos and sin of c m with a square root √p in m, by the Stumpff functions of its square, which
+  /// has none.
+  [[nodiscard]] std::pair<fraction, fraction> pair_of_root(const monomial& m, const rational& c,
+                                                           int root) {
+    const fraction rest{{{polynomial_ring::product_of(m, {{root, -1}}), c}}};
+    const fraction square =
+        field_.product(field_.product(rest, rest), {field_.ring[root].relation});
+    const fraction sine = field_.product({{{m, c}}}, stumpff_function(square, 1));
+    return {stumpff_function(square, 0), sine};
   }
 
   [[nodiscard]] fraction atom_of(const std::string& name) {
@@ -247,7 +296,9 @@ private:
       if (n == 0) {
         return circular_pair(opaque_angle(x));
       }
-      const auto unit = circular_pair({term + "*" + bases_.at(term).str(), 1});
+      const int root = root_in(m);
+      const auto unit = root >= 0 ? pair_of_root(m, bases_.at(term), root)
+                                  : circular_pair({term + "*" + bases_.at(term).str(), 1});
       for (int k = 0; k < std::abs(n); ++k) {
         const fraction sine = n < 0 ? negated(unit.second) : unit.second;
         const fraction cosine = field_.sum(field_.product(result.first, unit.first),
@@ -390,24 +441,19 @@ private:
       result.nonzero_if_false = x[0]->number.above;
     }
   }
-  [[nodiscard]] bool is_implied(int need, const polynomial& cannot_vanish) const {
+  [[nodiscard]] bool is_implied(int need, const polynomial& divisor) const {
     const value_condition& c = conditions_[std::size_t(need)];
-    if (c.what != kind::nonzero || cannot_vanish.empty()) {
+    if (c.what != kind::nonzero || divisor.empty()) {
       return false;
     }
-    if (cannot_vanish.size() == 1 && c.p.size() == 1) { // none of the atoms of a product vanishes
-      const monomial &of_condition = cannot_vanish.begin()->first, &m = c.p.begin()->first;
+    if (divisor.size() == 1 && c.p.size() == 1) { // none of the atoms of a product vanishes
+      const monomial &of_condition = divisor.begin()->first, &m = c.p.begin()->first;
       return std::all_of(m.begin(), m.end(), [&](const auto& factor) {
         return std::any_of(of_condition.begin(), of_condition.end(),
                            [&](const auto& known) { return known.first == factor.first; });
       });
     }
-    const rational leading = cannot_vanish.begin()->second;
-    return c.p.size() == cannot_vanish.size() &&
-           std::equal(c.p.begin(), c.p.end(), cannot_vanish.begin(),
-                      [&](const auto& a, const auto& b) {
-                        return a.first == b.first && a.second * leading == b.second;
-                      });
+    return are_proportional(c.p, divisor);
   }
 
   [[nodiscard]] value choice(const value& condition, const value& b, const value& c) {
@@ -512,6 +558,16 @@ private:
       return field_.sum(one(), opaque("erf", arg(0), 1), -1);
     case operation::stumpff:
       return stumpff_function(arg(0), n.index);
+    case operation::arc_ratio:
+      return arc_ratio_of(arg(0), arg(1), result);
+    case operation::atan2: { // atan2(√s, w) is √s times the ratio of the arc to it
+      const polynomial& y = arg(0).above;
+      const bool is_single = arg(0).below.empty() && y.size() == 1 && y.begin()->second > 0;
+      if (is_single && y.begin()->first.size() == 1 && root_in(y.begin()->first) >= 0) {
+        return field_.product(arg(0), arc_ratio_of(field_.product(arg(0), arg(0)), arg(1), result));
+      }
+      break;
+    }
     case operation::asin:
     case operation::atanh:
       require_other(result, std::string(function_name_of(n.what)) + field_.text(arg(0)));
@@ -532,6 +588,12 @@ private:
     return atom_of(text);
   }
 
+  /// atan2(√s, w)/√s, which has a value where s does not vanish, and elsewhere for w > 0.
+  [[nodiscard]] fraction arc_ratio_of(const fraction& s, const fraction& w, value& result) {
+    const std::string text = "arc_ratio(" + field_.text(s) + ")(" + field_.text(w) + ")";
+    require_other(result, text, s.below.empty() ? s.above : polynomial());
+    return atom_of(text);
+  }
   [[nodiscard]] fraction inverse(const fraction& x, value& result) {
     if (x.above.empty()) {
       return atom_of("1/0");
@@ -548,6 +610,7 @@ private:
   fraction_field field_;
   std::vector<value_condition> conditions_;
   std::set<int> nonzero_;
+  std::vector<polynomial> nonzero_polynomials_;
   bool must_repeat_ = false;
 };
 
