@@ -92,7 +92,7 @@ cpp_function(const formula_graph& original, const std::string& name, const code_
 /// The formula as an inline function of C++: `Eigen::Vector3d name(double u, const
 /// Eigen::Vector3d& w)`. Quaternions are `Eigen::Vector4d` w, x, y, z; dual vectors and poses are
 /// vectors of 6 and 8 numbers. Several outputs come as a struct `name_result`. The text is a whole
-/// header, which needs <cmath> and <Eigen/Core> only, and C++17.
+/// header, which needs `<cmath>` and `<Eigen/Core>` only, and C++17.
 ///
 /// \param f     a formula, its gradient, Hessian, Jacobian or motion, or what `trace` returns
 /// \param name  of the function

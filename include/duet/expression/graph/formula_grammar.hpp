@@ -12,20 +12,20 @@
 /// \file
 /// The grammar of formulas in text, by recursive descent. For those who extend duet; users call
 /// `read_formula`.
-///
-/// \code
-/// formula     = { statement ";" } outputs [";"]
-/// statement   = kind name {"," name}  |  name "=" condition    kind: scalar, vector or rotation
-/// outputs     = output {"," output}            output = [name "="] condition
-/// condition   = both {"||" both}               both = comparison {"&&" comparison}
-/// comparison  = sum [("<" | "<=" | ">" | ">=" | "==" | "!=") sum]
-/// sum         = product {("+" | "-") product}  product = signed {("*" | "/") signed}
-/// signed      = ("-" | "+" | "!") signed  |  implicit
-/// implicit    = number (power of a name or parenthesis)  |  power     2x, 2 sin(x), 2(x + 1)
-/// power       = primary [("^" | "**") signed]  without an implicit product in the exponent
-/// primary     = number  |  name  |  name "(" arguments ")"  |  "(" condition ")"
-///             | "[" arguments "]"  |  primary "[" digit "]"
-/// \endcode
+
+// The rules:
+//
+// formula     = { statement ";" } outputs [";"]
+// statement   = kind name {"," name}  |  name "=" condition    kind: scalar, vector or rotation
+// outputs     = output {"," output}            output = [name "="] condition
+// condition   = both {"||" both}               both = comparison {"&&" comparison}
+// comparison  = sum [("<" | "<=" | ">" | ">=" | "==" | "!=") sum]
+// sum         = product {("+" | "-") product}  product = signed {("*" | "/") signed}
+// signed      = ("-" | "+" | "!") signed  |  implicit
+// implicit    = number (power of a name or parenthesis)  |  power     2x, 2 sin(x), 2(x + 1)
+// power       = primary [("^" | "**") signed]  without an implicit product in the exponent
+// primary     = number  |  name  |  name "(" arguments ")"  |  "(" condition ")"
+//             | "[" arguments "]"  |  primary "[" digit "]"
 
 namespace duet::expression::detail {
 
