@@ -100,7 +100,8 @@ class CMake:
 
     def install(self):
         folder = self.recipe.build_folder if BUILD_IS_RUN else LIBRARIES
-        self.cmake("--install", folder, "--prefix", self.recipe.package_folder)
+        self.cmake("--install", folder, "--prefix", self.recipe.package_folder,
+                   "--component", "Unspecified")
 
 
 def copy(recipe, pattern, src, dst):

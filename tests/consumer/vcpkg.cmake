@@ -63,10 +63,10 @@ function(vcpkg_cmake_configure)
     -DCMAKE_CXX_COMPILER=${compiler} -DCMAKE_INSTALL_PREFIX=${CURRENT_PACKAGES_DIR} ${arg_OPTIONS})
 endfunction()
 
-# Libraries, which take long to compile, are those of the folder `build`.
+# Libraries, which take long to compile, are those of the folder `build`, without its programs.
 function(vcpkg_cmake_install)
   if("io" IN_LIST FEATURES)
-    run(${CMAKE_COMMAND} --install ${build} --prefix ${CURRENT_PACKAGES_DIR})
+    run(${CMAKE_COMMAND} --install ${build} --prefix ${CURRENT_PACKAGES_DIR} --component Unspecified)
   else()
     run(${CMAKE_COMMAND} --build ${folder}/build --target install)
   endif()
