@@ -361,6 +361,36 @@ TEST_CASE("reverse_gradient: every function has the slope of the dual numbers") 
       signs);
   check(
       "quotient", [](const auto& x, const auto& y) { return x / y - y / (x * x); }, signs);
+  // zeros, equal arguments and signs
+  const std::vector<double> structured{-2, -1, 0, 0.5, 1, 3};
+  check(
+      "pow of zeros",
+      [](const auto& x, const auto& y) {
+        using std::pow;
+        return pow(x * x, y + 3);
+      },
+      structured);
+  check(
+      "hypot of equal numbers and zeros",
+      [](const auto& x, const auto& y) {
+        using std::hypot;
+        return hypot(x, y + 4) + hypot(x, x + 7);
+      },
+      structured);
+  check(
+      "atan2 on the axes",
+      [](const auto& x, const auto& y) {
+        using std::atan2;
+        return atan2(x, y + 0.25) * y;
+      },
+      structured);
+  check(
+      "powers of zeros",
+      [](const auto& x, const auto& y) {
+        using std::pow;
+        return pow(x, 2) * pow(y, 3) + pow(x, 1) + pow(x, 0);
+      },
+      structured);
   check(
       "rotation",
       [](const auto& x, const auto& y) {

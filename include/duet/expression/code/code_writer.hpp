@@ -34,7 +34,7 @@ struct code_options {
   /// `float` instead of `double`, in C and C++.
   bool is_single_precision = false;
   /// Matrices row by row (as C's arrays of arrays); otherwise column by column (as Eigen, Fortran).
-  /// In C only: other languages have matrices.
+  /// (C alone: other languages have matrices.)
   bool is_row_major = true;
   /// Sines and cosines of an angle together by duet's algorithm instead of the library's, in C and
   /// C++ of `double`: the same bits on every machine that does not fuse products with sums.
@@ -53,7 +53,7 @@ namespace detail {
   }
   return text;
 }
-/// Of the float nearest to x.
+/// Literal of the float nearest to x.
 [[nodiscard]] inline std::string float_literal(double x) {
   std::array<char, 32> digits;
   const auto end =

@@ -119,7 +119,7 @@ private:
         product_of(p, of(operation::pow, x, of(operation::difference, p, constant(1)))), dx);
     return sum_of(of_x, product_of(product_of(y, of(operation::log, x)), dp));
   }
-  /// Of y = f(x).
+  /// The derivative of y = f(x) for a function of one number.
   [[nodiscard]] int rate_of_function(const graph_node& n, int x, int dx, int y) {
     using enum operation;
     switch (n.what) {

@@ -96,7 +96,7 @@ struct formula_reading {
       result.error_at == 0 ? 0 : column_of(text, result.error_at - 1);
 };
 
-/// Of the error in a text that formula_from cannot read.
+/// Compile-time message for a text that formula_from cannot read.
 template <std::size_t Column>
 struct syntax_error_at_column {
   static_assert(Column == 0, "duet: formula_from: the text is no formula: the column of what is "

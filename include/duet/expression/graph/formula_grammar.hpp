@@ -41,7 +41,7 @@ namespace duet::expression::detail {
 [[nodiscard]] constexpr bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Number of bytes of the letter, or digit of an index as in x₁, that the text begins with; else 0.
-/// Of other languages' letters these are the alphabets, CJK and the letters of mathematics.
+/// Letters are those of alphabets, CJK and mathematics.
 [[nodiscard]] constexpr std::size_t letter_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
@@ -78,7 +78,7 @@ namespace duet::expression::detail {
 /// - `declare(kind, name, at)`, `assign(name, at)`, `output(name, at)`: ends of statements.
 ///
 /// Both may throw; the text is read once from left to right. It can run in the compiler, where a
-/// builder with a member `error(expected, at)` is told of the first error instead.
+/// builder with a member `error(expected, at)` receives the first error instead.
 template <class Builder>
 class formula_grammar {
 public:
@@ -227,7 +227,7 @@ private:
       expected(what);
     }
   }
-  /// What begins here, for messages.
+  /// The next word or sign, for messages.
   [[nodiscard]] std::string current() const {
     if (is_at_end()) {
       return "the end";

@@ -16,7 +16,7 @@
 
 namespace duet::expression::detail {
 
-/// Of the functions, in the order of `operation`; empty for operators.
+/// Name of a function; empty for an operator.
 [[nodiscard]] constexpr std::string_view function_name_of(operation what) {
   constexpr std::array<std::string_view, std::size_t(operation::select) + 1> names = {
       "",       "",         "",      "",          "",          "",      "",        "",

@@ -87,9 +87,10 @@ namespace duet::expression::detail {
   case operation::atan2:
     return duet::rule::atan2{}.slopes(y, a, b);
   case operation::hypot:
-    return {a / y, b / y};
+    return duet::rule::hypot{}.slopes(y, a, b);
   case operation::pow:
-    return {b * pow(a, b - 1), y * log(a)};
+    return {duet::rule::power<recorded>{b}.slope(a, y),
+            duet::rule::exponential<recorded>{a}.slope(b, y)};
   case operation::fmod:
     return duet::rule::fmod{}.slopes(y, a, b);
   case operation::remainder:
@@ -102,7 +103,7 @@ namespace duet::expression::detail {
 /// Adjoints: the derivatives of a node with respect to the nodes before it, recorded in its graph.
 class adjoints {
 public:
-  /// Of the node `root`, to which all nodes of the inputs are known.
+  /// Computes them for the node `root`, in one sweep over the nodes before it.
   adjoints(graph& g, int root) : g_(g), values_(std::size_t(root) + 1) {
     values_[std::size_t(root)] = recorded(1);
     for (int i = root; i >= 0; --i) {
@@ -194,7 +195,8 @@ namespace duet::expression {
 /// The formula with, for its only scalar output, the outputs `value` and `gradient`, by reverse
 /// accumulation: at most a few times the operations of the value, however many variables there are.
 /// The gradient has the derivatives with respect to the numbers of the named inputs, in their
-/// order; rotations and poses are taken by their numbers.
+/// order; rotations and poses are taken by their numbers. Where a slope is infinite, as of √ at 0,
+/// the gradient is NaN, also where dual numbers keep a derivative that is zero.
 ///
 /// \throws invalid_input unless the formula has one scalar output, and for an unknown name
 [[nodiscard]] inline formula_graph reverse_gradient(formula_graph f,

@@ -38,7 +38,7 @@ struct symbol_facts<symbol_node<K, Letters...>> {
   static std::string name() { return {Letters...}; }
 };
 
-/// An object of recorded numbers in place of a symbol.
+/// Type of the object over S that stands for a symbol of a kind.
 template <kind K, class S>
 struct object_of_kind {
   using type = Eigen::Matrix<S, rows_of(K), columns_of(K)>;
