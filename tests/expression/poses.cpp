@@ -123,7 +123,7 @@ TEST_CASE("a screw is the exponential of its line") {
   CHECK(length(moved - duet::pose(duet::quaternion<double>(1), vector3<double>(0.7, 0, 0))) == 0);
 }
 
-TEST_CASE("N18: twists and their rates, in both frames") {
+TEST_CASE("N18: twists and their rates, in all frames") {
   const auto f =
       A * screw(helix, u) * B * screw(axis::x, u * u) * translation_along(axis::y, sin(u));
   const auto rate = derivative(f, u);
@@ -137,6 +137,7 @@ TEST_CASE("N18: twists and their rates, in both frames") {
   };
   check(duet::frame::spatial);
   check(duet::frame::body);
+  check(duet::frame::hybrid);
 }
 
 TEST_CASE("Jacobians by scalars, vectors, rotations and poses") {
@@ -155,6 +156,7 @@ TEST_CASE("Jacobians by scalars, vectors, rotations and poses") {
   };
   check(duet::frame::spatial);
   check(duet::frame::body);
+  check(duet::frame::hybrid);
 }
 
 namespace {
@@ -203,6 +205,7 @@ void check_arm(const char* name, const duet::serial_chain<n>& chain) {
     };
     check(duet::frame::spatial);
     check(duet::frame::body);
+    check(duet::frame::hybrid);
   }
 }
 

@@ -103,10 +103,10 @@ template <class F, class Variables, class Frame>
 /// a pose six, in which it moves along its tangent coordinates. Rows: the components of a vector;
 /// the entries of a matrix, column by column as Eigen stores them; the angular velocity of a
 /// rotation (N7); the twist [v; ω] of a pose (N18). Rotations and poses, on both sides, are taken
-/// as unit, and in `frame::spatial` or `frame::body`.
+/// as unit, and in `frame::spatial`, `frame::body` or `frame::hybrid`, which is that of
+/// [ṗ; ω] in fixed axes.
 template <Formula F, class... Symbols, FrameConstant Frame>
-[[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>, Frame frame) {
-  static_cast<void>(duet::detail::is_spatial(frame));
+[[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>, Frame) {
   return detail::make_jacobian<F, variables<Symbols...>, Frame>(f);
 }
 

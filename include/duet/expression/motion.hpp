@@ -62,10 +62,9 @@ struct motion_of {
 /// The motion of a rotation or pose with a scalar symbol, a function to be called by name:
 /// `auto [q, omega, alpha] = motion(f, u, frame::body)(u = 0.3)`. ω and its derivative by u of a
 /// rotation (N7), the twist [v; ω] and its derivative of a pose (N18), per unit of u, in
-/// `frame::spatial` or `frame::body`.
+/// `frame::spatial`, `frame::body` or `frame::hybrid`, which is that of [ṗ; ω] in fixed axes.
 template <Formula F, Symbol U, FrameConstant Frame>
-[[nodiscard]] constexpr auto motion(const F& f, const U&, Frame frame) {
-  static_cast<void>(duet::detail::is_spatial(frame));
+[[nodiscard]] constexpr auto motion(const F& f, const U&, Frame) {
   constexpr kind k = F::node_type::kind_of;
   static_assert((k == kind::quaternion || k == kind::pose) && U::node_type::kind_of == kind::scalar,
                 "duet: motion(f, u, frame) is that of a rotation or pose with a scalar symbol");

@@ -14,6 +14,7 @@
 #include <duet/expression/tree/printed.hpp>
 #include <duet/expression/vector.hpp>
 
+#include <string>
 #include <type_traits>
 
 /// \file
@@ -54,6 +55,21 @@ struct part_of_dual : linear_operation {
     } else {
       return zero_node<kind::vector>{};
     }
+  }
+};
+
+/// n + εm of two vectors.
+struct dual_vector_of : linear_operation {
+  static constexpr kind kind_of(kind, kind) { return kind::dual_vector; }
+  static auto value(const auto& n, const auto& m) {
+    using T = promote_t<std::remove_cvref_t<decltype(n[0])>, std::remove_cvref_t<decltype(m[0])>>;
+    return make_dual_vector(vector3<T>(T(n[0]), T(n[1]), T(n[2])),
+                            vector3<T>(T(m[0]), T(m[1]), T(m[2])));
+  }
+  static printed print(notation style, const printed& n, const printed& m) {
+    const std::string unit = style == notation::text ? " + eps * " : " + \\varepsilon ";
+    return {n.inside(precedence::sum) + unit + m.inside(precedence::product), precedence::sum,
+            style};
   }
 };
 

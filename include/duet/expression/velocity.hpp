@@ -46,6 +46,14 @@ template <class Frame, class Q, class Rate>
   }
 }
 
+/// ω + ε(v ± x) of a twist ω + εv: its velocity at another point.
+template <class Operation>
+[[nodiscard]] constexpr auto at_point(auto twist, auto x) {
+  return apply<op::dual_vector_of>(
+      apply<op::part_of_dual<false>>(twist),
+      apply<Operation>(apply<op::part_of_dual<true>>(twist), x));
+}
+
 template <class Node, class Motion, class Frame>
 struct velocity {
   static constexpr auto make() { return velocity_by_rate<Frame>(Node{}, rate_t<Node, Motion>{}); }
@@ -130,6 +138,14 @@ template <class Frame, class Q, class Motion>
 [[nodiscard]] constexpr auto velocity_of() {
   if constexpr (is_zero<rate_t<Q, Motion>>) {
     return zero_of<vector_kind(Q::kind_of)>();
+  } else if constexpr (std::is_same_v<Frame, hybrid_frame>) {
+    constexpr auto twist = velocity_of<spatial_frame, Q, Motion>();
+    if constexpr (Q::kind_of == kind::pose) { // ṗ = v + ω × p
+      constexpr auto p = apply<op::translation>(Q{});
+      return at_point<op::sum>(twist, apply<op::cross>(apply<op::part_of_dual<false>>(twist), p));
+    } else {
+      return twist;
+    }
   } else {
     return velocity<Q, Motion, Frame>::make();
   }
@@ -165,10 +181,26 @@ template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::quaternion> {
   using type = turning_about_axes<Symbol, Frame, kind::vector, 0, 1, 2>;
 };
+template <class Symbol>
+struct directions<Symbol, hybrid_frame, kind::quaternion>
+    : directions<Symbol, spatial_frame, kind::quaternion> {};
 /// In the order of [v; ω].
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::pose> {
   using type = turning_about_axes<Symbol, Frame, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
+};
+template <class Symbol>
+struct directions<Symbol, hybrid_frame, kind::pose> {
+  template <int I>
+  static constexpr auto spatial_twist() { // v = ṗ − ω × p
+    constexpr auto e = unit_vector_node<kind::dual_vector, I>{};
+    constexpr auto omega = apply<op::part_of_dual<false>>(e);
+    return at_point<op::difference>(e, apply<op::cross>(omega, apply<op::translation>(Symbol{})));
+  }
+  template <int... I>
+  using turning_at_point =
+      motion_list<movement<turning<Symbol, decltype(spatial_twist<I>()), spatial_frame>>...>;
+  using type = turning_at_point<3, 4, 5, 0, 1, 2>;
 };
 
 /// The components of a vector; of a twist ω + εv those of [v; ω].

@@ -215,7 +215,9 @@ namespace detail {
   const named_value& y = f.outputs()[0];
   std::vector<std::string> numbers;
   std::string list;
-  for (const int node : y.nodes) {
+  for (std::size_t k = 0; k < y.nodes.size(); ++k) { // row by row
+    const std::size_t row = k / std::size_t(y.columns), column = k % std::size_t(y.columns);
+    const int node = y.nodes[row + column * std::size_t(y.rows)];
     numbers.push_back(
         detail::latex_text(latex_terms(texts[std::size_t(node)]), detail::fractions::lines).text);
     list += (list.empty() ? "" : ", ") + numbers.back();
