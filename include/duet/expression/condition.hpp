@@ -29,7 +29,7 @@ struct less {
     return OrEqual ? innermost(a) <= innermost(b) : innermost(a) < innermost(b);
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    const std::string sign = !OrEqual ? " < " : style == notation::latex ? " \\le " : " <= ";
+    const std::string sign = !OrEqual ? " < " : style != notation::text ? " \\le " : " <= ";
     return {a.inside(precedence::sum) + sign + b.inside(precedence::sum), precedence::condition};
   }
 };
@@ -53,7 +53,7 @@ struct select {
     return apply<select>(c, da, db);
   }
   static printed print(notation style, const printed& c, const printed& a, const printed& b) {
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return {"\\begin{cases}" + a.text + " & " + c.text + "\\\\" + b.text +
               " & \\text{else}\\end{cases}"};
     }

@@ -71,7 +71,7 @@ struct pushforward<Function, std::index_sequence<I...>> {
     const printed f = detail::printed_operation<Function>(style, all[I]...);
     std::string rates;
     ((rates += (I > 0 ? ", " : "") + all[I + count].text), ...);
-    return {(style == notation::latex ? "\\mathrm{D}" : "D ") + f.inside(precedence::atom) + "[" +
+    return {(style != notation::text ? "\\mathrm{D}" : "D ") + f.inside(precedence::atom) + "[" +
             rates + "]"};
   }
 };

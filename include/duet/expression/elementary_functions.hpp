@@ -22,7 +22,7 @@ struct sqrt : detail::function<sqrt, duet::rule::sqrt> {
   static constexpr bool slopes_take_value = true;
   static constexpr auto written_slope(auto x) { return whole<1> / (whole<2> * apply<sqrt>(x)); }
   static printed print(notation style, const printed& x) {
-    return style == notation::latex ? detail::latex_root(x) : printed{"sqrt(" + x.text + ")"};
+    return style != notation::text ? detail::latex_root(x) : printed{"sqrt(" + x.text + ")"};
   }
 };
 struct cbrt : detail::function<cbrt, duet::rule::cbrt> {
@@ -35,7 +35,7 @@ struct cbrt : detail::function<cbrt, duet::rule::cbrt> {
 struct exp : detail::function<exp, duet::rule::exp> {
   static constexpr auto differential(auto x, auto dx) { return apply<exp>(x) * dx; }
   static printed print(notation style, const printed& x) {
-    return style == notation::latex ? detail::latex_exponential(x) : printed{"exp(" + x.text + ")"};
+    return style != notation::text ? detail::latex_exponential(x) : printed{"exp(" + x.text + ")"};
   }
 };
 struct log : detail::function<log, duet::rule::log> {

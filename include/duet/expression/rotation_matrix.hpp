@@ -19,7 +19,12 @@ namespace op {
 
 /// [v]×, of which [v]× w = v × w.
 struct skew : linear_operation {
-  static constexpr detail::function_name name = {"skew", "\\left[#\\right]_{\\times}"};
+  static printed print(notation style, const printed& v) {
+    if (style == notation::notes) {
+      return {"\\widehat{" + v.text + "}"};
+    }
+    return detail::printed_call(style, {"skew", "\\left[#\\right]_{\\times}"}, {v});
+  }
   static constexpr kind kind_of(kind) { return matrix_kind(3, 3); }
   template <class V>
   static auto value(const V& v) {

@@ -75,7 +75,10 @@ struct dual_vector_of : linear_operation {
 
 /// p of a rigid motion p + εq, whose velocity is known from that of the motion.
 struct rotation : linear_operation {
-  static constexpr detail::function_name name = {"rotation", ""};
+  static printed print(notation style, const printed& a) {
+    const char* name = style == notation::notes ? "real" : "rotation";
+    return detail::printed_call(style, {name, ""}, {a});
+  }
   static constexpr kind kind_of(kind) { return kind::quaternion; }
   static auto value(const auto& a) { return duet::rotation(a); }
 };
@@ -124,6 +127,20 @@ template <Term X>
 
 namespace op {
 
+} // namespace op
+
+namespace detail {
+
+/// q + ½ε x.
+[[nodiscard]] inline printed plus_half_epsilon(const printed& q, const printed& x) {
+  return {q.inside(precedence::sum) + " + \\frac{\\varepsilon}{2} " + x.inside(precedence::product),
+          precedence::sum, notation::latex};
+}
+
+} // namespace detail
+
+namespace op {
+
 /// exp(½θ n) of a unit vector or unit line n, with sine and cosine of the half angle as operands,
 /// so that they are shared.
 struct turn {
@@ -150,8 +167,11 @@ struct turn {
     return number_node<detail::bits_of(0.5)>{} *
            (da * (apply<pure>(n) * apply<turn>(n, angle, s, c)));
   }
-  static printed print(notation style, const printed& n, const printed& angle, const printed&,
-                       const printed&) {
+  static printed print(notation style, const printed& n, const printed& angle, const printed& s,
+                       const printed& c) {
+    if (style == notation::notes) { // N4: cos ½θ + n sin ½θ
+      return detail::latex_sum_of(c, 1, detail::latex_product_of(s, n));
+    }
     const printed half =
         quotient::print(style, angle, {"2", precedence::atom, style, factor_place::number});
     return detail::printed_operation<exp_vector>(style, product::print(style, half, n));
@@ -160,25 +180,42 @@ struct turn {
 
 /// The translation by d along the unit vector n.
 struct translation_along {
-  static constexpr detail::function_name name = {"translation_along", "\\operatorname{Trans}"};
   static constexpr kind kind_of(kind, kind) { return kind::pose; }
   template <class N, class D>
   static auto value(const N& n, const D& d) {
     using T = promote_t<typename N::Scalar, D>;
     return pose(quaternion<T>(T(1)), vector3<T>(n[0] * d, n[1] * d, n[2] * d));
   }
+  static printed print(notation style, const printed& n, const printed& d) {
+    if (style != notation::notes) {
+      return detail::printed_call(style, {"translation_along", "\\operatorname{Trans}"}, {n, d});
+    }
+    return detail::plus_half_epsilon({"1"}, detail::latex_product_of(d, n));
+  }
 };
 
 /// The pose of a rotation, then a translation (N17).
 struct make_pose {
-  static constexpr detail::function_name name = {"pose", ""};
   static constexpr kind kind_of(kind, kind) { return kind::pose; }
   static auto value(const auto& q, const auto& t) { return duet::pose(q, t); }
+  static printed print(notation style, const printed& q, const printed& t) {
+    if (style != notation::notes) {
+      return detail::printed_call(style, {"pose", ""}, {q, t});
+    }
+    return detail::plus_half_epsilon(q, detail::latex_product_of(t, q));
+  }
 };
 
 struct translation {
-  static constexpr detail::function_name name = {"translation", ""};
   static constexpr kind kind_of(kind) { return kind::vector; }
+  static printed print(notation style, const printed& a) {
+    if (style != notation::notes) {
+      return detail::printed_call(style, {"translation", ""}, {a});
+    }
+    const std::string of = a.in_parentheses(); // N17: t = 2 β α*
+    return {"2 \\operatorname{dual}" + of + " \\operatorname{real}" + of + "^{*}",
+            precedence::product};
+  }
   static auto value(const auto& a) { return duet::translation(a); }
 };
 

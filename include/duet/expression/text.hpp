@@ -115,7 +115,7 @@ namespace detail {
   const std::size_t e = digits.find('e');
   const auto negative = precedence::negative_number;
   const bool is_negative = digits[0] == '-';
-  if (style == notation::latex && e != std::string::npos) {
+  if (style != notation::text && e != std::string::npos) {
     const std::size_t exponent = digits.find_first_not_of("+0", e + 1);
     const std::string factor = digits.substr(0, e);
     digits = (factor == "1" ? "" : factor + " \\cdot ") + "10^{" +
@@ -204,7 +204,7 @@ template <class T>
 template <kind K, char... Letters>
 [[nodiscard]] printed print(notation style, symbol_node<K, Letters...>, const auto&) {
   const std::string name = {Letters...};
-  return {style == notation::latex ? latex_name(name, K) : name, precedence::atom, style,
+  return {style != notation::text ? latex_name(name, K) : name, precedence::atom, style,
           place_of(K)};
 }
 template <kind K, class Tag>
@@ -216,7 +216,7 @@ template <std::uint64_t Bits>
   return printed_number(style, duet::to_text(n.value));
 }
 [[nodiscard]] inline printed print(notation style, pi_node, const auto&) {
-  return {style == notation::latex ? "\\pi" : "pi", precedence::atom, style, factor_place::pi};
+  return {style != notation::text ? "\\pi" : "pi", precedence::atom, style, factor_place::pi};
 }
 template <kind K>
 [[nodiscard]] printed print(notation style, zero_node<K>, const auto&) {
@@ -226,7 +226,7 @@ template <class Operation, class... Operands>
 [[nodiscard]] printed print(notation style, applied_node<Operation, Operands...>, const auto& h) {
   printed result = printed_operation<Operation>(style, print(style, Operands{}, h)...);
   constexpr kind k = applied_node<Operation, Operands...>::kind_of;
-  return style == notation::latex ? latex_of_kind(std::move(result), k == kind::scalar) : result;
+  return style != notation::text ? latex_of_kind(std::move(result), k == kind::scalar) : result;
 }
 
 /// The symbols of a formula, as they look in LaTeX.
@@ -274,32 +274,42 @@ template <Formula F>
   return detail::print(notation::text, detail::written_t<typename F::node_type>{}, f.held()).text;
 }
 
+namespace detail {
+
+/// A node in LaTeX.
+template <class Node>
+[[nodiscard]] std::string latex_of_node(const auto& held, notation style) {
+  const printed whole = print(style, written_t<Node>{}, held);
+  return latex_text(latex_terms(whole), fractions::lines).text;
+}
+
+} // namespace detail
+
 /// The formula for a paper, to stand in mathematics mode: `2 x \cos\left(x^{2}\right)`. It equals
 /// the formula wherever that has a value: equal factors are joined to powers and cancelled, equal
 /// terms are collected, and no fraction stands in another, in an exponent or in an argument.
 /// Symbols with the names of Greek letters are those letters; digits, and what follows _, are an
 /// index.
+///
+/// \param style  `notation::notes` writes rotations and poses as the lecture notes do: cos ½θ + n
+/// sin ½θ (N4), q + ½ε t q (N17)
 /// \throws invalid_input for two symbols that would look alike, as theta1 and theta_1 do, and
 /// a symbol pi beside the number
 template <Formula F>
-[[nodiscard]] std::string to_latex(const F& f) {
+[[nodiscard]] std::string to_latex(const F& f, notation style = notation::latex) {
   detail::latex_symbols().visit(typename F::node_type{});
-  const printed whole =
-      detail::print(notation::latex, detail::written_t<typename F::node_type>{}, f.held());
-  return detail::latex_text(detail::latex_terms(whole), detail::fractions::lines).text;
+  return detail::latex_of_node<typename F::node_type>(f.held(), style);
 }
 
 template <class Made, class F>
-DUET_REFUSED(
-    "gradients, Hessians, Jacobians and motions are functions to be called with values; "
-    "formulas are derivative(f, u) and, along a vector, directional_derivative(f, along(w, "
-    "v))")
+DUET_REFUSED("gradients, Hessians, Jacobians and motions in LaTeX take the header "
+             "duet/expression/graph/document.hpp")
 std::string to_latex(const detail::called_by_name<Made, F>&);
 template <class Made, class F>
 DUET_REFUSED(
     "gradients, Hessians, Jacobians and motions are functions to be called with values; "
     "formulas are derivative(f, u) and, along a vector, directional_derivative(f, along(w, "
-    "v))")
+    "v)); to_latex writes them all")
 std::string to_text(const detail::called_by_name<Made, F>&);
 
 } // namespace duet::expression

@@ -52,7 +52,7 @@ struct leaf<unit_vector_node<K, I>, Given> {
 template <kind K, int I, class Held>
 [[nodiscard]] printed print(notation style, unit_vector_node<K, I>, const Held&) {
   const std::string axis = std::to_string(I % 3 + 1);
-  if (style == notation::latex) {
+  if (style != notation::text) {
     return {std::string(I < 3 ? "" : "\\varepsilon ") + "\\vec{e}_{" + axis + "}", precedence::atom,
             style, factor_place::in_order};
   }
@@ -78,7 +78,7 @@ struct dot : bilinear_operation {
     }
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    return style == notation::latex ? detail::latex_bilinear(a, " \\cdot ", b, precedence::product,
+    return style != notation::text ? detail::latex_bilinear(a, " \\cdot ", b, precedence::product,
                                                              factor_place::function)
                                     : printed{"dot(" + a.text + ", " + b.text + ")"};
   }
@@ -94,7 +94,7 @@ struct cross : bilinear_operation {
     return duet::detail::cross(duet::detail::components(a), duet::detail::components(b)).eigen();
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    return style == notation::latex ? detail::latex_bilinear(a, " \\times ", b, precedence::power,
+    return style != notation::text ? detail::latex_bilinear(a, " \\times ", b, precedence::power,
                                                              factor_place::in_order)
                                     : printed{"cross(" + a.text + ", " + b.text + ")"};
   }
@@ -153,7 +153,7 @@ struct component : linear_operation {
   static auto value(const auto& v) { return v[I]; }
   static printed print(notation style, const printed& v) {
     const std::string i = std::to_string(I);
-    return style == notation::latex ? detail::with_index(v, std::to_string(I + 1))
+    return style != notation::text ? detail::with_index(v, std::to_string(I + 1))
                                     : printed{v.inside(precedence::atom) + "[" + i + "]"};
   }
   template <kind K, int J>

@@ -166,7 +166,7 @@ struct negative : linear_operation {
     return detail::componentwise(minus, a, a);
   }
   static printed print(notation style, const printed& a) {
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return detail::latex_product_of(
           {"-1", precedence::negative_number, style, factor_place::number}, a);
     }
@@ -201,7 +201,7 @@ struct sum {
     return detail::componentwise([](const auto& x, const auto& y) { return x + y; }, a, b);
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return detail::latex_sum_of(a, 1, b);
     }
     return {a.inside(precedence::sum) + " + " + b.inside(precedence::sum), precedence::sum};
@@ -233,7 +233,7 @@ struct difference {
     return detail::componentwise([](const auto& x, const auto& y) { return x - y; }, a, b);
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return detail::latex_sum_of(a, -1, b);
     }
     return {a.inside(precedence::sum) + " - " + b.inside(precedence::product), precedence::sum};

@@ -55,7 +55,7 @@ struct whole_power {
   }
   static printed print(notation style, const printed& x) {
     const std::string n = std::to_string(Exponent);
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return detail::latex_power(x, {n, precedence::atom, style, factor_place::number});
     }
     return {x.inside(precedence::atom) + "^" + n, precedence::power};
@@ -126,7 +126,7 @@ struct power : detail::function<power, duet::rule::pow> {
     }
   }
   static printed print(notation style, const printed& x, const printed& p) {
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return detail::latex_power(x, p);
     }
     return {x.inside(precedence::atom) + "^" + p.inside(precedence::atom), precedence::power};

@@ -159,7 +159,7 @@ struct product {
   }
   static constexpr auto differential(auto a, auto b, auto da, auto db) { return da * b + a * db; }
   static printed print(notation style, const printed& a, const printed& b) {
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return detail::latex_product_of(a, b);
     }
     return {a.inside(precedence::negative_number) + " * " + b.inside(precedence::product),
@@ -202,7 +202,7 @@ struct quotient {
     return (da - db * (a / b)) / b;
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    if (style == notation::latex) {
+    if (style != notation::text) {
       return detail::latex_product_of(a, b, -1);
     }
     return {a.inside(precedence::product) + " / " + b.inside(precedence::power),

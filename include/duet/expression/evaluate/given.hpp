@@ -231,6 +231,9 @@ class called_by_name : refused_calls<typename F::held_type, typename Made::resul
 public:
   constexpr explicit called_by_name(const F& f) : f_(f) {}
 
+  /// The formula.
+  [[nodiscard]] constexpr const F& formula() const { return f_; }
+
   template <class... Arguments>
     requires(slip_of_call<typename F::held_type, Arguments...> == slip::none)
   [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {

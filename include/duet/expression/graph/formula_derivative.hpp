@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,11 +25,15 @@ namespace detail {
 class node_derivatives {
 public:
   /// \param variable  the node of the variable
-  node_derivatives(graph& g, const std::vector<bool>& needed, int variable)
+  /// \param given  known derivatives: their nodes, by the nodes that they are of
+  node_derivatives(graph& g, const std::vector<bool>& needed, int variable,
+                   const std::map<int, int>& given = {})
       : g_(g), rates_(needed.size(), zero) {
     rates_[std::size_t(variable)] = constant(1);
     for (std::size_t i = 0; i < needed.size(); ++i) {
-      if (needed[i] && int(i) != variable) {
+      if (const auto known = given.find(int(i)); known != given.end()) {
+        rates_[i] = known->second;
+      } else if (needed[i] && int(i) != variable) {
         rates_[i] = rate(g_[int(i)], int(i));
       }
     }

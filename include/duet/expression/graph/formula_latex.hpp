@@ -99,6 +99,9 @@ namespace detail {
 
 /// A variable, with the index of a component behind it.
 [[nodiscard]] inline printed latex_variable(const std::string& name) {
+  if (name[0] == '\\') { // LaTeX already
+    return {name, precedence::power, notation::latex, factor_place::function};
+  }
   const std::size_t bracket = name.find('[');
   const printed letters{latex_name(spelt_out(name.substr(0, bracket)), kind::scalar),
                         precedence::atom, notation::latex, factor_place::symbol};
@@ -227,5 +230,16 @@ namespace detail {
              ? detail::printed_matrix(notation::latex, std::size_t(y.columns), numbers).text
              : "\\left(" + list + "\\right)";
 }
+
+namespace detail {
+
+/// A number of a formula.
+[[nodiscard]] inline std::string latex_of_number(formula_graph f, int node) {
+  static_cast<void>(f.take_outputs());
+  f.add_output({.name = "y", .nodes = {node}});
+  return to_latex(f);
+}
+
+} // namespace detail
 
 } // namespace duet::expression

@@ -83,7 +83,7 @@ struct sparsity<unit_vector_node<kind::vector, I>> {
 };
 
 [[nodiscard]] inline std::string printed_range(notation style, int begin, int size) {
-  const int first = begin + (style == notation::latex ? 1 : 0);
+  const int first = begin + (style != notation::text ? 1 : 0);
   return std::to_string(first) + (size == 1 ? "" : ":" + std::to_string(first + size - 1));
 }
 
@@ -121,7 +121,7 @@ struct block : linear_operation {
   static printed print(notation style, const printed& m) {
     const std::string i = detail::printed_range(style, I, Rows);
     const std::string j = detail::printed_range(style, J, Columns);
-    return style == notation::latex
+    return style != notation::text
                ? detail::with_index(m, i + "," + j)
                : printed{m.inside(precedence::atom) + "(" + i + ", " + j + ")"};
   }

@@ -147,7 +147,7 @@ struct solution {
     return apply<inverse>(a) * (db - da * apply<solution>(a, b));
   }
   static printed print(notation style, const printed& a, const printed& b) {
-    return style == notation::latex
+    return style != notation::text
                ? matrix_product::print(
                      style,
                      detail::latex_of_kind(detail::printed_operation<inverse>(style, a), false), b)

@@ -161,7 +161,7 @@ struct polygamma {
   static constexpr auto differential(auto x, auto dx) { return apply<polygamma<N + 1>>(x) * dx; }
   static printed print(notation style, const printed& x) {
     const std::string n = std::to_string(N);
-    return {style == notation::latex
+    return {style != notation::text
                 ? "\\psi^{(" + n + ")}" + printed{x.text, {}, style}.in_parentheses()
                 : "polygamma(" + n + ", " + x.text + ")"};
   }

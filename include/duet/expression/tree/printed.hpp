@@ -16,8 +16,9 @@ namespace duet::expression {
 
 /// How a formula is written.
 enum class notation {
-  text, ///< as in a program, with ^ for powers
-  latex ///< for mathematics mode
+  text,  ///< as in a program, with ^ for powers
+  latex, ///< LaTeX for mathematics mode
+  notes  ///< LaTeX as "Quaternion Differentiation and Interpolation", lecture notes, writes it
 };
 
 /// The text of a formula, and what it is outside all parentheses. In LaTeX the text is that inside
@@ -36,7 +37,7 @@ struct printed {
   }
   /// In parentheses.
   [[nodiscard]] std::string in_parentheses() const {
-    return style == notation::latex ? "\\left(" + text + "\\right)" : "(" + text + ")";
+    return style != notation::text ? "\\left(" + text + "\\right)" : "(" + text + ")";
   }
 };
 
@@ -97,7 +98,7 @@ template <class Operation, class... P>
 /// The entries of a matrix, row by row.
 [[nodiscard]] inline printed printed_matrix(notation style, std::size_t columns,
                                             const std::vector<std::string>& entries) {
-  const bool is_latex = style == notation::latex;
+  const bool is_latex = style != notation::text;
   std::string text = is_latex ? "\\begin{bmatrix}" : "[";
   for (std::size_t k = 0; k < entries.size(); ++k) {
     const bool is_first_of_row = k % columns == 0;
