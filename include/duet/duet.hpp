@@ -16,7 +16,9 @@
 /// text and LaTeX (expression/graph/read_formula.hpp, expression/graph/formula_from.hpp,
 /// expression/graph/formula_text.hpp, expression/graph/formula_latex.hpp), their derivatives
 /// (expression/graph/formula_derivative.hpp) and proofs of equality
-/// (expression/graph/is_equal.hpp), formulas as code of C, C++, Python and MATLAB
+/// (expression/graph/is_equal.hpp), their components, derivations and documents in LaTeX
+/// (expression/graph/components.hpp, expression/graph/derivation.hpp,
+/// expression/graph/document.hpp), formulas as code of C, C++, Python and MATLAB
 /// (expression/code/c.hpp, expression/code/cpp.hpp, expression/code/python.hpp,
 /// expression/code/matlab.hpp), chains and curves as formulas (kinematics/chain_formula.hpp,
 /// spline/curve_formula.hpp), and `interop/`. The headers of the compiled libraries are in

@@ -156,7 +156,7 @@ int main() {
 }
 
 //// latex_of_gradient
-// expect: duet: gradients, Hessians, Jacobians and motions are functions
+// expect: duet: gradients, Hessians, Jacobians and motions
 // within: 2
 // forms: 2
 

@@ -19,6 +19,17 @@
 
 namespace duet::expression {
 
+namespace detail {
+
+/// The choice by `select` for the condition's own type, which argument-dependent lookup finds.
+[[nodiscard]] constexpr auto chosen(const auto& condition, const auto& a, const auto& b) {
+  using duet::select;
+  return select(
+      condition, [&] { return a; }, [&] { return b; });
+}
+
+} // namespace detail
+
 namespace op {
 
 /// a < b or a ≤ b, by innermost values.
@@ -46,8 +57,7 @@ struct select {
     }
   }
   static constexpr auto value(const auto& condition, const auto& a, const auto& b) {
-    return duet::select(
-        condition, [&] { return a; }, [&] { return b; });
+    return detail::chosen(condition, a, b);
   }
   static constexpr auto differential(auto c, auto, auto, auto, auto da, auto db) {
     return apply<select>(c, da, db);

@@ -304,7 +304,7 @@ template <Formula F>
 template <class Made, class F>
 DUET_REFUSED("gradients, Hessians, Jacobians and motions in LaTeX take the header "
              "duet/expression/graph/document.hpp")
-std::string to_latex(const detail::called_by_name<Made, F>&);
+std::string to_latex(const detail::called_by_name<Made, F>&, notation = notation::latex);
 template <class Made, class F>
 DUET_REFUSED(
     "gradients, Hessians, Jacobians and motions are functions to be called with values; "

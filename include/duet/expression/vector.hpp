@@ -79,8 +79,8 @@ struct dot : bilinear_operation {
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style != notation::text ? detail::latex_bilinear(a, " \\cdot ", b, precedence::product,
-                                                             factor_place::function)
-                                    : printed{"dot(" + a.text + ", " + b.text + ")"};
+                                                            factor_place::function)
+                                   : printed{"dot(" + a.text + ", " + b.text + ")"};
   }
 };
 
@@ -95,8 +95,8 @@ struct cross : bilinear_operation {
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style != notation::text ? detail::latex_bilinear(a, " \\times ", b, precedence::power,
-                                                             factor_place::in_order)
-                                    : printed{"cross(" + a.text + ", " + b.text + ")"};
+                                                            factor_place::in_order)
+                                   : printed{"cross(" + a.text + ", " + b.text + ")"};
   }
 };
 
@@ -154,7 +154,7 @@ struct component : linear_operation {
   static printed print(notation style, const printed& v) {
     const std::string i = std::to_string(I);
     return style != notation::text ? detail::with_index(v, std::to_string(I + 1))
-                                    : printed{v.inside(precedence::atom) + "[" + i + "]"};
+                                   : printed{v.inside(precedence::atom) + "[" + i + "]"};
   }
   template <kind K, int J>
   static constexpr auto simplified(unit_vector_node<K, J>) {

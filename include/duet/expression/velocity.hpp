@@ -49,9 +49,8 @@ template <class Frame, class Q, class Rate>
 /// ω + ε(v ± x) of a twist ω + εv: its velocity at another point.
 template <class Operation>
 [[nodiscard]] constexpr auto at_point(auto twist, auto x) {
-  return apply<op::dual_vector_of>(
-      apply<op::part_of_dual<false>>(twist),
-      apply<Operation>(apply<op::part_of_dual<true>>(twist), x));
+  return apply<op::dual_vector_of>(apply<op::part_of_dual<false>>(twist),
+                                   apply<Operation>(apply<op::part_of_dual<true>>(twist), x));
 }
 
 template <class Node, class Motion, class Frame>

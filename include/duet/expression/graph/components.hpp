@@ -52,8 +52,7 @@ namespace detail {
 class expanded_formula {
 public:
   /// \param units  unit of the coefficients of each angle, by its text; refined here
-  expanded_formula(const formula_graph& f, std::map<std::string, rational>& units)
-      : units_(units) {
+  expanded_formula(const formula_graph& f, std::map<std::string, rational>& units) : units_(units) {
     const int i = ring_.find_atom("i");
     ring_[i].degree = 2;
     ring_[i].relation = polynomial_ring::constant(-1);
@@ -177,9 +176,9 @@ private:
     if (is_condition(n.what)) {
       conditions[std::size_t(k)] = node;
     } else {
-      values[std::size_t(k)] =
-          out().is_number(node) ? polynomial_ring::constant(decimal_of(out()[node].number))
-                                : atom_of(node);
+      values[std::size_t(k)] = out().is_number(node)
+                                   ? polynomial_ring::constant(decimal_of(out()[node].number))
+                                   : atom_of(node);
     }
   }
   /// True for a product without angles.
@@ -318,6 +317,13 @@ private:
         }
       }
     }
+    for (auto& [a, n] : common) { // sin²φ, not that of 2φ
+      const auto& [angle, times] = angles_.at(a);
+      const rational written = 1 / rational(angle.begin()->second * times);
+      const bool is_multiple = denominator(written) == 1 && abs(written) <= n;
+      const int size = is_multiple ? std::abs(int(numerator(written))) : n;
+      n = n % size == 0 ? size : n;
+    }
     const int i = ring_.find_atom("i");
     polynomial result;
     for (const auto& [m, c] : p) {
@@ -357,8 +363,10 @@ private:
           }
           const bool is_sine = of_a->second.second;
           const monomial alpha = of_a->second.first, beta = of_b->second.first;
-          const monomial rest = polynomial_ring::product_of(m, {{std::min(a, b), -1}, {std::max(a, b), -1}});
-          monomial partner = polynomial_ring::product_of(rest, {{circle(alpha, !is_sine).first, 1}});
+          const monomial rest =
+              polynomial_ring::product_of(m, {{std::min(a, b), -1}, {std::max(a, b), -1}});
+          monomial partner =
+              polynomial_ring::product_of(rest, {{circle(alpha, !is_sine).first, 1}});
           partner = polynomial_ring::product_of(partner, {{circle(beta, true).first, 1}});
           const auto other = p.find(partner);
           if (other == p.end() || other == t || abs(other->second) != abs(c)) {
@@ -420,7 +428,8 @@ private:
       const int product = product_node(polynomial_ring::product_of(m, inverse));
       result = sum_node(result, is_negative ? rational(-c) : c, product);
     }
-    result = common.empty() ? result : out().apply(operation::product, product_node(common), result);
+    result =
+        common.empty() ? result : out().apply(operation::product, product_node(common), result);
     return is_negative ? out().apply(operation::negative, result) : result;
   }
   /// The node of a polynomial: of sines and cosines of single angles and of sums that two terms
@@ -453,9 +462,9 @@ private:
   std::map<std::string, rational>& units_;
   polynomial_ring ring_;
   formula_graph result_;
-  std::vector<int> nodes_;                               ///< of atoms that are nodes
-  std::map<int, std::pair<polynomial, int>> angles_;     ///< φ of z, and how many
-  std::map<int, std::pair<monomial, bool>> circles_;     ///< angles of sines (true) and cosines
+  std::vector<int> nodes_;                           ///< of atoms that are nodes
+  std::map<int, std::pair<polynomial, int>> angles_; ///< φ of z, and how many
+  std::map<int, std::pair<monomial, bool>> circles_; ///< angles of sines (true) and cosines
   bool must_repeat_ = false;
 };
 

@@ -28,8 +28,8 @@ namespace detail {
 class derivation_steps {
 public:
   derivation_steps(const formula_graph& f, const std::string& input)
-      : f_(f), input_(input), variable_(f.input(input).nodes[0]), depends_(f.needed().size(), false),
-        levels_(depends_.size(), 0) {
+      : f_(f), input_(input), variable_(f.input(input).nodes[0]),
+        depends_(f.needed().size(), false), levels_(depends_.size(), 0) {
     const graph& g = f_.operations();
     if (std::size_t(variable_) < depends_.size()) {
       depends_[std::size_t(variable_)] = true;
@@ -117,7 +117,7 @@ private:
   }
   return "\\begin{align*}\n " + text + "\n\\end{align*}\n";
 }
-/// The same of a typed formula and a symbol.
+/// The derivation of a typed formula by a symbol.
 template <Formula F, Symbol U>
 [[nodiscard]] std::string derivation(const F& f, const U&) {
   return derivation(graph_of(f), detail::symbol_facts<typename U::node_type>::name());

@@ -31,8 +31,8 @@ struct scalar_derivatives {
 template <class Motion>
 inline constexpr bool is_of_scalar = false;
 template <class Symbol, class Rate>
-inline constexpr bool is_of_scalar<movement<moving<Symbol, Rate>>> = Symbol::kind_of ==
-                                                                     kind::scalar;
+inline constexpr bool is_of_scalar<movement<moving<Symbol, Rate>>> =
+    Symbol::kind_of == kind::scalar;
 template <class... Motions, class F>
 struct scalar_derivatives<gradient_of<motion_list<Motions...>>, F> {
   static constexpr bool exist = (is_of_scalar<Motions> && ...);
@@ -106,7 +106,8 @@ namespace detail {
 }
 template <class F>
 [[nodiscard]] std::string document_item(const F& f) {
-  return "\\[\n\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{$\\displaystyle\n" +
+  return "\\[\n\\resizebox{\\ifdim\\width>\\linewidth\\linewidth\\else\\width\\fi}{!}{$"
+         "\\displaystyle\n" +
          to_latex(f) + "\n$}\n\\]\n";
 }
 

@@ -147,7 +147,7 @@ private:
 /// A condition on recorded numbers, for `select`: known, or a node. As a `bool` it must be known.
 class recorded_condition {
 public:
-  explicit(false) recorded_condition(bool x) : value_(x) {}
+  explicit(false) recorded_condition(bool x = false) : value_(x) {}
   recorded_condition(expression::graph& g, int node) : graph_(&g), node_(node) {}
 
   /// True for a condition on constants.

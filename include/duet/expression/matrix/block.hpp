@@ -121,9 +121,8 @@ struct block : linear_operation {
   static printed print(notation style, const printed& m) {
     const std::string i = detail::printed_range(style, I, Rows);
     const std::string j = detail::printed_range(style, J, Columns);
-    return style != notation::text
-               ? detail::with_index(m, i + "," + j)
-               : printed{m.inside(precedence::atom) + "(" + i + ", " + j + ")"};
+    return style != notation::text ? detail::with_index(m, i + "," + j)
+                                   : printed{m.inside(precedence::atom) + "(" + i + ", " + j + ")"};
   }
 
 private:
