@@ -521,6 +521,24 @@ TEST_CASE("fit by least squares: no_convergence names a sample far from the othe
         1e-3);
 }
 
+TEST_CASE("fit by least squares: no_convergence names control points half a turn apart") {
+  // A row 1 km off bends the curve until it jumps; for plain least squares there is no minimum.
+  random_source random(7);
+  const auto u = steps(3, 59);
+  const auto knots = duet::knots_every(u, 5, 4);
+  std::vector<pose_type> controls{pose_type(1.0)};
+  while (controls.size() + 4 < knots.size()) {
+    controls.push_back(moved(controls.back(), random, .7));
+  }
+  auto samples = samples_of(curve<pose_type>(knots, controls), u);
+  samples[31] = duet::pose(duet::rotation(samples[31]), vector3<double>(600, 0, -800));
+  const std::string message = duet_test::message_of<duet::no_convergence>(
+      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, samples, knots)); });
+  CHECK_MESSAGE(message.find(" half a turn apart, where the curve jumps: sample 31 is ") !=
+                    std::string::npos,
+                message);
+}
+
 TEST_CASE("knots_every: a knot at every n-th sample, usable by fit for any number of samples") {
   using knots = std::vector<double>;
   const knots u{0, 1, 2, 4, 8, 9, 10};

@@ -828,14 +828,27 @@ private:
     return {std::size_t(farthest - sizes.begin()), *farthest};
   }
 
+  /// Control points half a turn apart, as text for messages: the curve jumps beyond, so that the
+  /// cost can have no minimum. Empty if there are none.
+  [[nodiscard]] std::string half_turn() const {
+    constexpr double bound = 3.1; // rad
+    for (std::size_t i = 1; i < controls_.size(); ++i) {
+      if (4 * innermost(this->increment(controls_, i).squaredNorm()) > bound * bound) {
+        return message(", control points ", i - 1, " and ", i,
+                       " half a turn apart, where the curve jumps");
+      }
+    }
+    return "";
+  }
+
   /// Reports failure. If plain least squares fail because of a sample far from all others, the
   /// message names it.
   [[noreturn]] void fail(const char* what, int iterations, const R& step) const {
     const auto [index, size] = farthest_from_neighbours();
-    std::string cause;
+    std::string cause = half_turn();
     if (!is_robust() && size > 30) {
-      cause = message(": sample ", index, " is ", size, " from the samples around it ",
-                      "(fit_options::outlier_threshold makes the fit robust)");
+      cause += message(": sample ", index, " is ", size, " from the samples around it ",
+                       "(fit_options::outlier_threshold makes the fit robust)");
     }
     raise(no_convergence(message("duet: fit: the iteration ", what, " after ",
                                  iterations_ + iterations, " steps, the last one ", step, cause)));
