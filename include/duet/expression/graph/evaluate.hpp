@@ -13,8 +13,11 @@
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
 
+#include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -48,25 +51,80 @@ template <class S>
   }
 }
 
-/// f(c) of the integral constant c = index.
-template <class F, int... N>
-[[nodiscard]] auto with_constant(int index, const F& f, std::integer_sequence<int, N...>) {
-  decltype(f(std::integral_constant<int, 0>{})) result{};
-  static_cast<void>(
-      ((index == N ? (result = f(std::integral_constant<int, N>{}), true) : false) || ...));
-  return result;
-}
-
 /// Stumpff functions of a higher order occur in derivatives of an order that nobody takes.
 inline constexpr int max_stumpff = 24;
 
-template <class S>
-[[nodiscard]] S stumpff_of_index(const S& x, int index) {
-  duet::detail::require(index < max_stumpff, "duet: a formula with the Stumpff function c_", index);
-  return with_constant(
-      index, [&](auto n) { return S(duet::stumpff<decltype(n)::value>(x)); },
-      std::make_integer_sequence<int, max_stumpff>{});
+/// c_index(s) of a floating-point number, with the bits of `duet::stumpff`: the order is known when
+/// the program runs alone, as instantiations for all orders take compilers seconds.
+template <std::floating_point S>
+[[nodiscard]] S stumpff_of_real(const S& s, int index) {
+  if (index < 2 ? s <= S(1) : !duet::detail::is_beyond_series(s)) {
+    constexpr bool has_double = std::numeric_limits<S>::digits <= 53;
+    const int terms = index < 2 ? (has_double ? 10 : 13) : (has_double ? 13 : 15);
+    std::array<S, 15> coefficients{}; // 1/(2k + index)!
+    long double factorial = 1;
+    for (int i = 2; i <= index; ++i) {
+      factorial *= i;
+    }
+    for (int k = 0; k < terms; ++k) {
+      coefficients[std::size_t(k)] = static_cast<S>(1 / factorial);
+      factorial *= (2.0L * k + index + 1) * (2.0L * k + index + 2);
+    }
+    const S square = s * s;
+    const auto half = [&](int first) { // every other term
+      int k = first + (terms - 1 - first) / 2 * 2;
+      S sum = coefficients[std::size_t(k)];
+      for (k -= 2; k >= first; k -= 2) {
+        sum = coefficients[std::size_t(k)] + square * sum;
+      }
+      return sum;
+    };
+    return half(0) - s * half(1);
+  }
+  S c = index % 2 == 0 ? duet::stumpff<0>(s) : duet::stumpff<1>(s);
+  for (int n = index % 2 + 2; n <= index; n += 2) {
+    c = (duet::detail::inverse_factorial<S>(n - 2) - c) / s;
+  }
+  return c;
 }
+
+/// `rule::stumpff` of an order that is known when the program runs.
+struct stumpff_of_order {
+  int n;
+
+  template <class S>
+  [[nodiscard]] S value(const S& s) const {
+    if constexpr (Infinitesimal<S>) {
+      return duet::detail::lift(*this, s);
+    } else if constexpr (duet::detail::is_recording<S>) {
+      return s.is_constant() ? S(stumpff_of_real(s.number(), n)) : recorded_stumpff(s, n);
+    } else if constexpr (std::floating_point<S>) {
+      return stumpff_of_real(s, n);
+    } else {
+      return of_constant_order(s, std::make_integer_sequence<int, max_stumpff>{});
+    }
+  }
+  template <class S>
+  [[nodiscard]] S slope(const S& s, const S& y) const {
+    const auto c = [&](int order) { return stumpff_of_order{order}.value(s); };
+    if (n == 0) {
+      return -c(1) / 2;
+    }
+    return duet::select(
+        !duet::detail::is_beyond_series(innermost(s)),
+        [&] { return S((n * c(n + 2) - c(n + 1)) / 2); },
+        [&] { return S((c(n - 1) - n * y) / (2 * s)); });
+  }
+
+private:
+  template <class S, int... N>
+  [[nodiscard]] S of_constant_order(const S& s, std::integer_sequence<int, N...>) const {
+    duet::detail::require(n < max_stumpff, "duet: a formula with the Stumpff function c_", n);
+    S result(0);
+    static_cast<void>(((n == N ? (result = S(duet::stumpff<N>(s)), true) : false) || ...));
+    return result;
+  }
+};
 
 /// The functions of one number.
 template <class S>
@@ -110,7 +168,7 @@ template <class S>
   case operation::power:
     return integer_power_of(x, index);
   case operation::stumpff:
-    return stumpff_of_index(x, index);
+    return stumpff_of_order{index}.value(x);
   default:
     return S(-x);
   }

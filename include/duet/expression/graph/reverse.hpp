@@ -69,9 +69,7 @@ namespace duet::expression::detail {
   case operation::power:
     return recorded(index) * pow(x, recorded(index - 1));
   case operation::stumpff:
-    return with_constant(
-        index, [&](auto n) { return duet::rule::stumpff<decltype(n)::value>{}.slope(x, y); },
-        std::make_integer_sequence<int, max_stumpff>{});
+    return stumpff_of_order{index}.slope(x, y);
   case operation::tgamma:
   case operation::lgamma:
     duet::detail::raise(invalid_input("duet: the derivative of a gamma function has no formula"));
