@@ -3,8 +3,8 @@
 /// \file
 /// Checks the formulas that are incorrect in the copy of the paper at hand, and their corrected
 /// forms, against automatic differentiation; if the verdict may depend on the numbering of the
-/// basis functions, under both readings. Prints the table of docs/printed_formulas.md; exits with 1
-/// if a verdict is not the expected one.
+/// basis functions, under both readings. Prints the table of docs/case-studies/two_sources.md;
+/// exits with 1 if a verdict is not the expected one.
 
 #include "support/program.hpp"
 

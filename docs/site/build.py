@@ -3,10 +3,10 @@
 
 """Writes the documents and the reference as a folder of pages that can be moved anywhere and read from disk.
 
-usage: python3 docs/site/build.py --xml <Doxygen's> --out <folder> [--live <what was built for docs/live>] [--pandoc <program>]
+usage: python3 docs/site/build.py --xml <Doxygen's> --out <folder> [--live <what was built for docs/case-studies/interactive>] [--pandoc <program>]
 
 docs/index.md is the front page, and its lists are the order of all pages: a page that they leave out is an error, and so
-is a link that leads nowhere or a formula that pandoc does not know. Pages of docs/live have a section of their own.
+is a link that leads nowhere or a formula that pandoc does not know.
 """
 
 import argparse
@@ -32,6 +32,7 @@ FONT_FILES = [f"tex-gyre/texgyrepagella-{face}.otf" for face in ("regular", "ita
     "tex-gyre-math/texgyrepagella-math.otf"]
 
 ROOT_FILES = ["LICENSE", "CITATION.cff"]
+LIVE = "case-studies/interactive" # pages that compute in the browser
 
 
 def fail(message):
@@ -54,7 +55,7 @@ class Page:
 
 
 def address_of(source):
-    """docs/a.md is a.html, docs/live/a.md live/a.html, README.md readme.html."""
+    """docs/how-to/a.md is how-to/a.html, README.md readme.html."""
     path = source[len("docs/"):] if source.startswith("docs/") else source.lower()
     return re.sub(r"\.md$", ".html", path)
 
@@ -65,16 +66,12 @@ def reading_order():
     for line in (TOP / "docs/index.md").read_text().splitlines():
         if named := re.match(r"## (.*)", line):
             sections.append((named[1], []))
-        elif linked := re.match(r"- \[(.*?)\]\((.*?\.md)\)", line):
-            source = os.path.normpath("docs/" + linked[2])
-            listed.add(source)
-            sections[-1][1].append(Page(linked[1], address_of(source), source))
-    live = [str(path.relative_to(TOP)) for path in sorted((TOP / "docs/live").glob("*.md"))]
-    live = [source for source in live if source not in listed]
-    if live:
-        title = lambda source: re.match(r"# (.*)", (TOP / source).read_text())[1]
-        sections.insert(1, ("Live", [Page(title(source), address_of(source), source) for source in live]))
-    for path in TOP.glob("docs/*.md"):
+        elif line.startswith("- "):
+            for title, link in re.findall(r"\[([^\]]*)\]\(([^)#]*\.md)\)", line):
+                source = os.path.normpath("docs/" + link)
+                listed.add(source)
+                sections[-1][1].append(Page(title[0].upper() + title[1:], address_of(source), source))
+    for path in TOP.glob("docs/**/*.md"):
         source = str(path.relative_to(TOP))
         if source not in listed and source != "docs/index.md":
             fail(f"docs/index.md does not list {source}")
@@ -145,7 +142,7 @@ class Links:
 
     def to_label(self, page, label):
         """Of a formula's label, N7, to its line in the table of all."""
-        return page.link_to(f"formulas.html#{label}")
+        return page.link_to(f"reference/formulas.html#{label}")
 
 
 def write_document(page, links, live):
@@ -154,11 +151,11 @@ def write_document(page, links, live):
     body = text.pandoc(source, page.source)
     body = text.with_links(body, lambda address: links.to_file(page, address))
     body = text.with_names(body, lambda code: links.to_name(page, code, preferred))
-    if page.source == "docs/formulas.md":
+    if page.source == "docs/reference/formulas.md":
         body = text.with_labels(body)
     else:
         body = text.with_label_links(body, lambda label: links.to_label(page, label))
-    if page.source.startswith("docs/live/"): # what was not built is not asked for
+    if page.source.startswith(f"docs/{LIVE}/"): # what was not built is not asked for
         body = re.sub(r'<script src="([\w.]+)"></script>\s*',
                       lambda script: script[0] * any((folder / script[1]).is_file() for folder in live), body)
     body = text.with_breaks(body)
@@ -230,8 +227,8 @@ def copy_assets(out, live):
         print("duet: no TeX Gyre fonts on this system, the pages will use the reader's")
     for file in (file for folder in live for file in folder.iterdir()):
         if file.suffix in (".js", ".wasm", ".css"):
-            (out / "live").mkdir(exist_ok=True)
-            shutil.copy(file, out / "live")
+            (out / LIVE).mkdir(parents=True, exist_ok=True)
+            shutil.copy(file, out / LIVE)
 
 
 def main():
@@ -252,7 +249,7 @@ def main():
     headers = reference.read(arguments.xml)
     example_files = examples()
     links = Links(order, headers, example_files)
-    live = [folder for folder in (TOP / "docs/live", arguments.live) if folder and folder.is_dir()]
+    live = [folder for folder in (TOP / "docs" / LIVE, arguments.live) if folder and folder.is_dir()]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         written = [pool.submit(write_document, page, links, live) for page in order]
         source_pages = list(pool.map(example_page, example_files, example_files.values()))
@@ -261,7 +258,7 @@ def main():
     index = Page("Headers", "reference/index.html")
     header_pages = reference.pages(headers, Page, index, links)
     for title, pages in sections:
-        if any(page.source == "docs/reference_card.md" for page in pages):
+        if any(page.source == "docs/reference/reference_card.md" for page in pages):
             pages.append(index)
     pages = order + [index] + header_pages + source_pages
     write_pages(out, pages, sections, order)

@@ -159,7 +159,7 @@ class Writer:
         part = escape(text_part or "", quote=False)
         part = re.sub(r"(?<=[\w)\]*])\^(?:\{([^}]+)\}|(\([^)]+\)|[\w⊤]))", lambda m: f"<sup>{m[1] or m[2]}</sup>", part)
         part = re.sub(r"(?<!\w)(\w[\u0300-\u036f\u20d7]?[′″]*)_(?:\{([^}]+)\}|(\w)(?!\w))", lambda m: f"{m[1]}<sub>{m[2] or m[3]}</sub>", part)
-        return re.sub(rf"\b(?:{text.LABEL})\b|\b(?:docs/\w+|CONTRIBUTING|SECURITY|README)\.md\b", linked, part)
+        return re.sub(rf"\b(?:{text.LABEL})\b|\b(?:docs/[\w/-]+|CONTRIBUTING|SECURITY|README)\.md\b", linked, part)
 
     def inline(self, element, write=None):
         write = write or self.words
@@ -351,7 +351,7 @@ def pages(headers, make_page, index, links):
         brief = on_index.docs(header.compound.find("briefdescription"))
         listed += f'<dt><a href="{index.link_to(header.address)}"><code>{header.path}</code></a></dt><dd>{brief}</dd>\n'
     index.body = ('<h1>Headers</h1>\n<p><strong>After this page you can</strong> open the reference of any header: what it declares, with formulas, '
-                  f'domains and errors. Every name in a line: <a href="{index.link_to("reference_card.html")}">the reference card</a>.</p>\n{listed}</dl>\n')
+                  f'domains and errors. Every name in a line: <a href="{index.link_to("reference/reference_card.html")}">the reference card</a>.</p>\n{listed}</dl>\n')
     index.contents = [(2, layer, f"{layer}/") for layer in LAYERS]
     index.found_as = [("Headers", "", "")]
     return result

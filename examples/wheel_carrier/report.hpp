@@ -10,7 +10,7 @@
 #include <vector>
 
 /// \file
-/// Tables for people, in Markdown: docs/wheel_carrier.md holds them as they are.
+/// Tables for people, in Markdown: docs/case-studies/wheel_carrier.md holds them as they are.
 
 namespace wheel_carrier {
 

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-// docs/accuracy.md: compares a few inputs of every row with its table. The target
+// docs/reference/accuracy.md: compares a few inputs of every row with its table. The target
 // duet_accuracy_page writes the table from many inputs.
 
 namespace test_accuracy_page {
@@ -90,7 +90,7 @@ std::string text_of(const row& r) {
 } // namespace
 
 #ifndef DUET_ACCURACY_IS_WRITTEN
-TEST_CASE("accuracy: every function is as accurate as docs/accuracy.md states") {
+TEST_CASE("accuracy: every function is as accurate as docs/reference/accuracy.md states") {
   std::map<std::string, row> bounds;
   for (const row& r : rows_of(page())) {
     bounds[r.name] = r;
@@ -98,7 +98,8 @@ TEST_CASE("accuracy: every function is as accurate as docs/accuracy.md states") 
   const rows measured = all_rows(extent::test);
   for (const row& r : measured) {
     INFO(text_of(r));
-    REQUIRE_MESSAGE(bounds.count(r.name) == 1, "docs/accuracy.md has no row of this name");
+    REQUIRE_MESSAGE(bounds.count(r.name) == 1,
+                    "docs/reference/accuracy.md has no row of this name");
     const row bound = bounds[r.name];
     CHECK(r.inputs > 0);
     CHECK(r.orders == bound.orders);
@@ -145,7 +146,7 @@ std::string comparison_of(const rows& measured, const std::map<std::string, row>
 // DUET_ACCURACY=merge writes the larger of the error on the page, as measured with another
 // compiler, and the error measured now. DUET_ACCURACY=compare writes nothing and prints one line
 // that compares this build with the page.
-TEST_CASE("accuracy: writes docs/accuracy.md") {
+TEST_CASE("accuracy: writes docs/reference/accuracy.md") {
   const std::string before = page();
   std::map<std::string, row> old;
   for (const row& r : rows_of(before)) {

@@ -15,7 +15,7 @@
 
 /// \file
 /// Errors of functions of the library relative to oracles in 100 digits: the rows of
-/// docs/accuracy.md.
+/// docs/reference/accuracy.md.
 ///
 /// The unit of errors is 2⁻⁵³ (‖f‖ + a + c). If f is a derivative, a is the root mean square of the
 /// derivative along a few random directions of the same norm: a derivative is a sum over pairs,

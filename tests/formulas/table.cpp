@@ -1,8 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 // Every formula of the documents by every method, and its error relative to 50 digits. The table is
-// printed and written to the file that docs/formulas.md is generated from. The test fails if an
-// error of duet exceeds its bound, if a label has no row, or if docs/formulas.md has another row.
+// printed and written to the file that docs/reference/formulas.md is generated from. The test fails
+// if an error of duet exceeds its bound, if a label has no row, or if docs/reference/formulas.md
+// has another row.
 
 #include "formulas/table.hpp"
 #include "support/identical.hpp"

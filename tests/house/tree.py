@@ -146,8 +146,8 @@ for header in sorted(texts.keys() - reached_from(["duet/duet.hpp", "duet/io.hpp"
 problem_if(any(header.startswith(("duet/io/", "duet/robotics/")) for header in reached_from(["duet/duet.hpp"])),
            "<duet/duet.hpp> includes a header of a compiled library")
 
-for path in sorted((TOP / "docs").glob("*.md")):
-    page, text = f"docs/{path.name}", read(path)
+for path in sorted((TOP / "docs").rglob("*.md")):
+    page, text = path.relative_to(TOP).as_posix(), read(path)
     headers = FIRST_LINE.match(text)
     problem_if(not headers, f"{page} has no line of headers below its title")
     problem_if(headers and not SECOND_LINE.match(text), f"{page} does not begin with what its reader can do after it")

@@ -1,6 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-# The commands that docs/check_formula.md prints in blocks of sh must print what the blocks of text behind them hold.
+# The commands that docs/how-to/check_a_formula.md prints in blocks of sh must print what the blocks of text behind them hold.
 #
 # cmake -Dprogram=<duet-check-formula> -Dsource=<duet> -Dfolder=<for files> -P page.cmake
 
@@ -10,7 +10,7 @@ file(REMOVE_RECURSE ${folder})
 file(MAKE_DIRECTORY ${folder})
 cmake_path(GET program PARENT_PATH programs)
 set(ENV{PATH} "${programs}:$ENV{PATH}")
-set(page ${source}/docs/check_formula.md)
+set(page ${source}/docs/how-to/check_a_formula.md)
 file(READ ${page} rest)
 set(count 0)
 while(TRUE)

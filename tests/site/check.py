@@ -20,7 +20,7 @@ sys.dont_write_bytecode = True  # into the folder of sources
 from browser import Browser, Tab
 
 WIDTHS = (390, 1280)
-SHOWN = ("index", "quaternions", "wheel_carrier", "formulas", "reference/dual_quaternion/screw")
+SHOWN = ("index", "explanation/quaternions", "case-studies/wheel_carrier", "reference/formulas", "reference/dual_quaternion/screw")
 
 # What of a page is wrong: mathematics that is an error or was not converted, what is wider than the screen, a picture that has to be
 # scrolled, and on a wide screen a program.
@@ -123,7 +123,7 @@ def faults_of_page(tab, folder, path):
 
 
 def faults_of_search(tab, folder):
-    tab.open((folder / "quaternions.html").as_uri())
+    tab.open((folder / "explanation/quaternions.html").as_uri())
     found = tab.value_of(SEARCH)
     wanted = (folder / "reference/dual_quaternion/screw.html").as_uri() + "#sclerp"
     return [] if wanted in found else [f"the search for sclerp finds {found}, and not {wanted}"]

@@ -16,7 +16,7 @@ from pathlib import Path
 from browser import Browser
 from reader import Reader
 
-SOURCES = Path(__file__).resolve().parent.parent.parent / "docs"
+SOURCES = Path(__file__).resolve().parent.parent.parent / "docs/case-studies"
 LARGEST = 1_000_000
 # Of what numbers are relative to; see `scales`.
 TOLERANCE = 1e-12
@@ -30,7 +30,7 @@ class Native:
         library = ctypes.CDLL(str(folder / f"{name}.so"))
         kinds = {"int": ctypes.c_int, "double": ctypes.c_double}
         self.functions = {}
-        source = (SOURCES / f"live/{name}.cpp").read_text()
+        source = (SOURCES / f"interactive/{name}.cpp").read_text()
         for result, function, parameters in re.findall(r"DUET_LIVE (void|int) (\w+)\((.*?)\)", source, re.DOTALL):
             self.functions[function] = called = getattr(library, function)
             called.restype = kinds.get(result)
@@ -216,7 +216,7 @@ def check_motion(page):
         for k in range(3):
             expect(abs(slope[5 + k] - velocity[k]) < 1e-3, f"at u = {row[0]} the mark moves by {slope[5 + k]}, not {velocity[k]}")
             expect(near or abs(slope[8 + k] - row[11 + k]) < 1e-3, f"at u = {row[0]} α is {row[11 + k]}, not {slope[8 + k]}")
-    document = re.search(r"off by up to\s+(\d+)\s+degrees", (SOURCES / "printed_formulas.md").read_text())[1]
+    document = re.search(r"off by up to\s+(\d+)\s+degrees", (SOURCES / "two_sources.md").read_text())[1]
     said = page.value_of("document.querySelector('.live-says').textContent")
     expect(f"at most by {document}." in said, f"the document says {document} degrees, the page {said}")
 

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 
 /// \file
-/// Version of duet, for `#if` and for messages. docs/versions.md states its guarantees.
+/// Version of duet, for `#if` and for messages. docs/reference/versioning.md states its guarantees.
 
 #define DUET_VERSION_MAJOR 1
 #define DUET_VERSION_MINOR 0

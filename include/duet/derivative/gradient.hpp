@@ -73,8 +73,8 @@ struct value_gradient_and_hessian {
 /// nothing; f takes it by reference.
 ///
 /// \tparam Chunk  components differentiated per evaluation of f; 0 (the default) selects the
-///   measured optimum, see docs/benchmarks.md. More partials per pass evaluate f less often, but
-///   every number of f holds them all.
+///   measured optimum, see docs/reference/benchmarks.md. More partials per pass evaluate f less
+///   often, but every number of f holds them all.
 /// \return f(x)
 /// \throws invalid_input if the sizes do not match or x is empty
 ///

@@ -91,7 +91,7 @@ struct all_inverse_kinematics_result {
 /// 1e-9 of the arm's size, and solved in closed form. Two prismatic joints: zeros of a polynomial
 /// of degree 8. Any other arm: elimination after Raghavan and Roth for two loops whose axes are
 /// displaced from the given ones by 1e-4 and less of the arm's size, so that no solutions coincide,
-/// and Newton's method from there (docs/all_inverse_kinematics.md). Joints beyond their limits are
+/// and Newton's method from there (docs/how-to/all_ik_solutions.md). Joints beyond their limits are
 /// reported by `within_limits`. If the joints have a self-motion, some of its configurations are
 /// returned: for two prismatic joints that are parallel in every configuration, one for each
 /// solution of the other joints, at the centre of the range that the limits of both admit.
