@@ -4,7 +4,7 @@
 /// Durations of `time_optimal_trajectory` with jerk limits relative to the minimum time. They are
 /// compared with the closed form on straight lines, and on curves with those of another method: a
 /// search over time in 300 equal steps of constant s⃛, with limits at three moments of each. Prints
-/// the table of docs/how-to/time_parametrise.md. Argument: number of seeds of each family (20);
+/// the table of docs/reference/benchmarks.md. Argument: number of seeds of each family (20);
 /// build/bench/bench/duet_jerk_limits_bench 10
 
 #include "../src/robotics/timed_curve.hpp"

@@ -3,7 +3,7 @@
 /// \file
 /// Whether `time_optimal_trajectory` with jerk limits finds motions that are known to exist, with
 /// velocities at both ends: along segments of motions from rest to rest, with the velocities of
-/// these motions. Prints the table of docs/how-to/time_parametrise.md. Argument: number of seeds of
+/// these motions. Prints the table of docs/reference/benchmarks.md. Argument: number of seeds of
 /// each family, with four segments each (50); build/bench/bench/duet_jerk_limits_in_motion_bench 50
 
 #include "../src/robotics/timed_curve.hpp"

@@ -3,7 +3,7 @@
 /// \file
 /// Durations of `time_optimal_trajectory` relative to the minimum time with limits sampled on 20
 /// 000 segments or more of the same curve, and of natural cubic splines. Prints the table of
-/// docs/how-to/time_parametrise.md. Argument: number of seeds of each family (100);
+/// docs/reference/benchmarks.md. Argument: number of seeds of each family (100);
 /// build/bench/bench/duet_time_parametrisation_bench 10
 
 #include "../src/robotics/timed_curve.hpp"

@@ -46,7 +46,7 @@ STANDARD = set("__cplusplus __cpp_exceptions __cpp_rtti __has_include __FAST_MAT
 
 CONFIG = "duet/core/config.hpp"
 FIRST_LINE = re.compile(r"# [^\n]*\n\nHeaders: (`duet/[a-z_/]+\.hpp`(?:, `duet/[a-z_/]+\.hpp`)*)\n")
-SECOND_LINE = re.compile(r"# [^\n]*\n\n[^\n]*\n\n\*\*After this page you can\*\* [^\n]*\.\n")
+SECOND_LINE = re.compile(r"# [^\n]*\n\n[^\n]*\n\n(?:\*\*After this page you can\*\*|This (?:page|tutorial)) [^\n]*(?:\n[^\n]+)*[.:]\n")
 
 problems = []
 
@@ -150,7 +150,7 @@ for path in sorted((TOP / "docs").rglob("*.md")):
     page, text = path.relative_to(TOP).as_posix(), read(path)
     headers = FIRST_LINE.match(text)
     problem_if(not headers, f"{page} has no line of headers below its title")
-    problem_if(headers and not SECOND_LINE.match(text), f"{page} does not begin with what its reader can do after it")
+    problem_if(headers and not SECOND_LINE.match(text), f"{page} does not begin with "This page shows how to …" or the like")
     for header in re.findall(r"[a-z_/]+\.hpp", headers[1]) if headers else ():
         problem_if(not (TOP / "include" / header).exists(), f"{page} names {header}, which there is not")
 
