@@ -150,7 +150,7 @@ for path in sorted((TOP / "docs").rglob("*.md")):
     page, text = path.relative_to(TOP).as_posix(), read(path)
     headers = FIRST_LINE.match(text)
     problem_if(not headers, f"{page} has no line of headers below its title")
-    problem_if(headers and not SECOND_LINE.match(text), f"{page} does not begin with "This page shows how to …" or the like")
+    problem_if(headers and not SECOND_LINE.match(text), f"{page} does not begin with a sentence about the page, as in: This page shows how to …")
     for header in re.findall(r"[a-z_/]+\.hpp", headers[1]) if headers else ():
         problem_if(not (TOP / "include" / header).exists(), f"{page} names {header}, which there is not")
 
