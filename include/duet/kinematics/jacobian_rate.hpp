@@ -113,7 +113,8 @@ struct jacobian_and_rate {
 
 /// J and J̇ along the joint velocities θ̇, so that J θ̈ + J̇ θ̇ is the derivative of the twist J
 /// θ̇. In `frame::hybrid` its linear part is the classical acceleration of the frame's origin, p̈;
-/// in the other frames it is not (see docs/how-to/load_a_robot.md). Arguments as `jacobian`.
+/// in the other frames it is not (see docs/reference/jacobians_and_frames.md). Arguments as
+/// `jacobian`.
 ///
 /// \return `jacobian_and_rate`
 template <SerialChain C, VectorLike X, VectorLike V, FrameConstant Frame,
