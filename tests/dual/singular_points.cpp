@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-// The tables of "Derivatives at singular points" in docs/explanation/dual_numbers.md, line by line.
+// The tables of docs/reference/singular_points.md, line by line.
 // Every line is checked in several numbers: values bit by bit against plain numbers, the derivative
 // by each argument where the others are arithmetic constants, constants and variables.
 
