@@ -3,7 +3,7 @@
 /// \file
 /// Motion planning exactly as in the notes (N22–N25), for a Panda: minimum-norm joint rates, a
 /// single step, plans towards a goal, inverse kinematics, a path of poses, and the effect of the
-/// step size beta. Prints the tables of docs/case-studies/printed_plan.md.
+/// step size beta. Prints the tables of docs/case-studies/two_sources.md.
 
 #include <duet/core/random_source.hpp>
 #include <duet/kinematics/robots.hpp>

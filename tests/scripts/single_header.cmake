@@ -35,7 +35,7 @@ function(write_document path page end)
   file(WRITE ${path} "${text}")
 endfunction()
 write_document(${folder}/first.md README.md "\nA robot arm")
-write_document(${folder}/layers.md docs/tutorials/tour.md "\n## Curves")
+write_document(${folder}/layers.md docs/tutorials/rotations_and_poses.md "\n## Interpolate")
 
 # Of the flags those that lead to Eigen and Boost, and not to duet.
 list(POP_FRONT compile compiler)
