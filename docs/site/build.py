@@ -66,7 +66,7 @@ def reading_order():
     for line in (TOP / "docs/index.md").read_text().splitlines():
         if named := re.match(r"## (.*)", line):
             sections.append((named[1], []))
-        elif line.startswith("- "):
+        elif line.startswith(("- ", "  ")):
             for title, link in re.findall(r"\[([^\]]*)\]\(([^)#]*\.md)\)", line):
                 source = os.path.normpath("docs/" + link)
                 listed.add(source)
