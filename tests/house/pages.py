@@ -15,16 +15,8 @@ TOP = Path(__file__).resolve().parents[2]
 MAX_WORDS, MAX_COLUMNS, MAX_LINES = 35, 110, 250
 # Remove a page when it has no fault; no page is to be added.
 UNFINISHED = """
-case-studies/tolerance_analysis
 case-studies/wheel_carrier
-explanation/four_curves
-explanation/quaternions
-how-to/check_a_closed_form
-how-to/curve_jacobians
 how-to/interpolate_orientations
-how-to/least_squares
-how-to/read_and_write_files
-how-to/reverse_mode_and_proofs
 how-to/smooth_recordings
 """.split()
 
