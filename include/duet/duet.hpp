@@ -45,6 +45,7 @@
 #include <duet/derivative/svd.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/derivative/with_derivative.hpp>
 #include <duet/dual/complex.hpp>
 #include <duet/dual/dynamic_dual.hpp>
 #include <duet/dual/eigen_traits.hpp>

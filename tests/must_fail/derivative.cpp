@@ -10,6 +10,7 @@
 #include <duet/derivative/nonlinear_least_squares.hpp>
 #include <duet/derivative/sparse.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/derivative/with_derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 
@@ -482,4 +483,18 @@ int main() {
   const auto f = [](const auto& x) { return x[0] * x[1]; };
 #endif
   return duet::gradient(f, Eigen::Vector2d(1, 2)).value == 2 ? 0 : 1;
+}
+
+//// with_derivative_of_first_order
+// expect: duet: with_derivative: derivatives of this order need a derivative that takes any scalar
+
+double reciprocal(double x) { return 1 / x; }
+
+int main() {
+#ifdef DUET_MUST_FAIL
+  const auto slope = [](double x) { return -1 / (x * x); };
+#else
+  const auto slope = [](const auto& x) { return -1 / (x * x); };
+#endif
+  return duet::derivatives<2>(duet::with_derivative(reciprocal, slope), 1.0)[2] == 2 ? 0 : 1;
 }

@@ -1,0 +1,123 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include <duet/core/batch/batch.hpp>
+#include <duet/core/batch/math.hpp>
+#include <duet/derivative/derivative.hpp>
+#include <duet/derivative/gradient.hpp>
+#include <duet/derivative/jacobian.hpp>
+#include <duet/derivative/with_derivative.hpp>
+#include <duet/dual/math.hpp>
+#include <duet/expression/graph/trace.hpp>
+#include <duet/expression/symbol.hpp>
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <tuple>
+#include <type_traits>
+
+namespace test_derivative_with_derivative {
+
+using duet::derivative;
+using duet::derivatives;
+using duet::with_derivative;
+
+namespace {
+
+/// eˣ as another library would give it.
+double exponential(double x) { return std::exp(x); }
+
+const auto generic_exp = [](const auto& x) {
+  using std::exp;
+  return exp(x);
+};
+const auto wrapped = with_derivative(exponential, generic_exp);
+
+} // namespace
+
+TEST_CASE("with_derivative: derivatives of every order and kind come from the given one") {
+  const double e = std::exp(0.5);
+  CHECK(wrapped(0.5) == e);
+  CHECK(wrapped(1) == std::exp(1.0));
+  CHECK(wrapped(0.5F) == doctest::Approx(e));
+  CHECK(derivative(wrapped, 0.5).derivative == e);
+  const auto three = derivatives<3>([](const auto& x) { return wrapped(2 * x); }, 0.25);
+  for (int k = 0; k <= 3; ++k) {
+    CHECK(three[std::size_t(k)] == doctest::Approx(std::pow(2, k) * e));
+  }
+  const auto nested = [](const auto& x) {
+    return derivative([](const auto& y) { return wrapped(y * y); }, x).derivative; // 2x exp x²
+  };
+  CHECK(derivative(nested, 0.5).derivative == doctest::Approx((2 + 4 * 0.25) * std::exp(0.25)));
+  const auto of_vector = [](const auto& x) { return wrapped(x[0] * x[1]); };
+  const auto h = duet::hessian(of_vector, Eigen::Vector2d(0.5, 2));
+  CHECK(h.gradient.isApprox(std::exp(1.0) * Eigen::Vector2d(2, 0.5)));
+  CHECK(h.hessian(0, 1) == doctest::Approx(std::exp(1.0) * 2));
+}
+
+TEST_CASE("with_derivative: the given derivative is used, not that of the function") {
+  const auto f = with_derivative([](const auto& x) { return x * x; }, [](double) { return 7.0; });
+  CHECK(derivative(f, 3.0).value == 9);
+  CHECK(derivative(f, 3.0).derivative == 7);
+  CHECK(f(duet::dual<double, 2>(3.0)).partial(1) == 0);
+}
+
+TEST_CASE("with_derivative: rules of double alone, one for each order") {
+  const auto second =
+      with_derivative([](double x) { return -std::sin(x); }, [](double x) { return -std::cos(x); });
+  const auto first = with_derivative([](double x) { return std::cos(x); }, second);
+  const auto sine = with_derivative([](double x) { return std::sin(x); }, first);
+  const auto y = derivatives<3>(sine, 0.3);
+  CHECK(y[2] == doctest::Approx(-std::sin(0.3)));
+  CHECK(y[3] == doctest::Approx(-std::cos(0.3)));
+}
+
+TEST_CASE("with_derivative: batches, lane by lane or at once") {
+  using batch = duet::batch<double>;
+  const auto x = batch::from_lanes([](int i) { return 0.1 * i; });
+  const auto y = derivative(wrapped, x);
+  for (int i = 0; i < batch::lanes; ++i) {
+    CHECK(y.value[i] == std::exp(0.1 * i));
+    CHECK(y.derivative[i] == std::exp(0.1 * i));
+  }
+}
+
+TEST_CASE("with_derivative: several arguments, and constants beside variables") {
+  const auto power = with_derivative([](double x, double p) { return std::pow(x, p); },
+                                     [](const auto& x, const auto& p) {
+                                       using std::pow;
+                                       return p * pow(x, p - 1);
+                                     },
+                                     [](const auto& x, const auto& p) {
+                                       using std::log;
+                                       using std::pow;
+                                       return log(x) * pow(x, p);
+                                     });
+  const auto [y, dy] =
+      duet::gradient([&](const auto& x) { return power(x[0], x[1]); }, Eigen::Vector2d(2, 3));
+  CHECK(y == 8);
+  CHECK(dy.isApprox(Eigen::Vector2d(12, 8 * std::log(2))));
+  CHECK(derivatives<2>([&](const auto& x) { return power(x, 3); }, 2.0)[2] == doctest::Approx(12));
+  const auto product = [](const auto& a, const auto& b, const auto& c) { return a * b * c; };
+  const auto volume = with_derivative(
+      product, [](const auto&, const auto& b, const auto& c) { return b * c; },
+      [](const auto& a, const auto&, const auto& c) { return a * c; },
+      [](const auto& a, const auto& b, const auto&) { return a * b; });
+  const auto h = duet::hessian([&](const auto& x) { return volume(x[0], x[1], x[2]); },
+                               Eigen::Vector3d(1, 2, 3));
+  CHECK(h.gradient == Eigen::Vector3d(6, 3, 2));
+  CHECK(h.hessian(0, 2) == 2);
+}
+
+TEST_CASE("with_derivative: traces record the function, and the derivative where it is asked for") {
+  constexpr duet::expression::symbol<"u"> u;
+  const auto f =
+      with_derivative([](const auto& x) { return x * x; }, [](const auto& x) { return 3 * x; });
+  CHECK(duet::expression::trace(f, u)(u = 2.0) == 4);
+  const auto slope =
+      duet::expression::trace([&](const auto& x) { return derivative(f, x).derivative; }, u);
+  CHECK(slope(u = 2.0) == 6);
+}
+
+} // namespace test_derivative_with_derivative
