@@ -8,7 +8,8 @@
 /// kinematic trees (kinematics/tree_jacobian.hpp), loops of trees (kinematics/tree_loop.hpp),
 /// distances of shapes (kinematics/closest_points.hpp), plans and trajectories of joints
 /// (kinematics/motion_plan.hpp), sweeps over configurations (kinematics/sweep.hpp), chains of all
-/// types as one type (kinematics/chain_view.hpp), fits (spline/fit.hpp), curves in the caller's
+/// types as one type (kinematics/chain_view.hpp), chains with user-defined joints
+/// (kinematics/joined_chain.hpp), fits (spline/fit.hpp), curves in the caller's
 /// memory (spline/bspline_segment.hpp, quaternion/quaternion_order.hpp), split curves
 /// (spline/split_bspline.hpp), CSV (core/text/csv.hpp), the planner of the lecture notes
 /// (motion/printed_plan.hpp), the nearest pose on a screw motion (dual_quaternion/nearest.hpp),

@@ -10,6 +10,7 @@
 #include <duet/duet.hpp>
 #include <duet/io.hpp>
 #include <duet/kinematics/chain_formula.hpp>
+#include <duet/kinematics/joined_chain.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/kinematics/tree_loop.hpp>
 #include <duet/motion/printed_plan.hpp>
@@ -24,6 +25,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <type_traits>
 
@@ -179,6 +181,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(placement<double>);
   DUET_CHECK(joint_limits<double>);
   DUET_CHECK(joint<double>);
+  DUET_CHECK(custom_joint<std::identity>);
   DUET_CHECK(attached_frame<double>);
   DUET_CHECK(relative_frame);
   DUET_CHECK(driven_motion_options);
