@@ -5,6 +5,7 @@
 #include "support/message.hpp"
 #include "support/random.hpp"
 
+#include <duet/derivative/derivative.hpp>
 #include <duet/derivative/least_squares.hpp>
 
 #include <doctest/doctest.h>
@@ -286,6 +287,28 @@ TEST_CASE("least_squares: a problem without a unique solution throws invalid_inp
   CHECK(message(a, b) == "duet: least_squares: A has rank 0, less than its 2 columns");
   a(1, 0) = std::numeric_limits<double>::infinity();
   CHECK(message(a, b) == "duet: least_squares: entry (1, 0) of A is not finite");
+}
+
+TEST_CASE("null_space_step: the projection of a step, and its derivative") {
+  const Eigen::Matrix<double, 2, 3> j{{1, 2, 3}, {-1, 0.5, 2}};
+  const Eigen::Vector3d z(0.3, -1, 2);
+  const Eigen::Vector3d step = duet::null_space_step(j, z);
+  CHECK((j * step).norm() < 1e-15);
+  CHECK((duet::null_space_step(j, step) - step).norm() < 1e-15);
+  CHECK(std::abs(step.dot(z - step)) < 1e-15);
+  const auto of = [&](const auto& t) {
+    using T = std::decay_t<decltype(t)>;
+    Eigen::Matrix<T, 2, 3> moving = j.cast<T>();
+    moving(0, 1) += t;
+    return duet::null_space_step(moving, z);
+  };
+  const double h = 1e-6;
+  const Eigen::Vector3d difference = (of(h) - of(-h)) / (2 * h);
+  CHECK((duet::derivative(of, 0.0).derivative - difference).norm() < 1e-9);
+  const MatrixXd singular{{1, 2, 3}, {2, 4, 6}};
+  CHECK_THROWS_AS(static_cast<void>(duet::null_space_step(singular, z)), duet::invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(duet::null_space_step(j, Eigen::VectorXd::Ones(2))),
+                  duet::invalid_input);
 }
 
 } // namespace test_derivative_least_squares

@@ -128,6 +128,14 @@ TEST_CASE("from_screw: inverts screw_parameters") {
   }
 }
 
+TEST_CASE("screw_parameters: the point of the axis nearest to the origin") {
+  const duet::vector3<double> on_axis(1, 2, 0), n(0, 0, 1); // axis through (1, 2, 5) along z
+  const auto a = duet::from_screw(n, on_axis.cross(n).eval(), 0.7, 0.3);
+  CHECK((duet::screw_parameters(a).point() - on_axis).norm() < 1e-14);
+  const auto shift = duet::pose(duet::quaternion<double>(1.0), on_axis);
+  CHECK(duet::screw_parameters(shift).point() == duet::vector3<double>(0, 0, 0));
+}
+
 TEST_CASE("sclerp: the derivative is a constant twist, within bounds of 50 digits") {
   // Ċ = C log(A* B) for all τ; poses are composed of screws of moderate angle.
   const auto ends = [](const auto& w, const auto& t) {

@@ -210,6 +210,31 @@ TEST_CASE("hybrid frame: perturbing a pose far from the origin does not lose acc
   }
 }
 
+TEST_CASE("twist_between: the inverse of the perturbation, in every frame") {
+  using manifold = duet::manifold<duet::dual_quaternion<double>>;
+  const vector6<double> delta = (vector6<double>() << 1, 2, -3, 1.5, -0.4, 1.3).finished();
+  for (const auto& a : poses()) {
+    const auto check = [&](auto frame_of_delta) {
+      const auto b = manifold::plus(a, delta, frame_of_delta);
+      const double scale = 1 + duet::translation(a).norm();
+      CHECK((twist_between(a, b, frame_of_delta) - delta).norm() < 1e-14 * scale);
+      CHECK((twist_between(a, -b, frame_of_delta) - delta).norm() < 1e-14 * scale);
+      CHECK(twist_between(a, a, frame_of_delta).norm() < 1e-15 * scale);
+    };
+    check(frame::spatial);
+    check(frame::body);
+    check(frame::hybrid);
+  }
+}
+
+TEST_CASE("twist_between: its derivative at equal poses is the tangent") {
+  const auto a = poses().front();
+  const auto error = [&](const auto& b) { return twist_between(a, b, frame::body); };
+  CHECK(
+      (duet::jacobian(error, a, frame::body).jacobian - duet::matrix6<double>::Identity()).norm() <
+      1e-14);
+}
+
 TEST_CASE("accelerations: the classical one differs from the derivative of the spatial twist") {
   // Uniform rotation about z of a body at distance 2: the origin of the body accelerates inwards.
   const auto motion = [](auto t) {

@@ -153,4 +153,22 @@ template <class A, class B>
   }
 }
 
+/// The part of a desired joint step that does not move the tip: the projection
+/// (1 − Jᵀ(J Jᵀ)⁻¹J) z onto the null space of J, with derivatives with respect to both.
+///
+/// Computed as the residual of `least_squares(Jᵀ, z)`, without squares of the condition number.
+///
+/// \param jacobian  J, m × n of rank m, as the Jacobian of a redundant arm
+/// \param z         desired step of n coordinates
+/// \return a column of n coordinates
+/// \throws invalid_input if sizes do not match, or J loses rank, at a singularity or with m > n
+template <class J, class Z>
+[[nodiscard]] auto null_space_step(const Eigen::MatrixBase<J>& jacobian,
+                                   const Eigen::MatrixBase<Z>& z) {
+  const auto across = jacobian.transpose().eval();
+  const auto x = least_squares(across, z);
+  using S = typename std::decay_t<decltype(x)>::Scalar;
+  return (detail::converted<S>(z) - detail::converted<S>(across) * x).eval();
+}
+
 } // namespace duet

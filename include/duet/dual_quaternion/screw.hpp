@@ -49,6 +49,10 @@ struct screw_motion {
   T translation = T(0);               ///< d along the axis, in units of length
   screw_kind kind = screw_kind::none; ///< components present: rotation, translation or both
 
+  /// The point of the axis nearest to the origin, n × m, in units of length. Zero without rotation,
+  /// as the axis is then anywhere.
+  [[nodiscard]] vector3<T> point() const { return axis.cross(moment); }
+
   /// For those who extend duet: for `to_text`.
   void for_each_field(const auto& f) const {
     f("axis", axis);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/select.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
@@ -170,6 +171,35 @@ struct manifold<quaternion<dual<T, 1, screw_tag>>> {
     return twist(a, rate, frame);
   }
 };
+
+/// The constant twist δ = [v; ω] that takes the pose A to the pose B in unit time, an error between
+/// poses with axes: the inverse of the perturbations of `jacobian`, with |ω| ≤ π.
+///
+/// `frame::body`: 2 log(A* B), B = A exp(δ/2). `frame::spatial`: 2 log(B A*), B = exp(δ/2) A.
+/// `frame::hybrid`: v = t_B − t_A, ω of `frame::spatial`. The signs of A and B do not matter. Both
+/// are of unit norm; half a turn apart δ jumps.
+template <class A, Promotable<A> B, FrameConstant Frame>
+[[nodiscard]] vector6<promote_t<A, B>> twist_between(const dual_quaternion<A>& a,
+                                                     const dual_quaternion<B>& b, Frame /*frame*/) {
+  using T = promote_t<A, B>;
+  if constexpr (std::same_as<Frame, hybrid_frame>) {
+    vector6<T> delta = twist_between(a, b, frame::spatial);
+    delta.template head<3>() = translation(b) - translation(a);
+    return delta;
+  } else {
+    const dual_quaternion<T> step = std::same_as<Frame, body_frame> ? conj(a) * b : b * conj(a);
+    const dual_quaternion<T> shorter = select(
+        innermost(step.w()) < 0, [&] { return -step; }, [&] { return step; });
+    return twist_of<T>(
+        dual_vector<T>(detail::log_vector(shorter, "twist_between") * real_type_t<T>(2)));
+  }
+}
+
+/// Rejected: without a frame the axes are ambiguous.
+template <class A, class B>
+DUET_REFUSED("the frame is missing: twist_between(a, b, frame::hybrid), frame::spatial or "
+             "frame::body")
+vector6<promote_t<A, B>> twist_between(const dual_quaternion<A>&, const dual_quaternion<B>&);
 
 /// Coadjoint matrix [R 0; t̂R R] = Ad(A)⁻ᵀ: transforms wrenches [f; m], m about the origin, as
 /// Ad(A) transforms twists: F^s = coAd(A) F^b, and (coAd(A) F)·(Ad(A) V) = F·V.
