@@ -43,6 +43,7 @@
 #include <duet/derivative/matrix_exponential.hpp>
 #include <duet/derivative/nearest_rotation.hpp>
 #include <duet/derivative/nonlinear_least_squares.hpp>
+#include <duet/derivative/scalar_type.hpp>
 #include <duet/derivative/svd.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
