@@ -69,4 +69,38 @@ TEST_CASE("save_plan, save_trajectory: files contain all digits") {
   CHECK_THROWS_AS(save_plan("no/such/folder/plan.csv", plan), file_error);
 }
 
+TEST_CASE("save_plan: names of joints as columns; join_plans: plans that meet") {
+  motion_plan first, second, other;
+  for (int k = 0; k < 3; ++k) {
+    for (motion_plan* plan : {&first, &second, &other}) {
+      const double x = plan == &first ? k : k + 2;
+      plan->joints.push_back(Eigen::Vector2d(x, plan == &other ? 1 : 0));
+      plan->poses.push_back(dual_quaternion<double>(1));
+      plan->tau.push_back(k / 2.0);
+      plan->deviations.push_back({});
+      plan->iterations = 5;
+    }
+  }
+  second.reason = stop_reason::reached;
+  const motion_plan both = join_plans(first, second);
+  CHECK(both.joints.size() == 5);
+  CHECK(both.joints.back()[0] == 4);
+  CHECK(both.tau.back() == 2);
+  CHECK(both.iterations == 10);
+  CHECK(both.reason == stop_reason::reached);
+  CHECK_THROWS_WITH_AS(static_cast<void>(join_plans(first, other)),
+                       "duet: join_plans: joint 1 ends at 0, but starts at 1", invalid_input);
+  CHECK_THROWS_AS(static_cast<void>(join_plans(first, {})), invalid_input);
+
+  save_plan(path, both, {"shoulder", "elbow"});
+  std::ifstream in(path);
+  std::string header;
+  std::getline(in, header);
+  CHECK(header.find("tau,shoulder [rad or m],elbow [rad or m],x [m]") == 0);
+  in.close();
+  std::remove(path.c_str());
+  CHECK_THROWS_WITH_AS(save_plan(path, both, {"shoulder"}),
+                       "duet: save_plan: 1 names of joints (expected 2)", invalid_input);
+}
+
 } // namespace test_io_save_plan

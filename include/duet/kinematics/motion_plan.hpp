@@ -146,6 +146,42 @@ struct motion_plan {
   }
 };
 
+/// The plan that executes one plan and then another, which starts where the first ends.
+///
+/// The parameter τ of the second continues from the last one of the first. Margins are the smaller
+/// ones, iterations are added, and the reason is that of the second.
+///
+/// \param tolerance  maximum difference of a coordinate between the end and the start
+/// \throws invalid_input if a plan has no waypoints, the numbers of joints differ, or the plans do
+/// not meet
+[[nodiscard]] inline motion_plan join_plans(const motion_plan& first, const motion_plan& second,
+                                            double tolerance = 1e-9) {
+  detail::require(!first.joints.empty() && !second.joints.empty(),
+                  "duet: join_plans: a plan has no waypoints");
+  const Eigen::VectorXd &end = first.joints.back(), &start = second.joints.front();
+  detail::require(end.size() == start.size(), "duet: join_plans: the plans have ", end.size(),
+                  " and ", start.size(), " joints");
+  for (Eigen::Index i = 0; i < end.size(); ++i) {
+    detail::require(std::abs(end[i] - start[i]) <= tolerance, "duet: join_plans: joint ", i,
+                    " ends at ", to_text(end[i]), ", but starts at ", to_text(start[i]));
+  }
+  motion_plan plan = first;
+  const double shift = first.tau.back() - second.tau.front();
+  for (std::size_t k = 1; k < second.joints.size(); ++k) {
+    plan.joints.push_back(second.joints[k]);
+    plan.poses.push_back(second.poses[k]);
+    plan.tau.push_back(second.tau[k] + shift);
+    plan.deviations.push_back(second.deviations[k]);
+  }
+  plan.smallest_singular_value =
+      std::min(first.smallest_singular_value, second.smallest_singular_value);
+  plan.smallest_limit_margin = std::min(first.smallest_limit_margin, second.smallest_limit_margin);
+  plan.smallest_clearance = std::min(first.smallest_clearance, second.smallest_clearance);
+  plan.iterations = first.iterations + second.iterations;
+  plan.reason = second.reason;
+  return plan;
+}
+
 namespace detail {
 
 template <class C, class V>
