@@ -146,6 +146,10 @@ for header in sorted(texts.keys() - reached_from(["duet/duet.hpp", "duet/io.hpp"
 problem_if(any(header.startswith(("duet/io/", "duet/robotics/")) for header in reached_from(["duet/duet.hpp"])),
            "<duet/duet.hpp> includes a header of a compiled library")
 
+for picture in sorted((TOP / "docs/figures").iterdir()):
+    size = picture.stat().st_size
+    problem_if(size > 204800, f"docs/figures/{picture.name} has {size} bytes, more than 200 kB: scripts/shrink_svg")
+
 for path in sorted((TOP / "docs").rglob("*.md")):
     page, text = path.relative_to(TOP).as_posix(), read(path)
     headers = FIRST_LINE.match(text)
