@@ -29,6 +29,7 @@
 #include <duet/comparison/numeric_derivative.hpp>
 #include <duet/comparison/rigid_motions.hpp>
 #include <duet/comparison/rotations.hpp>
+#include <duet/core/batch/evaluate_each.hpp>
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/number_text.hpp>
