@@ -1,9 +1,10 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 # Formulas as code: compiled without a warning by gcc and clang as C99 and C++, run by Python and Octave, and compared
-# with duet. Without NumPy or Octave these are skipped, unless the environment variable DUET_TEST_STRICT is set.
-#   cmake -D language=<c|cpp|python|matlab> -D program=<emitted_code> -D folder=<scratch folder> -D eigen=<folders>
-#     -P check.cmake
+# with duet; C also by gcc for a Cortex-M4, under emulation. Without NumPy, Octave, that compiler or the emulator these
+# are skipped, unless the environment variable DUET_TEST_STRICT is set.
+#   cmake -D language=<c|c_cortex_m4|cpp|python|matlab> -D program=<emitted_code> -D folder=<scratch folder>
+#     -D eigen=<folders> -P check.cmake
 
 function(run)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${folder} RESULT_VARIABLE status OUTPUT_VARIABLE output
@@ -30,7 +31,7 @@ file(MAKE_DIRECTORY ${folder})
 run(${program} ${folder})
 set(strict -Wall -Wextra -Werror -pedantic)
 
-if(language STREQUAL "c")
+if(language MATCHES "^c(_cortex_m4)?$")
   file(GLOB files ${folder}/*.c)
   set(sine_files ${folder}/sines.c ${folder}/check_sines.c)
   list(REMOVE_ITEM files ${sine_files})
@@ -39,6 +40,9 @@ if(language STREQUAL "c")
   list(REMOVE_ITEM files ${float_files})
   set(library_float_files ${float_files})
   list(FILTER library_float_files EXCLUDE REGEX "check_float.c$")
+endif()
+
+if(language STREQUAL "c")
   foreach(compiler IN ITEMS gcc clang)
     run(${compiler} -std=c99 ${strict} ${files} -lm -o ${compiler})
     run(./${compiler})
@@ -54,6 +58,27 @@ if(language STREQUAL "c")
     run(${compiler} -std=c99 ${strict} -Wdouble-promotion -Wconversion -fsyntax-only ${library_float_files})
   endforeach()
   run(clang -x c++ ${strict} -fsyntax-only ${files} ${sine_files}) # g++ takes three times as long
+elseif(language STREQUAL "c_cortex_m4")
+  find_program(gcc NAMES arm-none-eabi-gcc NO_CACHE)
+  if(NOT gcc)
+    skip("compiler for Cortex-M4" "gcc-arm-none-eabi")
+  endif()
+  run(${gcc} -print-file-name=rdimon.specs)
+  if(NOT EXISTS ${output})
+    skip("newlib for Cortex-M4" "libnewlib-arm-none-eabi")
+  endif()
+  find_program(qemu NAMES qemu-system-arm NO_CACHE)
+  if(NOT qemu)
+    skip("emulator of Cortex-M4" "qemu-system-arm")
+  endif()
+  set(compile ${gcc} -std=c99 -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 -ffp-contract=off -O2 ${strict})
+  set(start --specs=rdimon.specs -Wl,--section-start=.vectors=0 ${CMAKE_CURRENT_LIST_DIR}/start_cortex_m4.c)
+  foreach(kind IN ITEMS files float_files sine_files)
+    run(${compile} ${start} ${${kind}} -lm -o ${kind}.elf)
+    run(${qemu} -M mps2-an386 -nographic -semihosting-config enable=on,target=native -kernel ${kind}.elf)
+    message(STATUS "Cortex-M4, ${kind}: ${output}")
+  endforeach()
+  run(${compile} -Wdouble-promotion -Wconversion -fsyntax-only ${library_float_files})
 elseif(language STREQUAL "cpp")
   list(TRANSFORM eigen PREPEND "-isystem" OUTPUT_VARIABLE includes)
   foreach(compiler IN ITEMS g++ clang++)
