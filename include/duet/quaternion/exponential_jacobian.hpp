@@ -33,6 +33,41 @@ template <Real R, std::size_t Count>
   return result;
 }
 
+/// c_0(s) … c_Highest(s) of lanes beyond the series.
+template <std::size_t Size, class B>
+[[nodiscard]] DUET_OUT_OF_LINE std::array<B, Size> stumpff_sequence_of_large(const B& s) {
+  using R = lane_type_t<B>;
+  constexpr auto table = inverse_factorials<R, Size>();
+  std::array<B, Size> c;
+  const auto pair = first_stumpff_pair_of_large(s);
+  c[0] = pair[0];
+  c[1] = pair[1];
+  const B reciprocal = 1 / s;
+  for (std::size_t i = 2; i < Size; ++i) {
+    c[i] = (table[i - 2] - c[i - 2]) * reciprocal;
+  }
+  return c;
+}
+
+/// c_0(s) … c_{Size−1}(s) of batches, out of line, as they are long: all lanes share the series or
+/// one sine and cosine.
+template <std::size_t Size, class B>
+[[nodiscard]] DUET_OUT_OF_LINE std::array<B, Size> stumpff_sequence_of_lanes(const B& s) {
+  constexpr auto table = inverse_factorials<lane_type_t<B>, Size>();
+  return select(
+      !is_beyond_series(s),
+      [&]() DUET_INLINE_LAMBDA {
+        std::array<B, Size> c;
+        c[Size - 1] = stumpff_of_small<int(Size) - 1>(s);
+        c[Size - 2] = stumpff_of_small<int(Size) - 2>(s);
+        for (std::size_t i = Size - 2; i-- > 0;) {
+          c[i] = table[i] - s * c[i + 2];
+        }
+        return c;
+      },
+      [&]() DUET_INLINE_LAMBDA { return stumpff_sequence_of_large<Size>(s); });
+}
+
 } // namespace detail
 
 /// Stumpff functions c_0(s) … c_Highest(s), s ≥ 0, by c_n = 1/n! − s c_{n+2}: downwards from the
@@ -68,7 +103,9 @@ stumpff_sequence(const T& s) {
           return c;
         });
   };
-  if constexpr (std::floating_point<lane_type_t<R>>) {
+  if constexpr (lane_traits<T>::is_batch && Highest > 2) {
+    return detail::stumpff_sequence_of_lanes<n + 1>(s);
+  } else if constexpr (std::floating_point<lane_type_t<R>>) {
     constexpr auto table = detail::inverse_factorials<lane_type_t<R>, n + 1>();
     return run(table);
   } else {
