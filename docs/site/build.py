@@ -32,6 +32,7 @@ FONT_FILES = [f"tex-gyre/texgyrepagella-{face}.otf" for face in ("regular", "ita
     "tex-gyre-math/texgyrepagella-math.otf"]
 
 ROOT_FILES = ["LICENSE", "CITATION.cff"]
+NAMES = "reference/api/" # one page per layer
 LIVE = "case-studies/interactive" # pages that compute in the browser
 
 
@@ -168,6 +169,8 @@ def navigation(sections, page):
     for title, pages in sections:
         items = []
         for each in pages:
+            if each.address.startswith(NAMES) and not page.address.startswith(NAMES.rstrip("/")):
+                continue # listed on their index
             here = ' aria-current="page"' if each is page else ""
             items.append(f'<li><a href="{page.link_to(each.address)}"{here}>{html.escape(each.title)}</a></li>')
         result.append(f"<h2>{title}</h2>\n<ul>{''.join(items)}</ul>")
@@ -205,9 +208,11 @@ def write_pages(out, pages, sections, order):
 
 
 def search_index(pages):
-    """[title, page's title, address, text] of every part of a page."""
+    """[title, page's title, address, text] of every part of a page; names are found on the pages of headers."""
     entries = []
     for page in pages:
+        if page.address.startswith(NAMES):
+            continue
         for title, anchor, words in page.found_as:
             entries.append([title, page.title, page.address + ("#" + anchor if anchor else ""), words])
     return "search_index = " + json.dumps(entries, ensure_ascii=False, separators=(",", ":")) + ";\n"
@@ -258,7 +263,7 @@ def main():
     index = Page("Headers", "reference/index.html")
     header_pages = reference.pages(headers, Page, index, links)
     for title, pages in sections:
-        if any(page.source == "docs/reference/reference_card.md" for page in pages):
+        if any(page.source == "docs/reference/api.md" for page in pages):
             pages.append(index)
     pages = order + [index] + header_pages + source_pages
     write_pages(out, pages, sections, order)

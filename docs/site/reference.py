@@ -351,7 +351,7 @@ def pages(headers, make_page, index, links):
         brief = on_index.docs(header.compound.find("briefdescription"))
         listed += f'<dt><a href="{index.link_to(header.address)}"><code>{header.path}</code></a></dt><dd>{brief}</dd>\n'
     index.body = ('<h1>Headers</h1>\n<p><strong>After this page you can</strong> open the reference of any header: what it declares, with formulas, '
-                  f'domains and errors. Every name in a line: <a href="{index.link_to("reference/reference_card.html")}">the reference card</a>.</p>\n{listed}</dl>\n')
+                  f'domains and errors. Every name in a line: <a href="{index.link_to("reference/api.html")}">the reference card</a>.</p>\n{listed}</dl>\n')
     index.contents = [(2, layer, f"{layer}/") for layer in LAYERS]
     index.found_as = [("Headers", "", "")]
     return result
