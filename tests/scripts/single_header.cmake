@@ -34,7 +34,7 @@ function(write_document path page end)
   string(REPLACE "#include <duet/duet.hpp>" "#include \"duet_core.hpp\"" text "${text}")
   file(WRITE ${path} "${text}")
 endfunction()
-write_document(${folder}/first.md README.md "\nA robot arm")
+write_document(${folder}/first.md README.md "\n## Robot arm")
 write_document(${folder}/layers.md docs/tutorials/rotations_and_poses.md "\n## Interpolate")
 
 # Of the flags those that lead to Eigen and Boost, and not to duet.
