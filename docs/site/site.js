@@ -17,46 +17,54 @@
     root.dataset.theme = kept.read();
   }
 
+  // Words as they are compared: lower case, without accents, dashes and underscores; SE(3) as se3.
+  const normalized = (text) => text.normalize("NFD").replace(/[\u0300-\u036f]/g, "").toLowerCase()
+    .replace(/\b(s[eo])\((\d)\)/g, "$1$2").replace(/[\s\-\u2010-\u2014_/:.]+/g, " ").trim();
+
   // The index is read when it is first asked for: as a script, since pages from disk may read nothing else.
   let index;
   const load_index = () => index ??= new Promise((done) => {
     const script = document.createElement("script");
     script.src = top_of_site + "search_index.js";
     script.onload = () => done(search_index.map(([title, page, address, text]) =>
-      ({ title, page, address, text, low_title: title.toLowerCase(), low_text: text.toLowerCase() })));
+      ({ title, page, address, text, names: title.split(/[,;()]\s*/).map(normalized), low_title: " " + normalized(title), low_text: " " + normalized(text) })));
     document.head.append(script);
   });
 
-  // All words must occur; names that are or begin with a word come first, then titles, then texts.
-  const rank = (entry, words) => {
+  // All words must occur. Titles that are the phrase come first, then those that begin with it or contain it, then texts that contain it,
+  // then single words; of equal ones, pages, terms of the glossary, and the reference in this order.
+  const rank = (entry, phrase) => {
     let sum = 0;
-    for (const word of words) {
-      const at = entry.low_title.indexOf(word);
-      const part = entry.low_title === word ? 100 : at === 0 ? 40 : at > 0 ? 20 : entry.low_text.includes(word) ? 1 : 0;
+    for (const word of phrase.split(" ")) {
+      const part = entry.low_title.includes(" " + word) ? 8 : entry.low_text.includes(" " + word) ? 2
+                 : (entry.low_title + entry.low_text).includes(word) ? 1 : 0;
       if (part === 0) {
         return 0;
       }
       sum += part;
     }
-    return sum + (entry.address.startsWith("reference/") ? 0 : 5);
+    sum += entry.names.includes(phrase) ? 100 : entry.low_title.startsWith(" " + phrase) ? 60
+         : entry.low_title.includes(" " + phrase) ? 40 : entry.low_text.includes(" " + phrase) ? 10 : 0;
+    return sum + (entry.address.startsWith("reference/glossary") ? 4 : /^(reference|source|changelog)/.test(entry.address) ? 0 : 5);
   };
 
-  const excerpt = (entry, word) => {
-    const at = Math.max(entry.low_text.indexOf(word), 0);
+  const excerpt = (entry, phrase) => {
+    const words = phrase.split(" ").map((word) => word.replace(/[^\p{L}\p{N}]/gu, "\\$&"));
+    const at = Math.max(entry.text.search(new RegExp(words.join("[\\s\\-–_]"), "i")), 0);
     const from = at < 60 ? 0 : entry.text.indexOf(" ", at - 50) + 1;
     return (from > 0 ? "… " : "") + entry.text.slice(from, from + 140);
   };
 
   const search = async (text, list) => {
-    const words = text.toLowerCase().split(/\s+/).filter(Boolean);
+    const phrase = normalized(text);
     const entries = await load_index();
-    const found = words.length === 0 ? [] : entries.map((entry) => ({ entry, score: rank(entry, words) }))
+    const found = phrase === "" ? [] : entries.map((entry) => ({ entry, score: rank(entry, phrase) }))
       .filter(({ score }) => score > 0).sort((a, b) => b.score - a.score).slice(0, 20);
     list.replaceChildren(...found.map(({ entry }) => {
       const link = document.createElement("a");
       link.href = top_of_site + entry.address;
       for (const [tag, said] of [["b", entry.title], ["i", entry.page === entry.title ? "" : entry.page],
-                                 ["span", excerpt(entry, words[0])]]) {
+                                 ["span", excerpt(entry, phrase)]]) {
         const part = document.createElement(tag);
         part.textContent = said;
         link.append(part);
@@ -65,12 +73,12 @@
       item.append(link);
       return item;
     }));
-    if (words.length > 0 && found.length === 0) {
+    if (phrase !== "" && found.length === 0) {
       const item = document.createElement("li");
       item.textContent = "Nothing found";
       list.append(item);
     }
-    list.hidden = words.length === 0;
+    list.hidden = phrase === "";
   };
 
   addEventListener("DOMContentLoaded", () => {

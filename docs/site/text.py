@@ -152,7 +152,8 @@ def with_labels(body):
 
 
 def fragment(body):
-    """The body with addresses at its headings, these as (level, anchor, title), and its parts as (title, anchor, words)."""
+    """The body with addresses at its headings, these as (level, anchor, title), and its parts, as are
+    rows of tables with an anchor (terms of the glossary), as (title, anchor, words)."""
     contents = []
 
     def heading(match):
@@ -164,8 +165,9 @@ def fragment(body):
         return f'<h{level} id="{anchor}">{title}<a class="here" href="#{anchor}" aria-label="Link to this part">#</a></h{level}>'
     body = re.sub(r'<h(\d) id="([^"]*)">(.*?)</h\1>', heading, body, flags=re.S)
     body = re.sub(r"(?<=</h1>)\s*<p>Headers: (.*?)</p>", r'<p class="headers">\1</p>', body, count=1, flags=re.S)
-    found_as = []
-    for part in re.split(r"(?=<h[1-3])", body):
+    term = r'<tr[^>]*>\s*<td[^>]*><a id="([^"]*)"></a>(.*?)</td>(.*?)</tr>'
+    found_as = [(plain(title), anchor, plain(rest)) for anchor, title, rest in re.findall(term, body, flags=re.S)]
+    for part in re.split(r"(?=<h[1-3])", re.sub(term, "", body, flags=re.S)):
         title = re.match(r'<h[123](?: id="([^"]*)")?>(.*?)(?:<a class="here".*?)?</h\d>', part, flags=re.S)
         if title:
             found_as.append((plain(title[2]), title[1] or "", plain(re.sub(r"<svg.*?</svg>", "", part[title.end():], flags=re.S))))

@@ -8,6 +8,7 @@ usage: python3 tests/site/check.py <folder of pages> <folder for pictures>
 """
 
 import base64
+import json
 import shutil
 import sys
 import tempfile
@@ -54,16 +55,23 @@ FAULTS = r"""
   return faults;
 })"""
 
+# Terms of the field, each of which the search must find.
+TERMS = [
+    "forward kinematics", "inverse kinematics", "null space", "nullspace", "Karcher mean", "geodesic", "Lie group", "exponential map",
+    "adjoint", "Denavit-Hartenberg", "gimbal lock", "slerp", "sclerp", "twist", "wrench", "manipulability", "redundancy resolution",
+    "Gauss-Newton", "Levenberg-Marquardt", "automatic differentiation", "forward mode", "reverse mode", "Jacobian", "Hessian",
+    "hand-eye calibration", "spline", "SE(3)", "SO(3)"]
 SEARCH = r"""
-new Promise((done) => {
+((term) => new Promise((done) => {
   const query = document.getElementById("query");
   query.focus();
-  query.value = "sclerp";
-  query.dispatchEvent(new Event("input"));
   const list = document.getElementById("found");
-  const look = () => list.querySelector("a") ? done([...list.querySelectorAll("a")].map((a) => a.href)) : setTimeout(look, 20);
+  list.replaceChildren();
+  query.value = term;
+  query.dispatchEvent(new Event("input"));
+  const look = () => list.querySelector("li") ? done([...list.querySelectorAll("a")].map((a) => a.href)) : setTimeout(look, 20);
   look();
-})
+}))
 """
 
 
@@ -124,9 +132,10 @@ def faults_of_page(tab, folder, path):
 
 def faults_of_search(tab, folder):
     tab.open((folder / "explanation/quaternions.html").as_uri())
-    found = tab.value_of(SEARCH)
+    faults = [f"the search does not find {term}" for term in TERMS if not tab.value_of(f"{SEARCH}({json.dumps(term)})")]
+    found = tab.value_of(f"{SEARCH}('sclerp')")
     wanted = (folder / "reference/dual_quaternion/screw.html").as_uri() + "#sclerp"
-    return [] if wanted in found else [f"the search for sclerp finds {found}, and not {wanted}"]
+    return faults + [f"the search for sclerp finds {found}, and not {wanted}"] * (wanted not in found)
 
 
 def write_pictures(tab, folder, pictures):
