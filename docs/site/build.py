@@ -41,11 +41,11 @@ def fail(message):
 
 
 class Page:
-    """A page: where it comes from and goes to, both relative to their tops."""
+    """A page: where it comes from and goes to, both relative to their tops. `group` heads it in the navigation."""
 
-    def __init__(self, title, address, source=None, body="", contents=(), found_as=()):
+    def __init__(self, title, address, source=None, body="", contents=(), found_as=(), group=""):
         self.title, self.address, self.source = title, address, source
-        self.body, self.contents, self.found_as = body, contents, found_as
+        self.body, self.contents, self.found_as, self.group = body, contents, found_as, group
 
     def link_to(self, address):
         """An address of the folder as seen from this page."""
@@ -63,15 +63,17 @@ def address_of(source):
 
 def reading_order():
     """Sections of pages, as the front page lists them."""
-    sections, listed = [], set()
+    sections, listed, group = [], set(), ""
     for line in (TOP / "docs/index.md").read_text().splitlines():
         if named := re.match(r"## (.*)", line):
             sections.append((named[1], []))
         elif line.startswith(("- ", "  ")):
+            if line.startswith("- "):
+                group = (re.match(r"- ([^\[\]:]+): ", line) or [0, ""])[1]
             for title, link in re.findall(r"\[([^\]]*)\]\(([^)#]*\.md)\)", line):
                 source = os.path.normpath("docs/" + link)
                 listed.add(source)
-                sections[-1][1].append(Page(title[0].upper() + title[1:], address_of(source), source))
+                sections[-1][1].append(Page(title[0].upper() + title[1:], address_of(source), source, group=group))
     for path in TOP.glob("docs/**/*.md"):
         source = str(path.relative_to(TOP))
         if source not in listed and source != "docs/index.md":
@@ -167,10 +169,12 @@ def write_document(page, links, live):
 def navigation(sections, page):
     result = []
     for title, pages in sections:
-        items = []
+        items, group = [], ""
         for each in pages:
             if each.address.startswith(NAMES) and not page.address.startswith(NAMES.rstrip("/")):
                 continue # listed on their index
+            if each.group != group and (group := each.group):
+                items.append(f'<li class="group">{html.escape(group)}</li>')
             here = ' aria-current="page"' if each is page else ""
             items.append(f'<li><a href="{page.link_to(each.address)}"{here}>{html.escape(each.title)}</a></li>')
         result.append(f"<h2>{title}</h2>\n<ul>{''.join(items)}</ul>")
@@ -262,9 +266,10 @@ def main():
             each.result()
     index = Page("Headers", "reference/index.html")
     header_pages = reference.pages(headers, Page, index, links)
-    for title, pages in sections:
-        if any(page.source == "docs/reference/api.md" for page in pages):
-            pages.append(index)
+    for _, pages in sections: # behind the lists of names
+        if names := [i for i, page in enumerate(pages) if page.address.startswith(NAMES.rstrip("/"))]:
+            index.group = pages[names[-1]].group
+            pages.insert(names[-1] + 1, index)
     pages = order + [index] + header_pages + source_pages
     write_pages(out, pages, sections, order)
     (out / "search_index.js").write_text(search_index(order + header_pages))
