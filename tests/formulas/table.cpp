@@ -291,7 +291,7 @@ expression_route expression_of(const formula& f, const std::vector<expression_ro
 /// The part of a row that does not depend on a measurement.
 std::string row_of(const formula& f) {
   const bool is_example = f.header.rfind("examples/", 0) == 0;
-  return "| " + f.label + " | $" + f.text + "$ | [`" + f.function + "`](../" +
+  return "| " + f.label + " | $" + f.text + "$ | [`" + f.function + "`](../../" +
          (is_example ? "" : "include/duet/") + f.header + ") |";
 }
 std::string row_of(const expression_route& e) {
