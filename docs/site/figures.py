@@ -60,8 +60,9 @@ def inlined(path, number, alternative):
 
 
 def with_figures(body, source):
-    """Figures with their captions, the emphasised paragraph below them, and the command of the block below that. Pictures are
-    SVG; where a forge is shown another kind, as by README.md, there is an SVG of the same name."""
+    """Figures with their captions, the emphasised paragraph below them, and the command of the block below that, unless a
+    command before them, as `sh scripts/demo`, draws all figures of the page. Pictures are SVG; where a forge is shown another kind, as by README.md, there is an SVG of
+    the same name."""
     number = 0
 
     def picture(address, alternative):
@@ -73,7 +74,8 @@ def with_figures(body, source):
         return f'<div class="picture" tabindex="0">{inlined(path, number, alternative)}</div>'
 
     def figure(match):
-        if not match[4] and source.name != "README.md":
+        has_common_command = "scripts/demo" in body[:match.start()]
+        if not match[4] and not has_common_command and source.name != "README.md":
             sys.exit(f"duet: {source}: no command below the caption of {match[1]}")
         return f"<figure>{picture(match[1], match[2])}\n<figcaption>{match[3]}{match[4] or ''}</figcaption></figure>"
     body = re.sub(r'<p><img\s+src="([^"]*)"\s+alt="([^"]*)"\s*/></p>\s*<p><em>(.*?)</em></p>'
