@@ -96,6 +96,8 @@ TEST_CASE("components have the values of their formula") {
   check(select(cos(t1) < sin(t2) * a, exp(a * (b + 1)), tanh(t1 + t2)) * (a + b) / (a * a));
   check(1e-7 * a * t1 - 0.1 * (b - 3e5) * (t1 - 0.3) + pow(a, c<-3>) * b);
   check(hypot(a, b + a * t1) * pow(a * a + 1, b));
+  check(sin(t1) * cos(1e-12 * t1) + sin(-1e12 * a) * cos(a) + cos(3e9 * t2) * sin(t2));
+  check(screw(axis::z, 5 * t1) * screw(axis::z, -t1) * screw(axis::x, t1 * 1.5707963267948966));
 }
 
 TEST_CASE("components as they stand in papers") {
@@ -115,6 +117,7 @@ TEST_CASE("components as they stand in papers") {
   CHECK(to_latex(components(sin(a) * cos(b) - cos(a) * sin(b))) == "\\sin(a - b)");
   CHECK(to_latex(components((a + b) * (a - b))) == "a^{2} - b^{2}");
   CHECK(to_latex(components(0.1 * a * 0.2)) == "0.02 a");
+  CHECK(to_latex(components(0.123456789012345 * a * 0.987654321098765)) == "0.12193263113702107 a");
   CHECK(to_latex(components(-a * b / 3 - b * b)) == "-b \\left(\\frac{a}{3} + b\\right)");
 }
 

@@ -28,16 +28,16 @@
 namespace duet::detail {
 
 /// 1/(2k+n)!, k = 0, 1, …
-template <class T, int N, int Terms>
-[[nodiscard]] constexpr std::array<T, std::size_t(Terms)> stumpff_coefficients() {
+template <class T, int Terms>
+[[nodiscard]] constexpr std::array<T, std::size_t(Terms)> stumpff_coefficients(int n) {
   std::array<T, std::size_t(Terms)> result{};
   long double factorial = 1;
-  for (int i = 2; i <= N; ++i) {
+  for (int i = 2; i <= n; ++i) {
     factorial *= i;
   }
   for (int k = 0; k < Terms; ++k) {
     result[std::size_t(k)] = static_cast<T>(1 / factorial);
-    factorial *= (2.0L * k + N + 1) * (2.0L * k + N + 2);
+    factorial *= (2.0L * k + n + 1) * (2.0L * k + n + 2);
   }
   return result;
 }
@@ -45,7 +45,7 @@ template <class T, int N, int Terms>
 /// Every other term from the K-th on by Horner's rule, unrolled.
 template <int N, int Terms, int K, class T>
 [[nodiscard]] DUET_ALWAYS_INLINE T stumpff_half_polynomial(const T& square) {
-  constexpr auto coefficient = stumpff_coefficients<lane_type_t<T>, N, Terms>()[K];
+  constexpr auto coefficient = stumpff_coefficients<lane_type_t<T>, Terms>(N)[K];
   if constexpr (K + 2 >= Terms) {
     return coefficient;
   } else {

@@ -125,8 +125,6 @@ template <Term X>
 /// N15: the third conjugate p* − εq* of p + εq, which carries points: A (1 + εx) A^(3).
 [[nodiscard]] constexpr auto point_conj(const PoseTerm auto& a) { return dual_conj(conj(a)); }
 
-namespace op {} // namespace op
-
 namespace detail {
 
 /// q + ½ε x.

@@ -205,10 +205,14 @@ private:
       must_repeat_ = true;
       ratio = 1;
     }
-    const bool is_long = abs(ratio) > 64;
-    const int a = ring_.find_atom("z" + term + (is_long ? "*" + ratio.str() : ""));
-    angles_.emplace(a, std::pair(polynomial{{m, unit}}, is_long ? int(numerator(ratio)) : 1));
-    return {a, is_long ? 1 : int(numerator(ratio))};
+    if (abs(ratio) > 64) { // an angle of its own
+      const int a = ring_.find_atom("z" + term + "*" + size.str());
+      angles_.emplace(a, std::pair(m, size));
+      return {a, c < 0 ? -1 : 1};
+    }
+    const int a = ring_.find_atom("z" + term);
+    angles_.emplace(a, std::pair(m, unit));
+    return {a, int(numerator(ratio))};
   }
   /// The sine or cosine of a sum of angles.
   [[nodiscard]] polynomial circular(const polynomial& angle, bool is_sine) {
@@ -234,7 +238,8 @@ private:
 
   [[nodiscard]] int number_node(const rational& c) {
     const double x = c.convert_to<double>();
-    if (decimal_of(x) == c) {
+    constexpr int max_denominator = 10000; // of fractions that one reads
+    if (decimal_of(x) == c || denominator(c) > max_denominator) {
       return out().number(x);
     }
     return out().apply(operation::quotient, out().number(numerator(c).convert_to<double>()),
@@ -265,9 +270,8 @@ private:
   [[nodiscard]] int angle_node(const monomial& m) {
     int angle = -1;
     for (const auto& [a, n] : m) {
-      const auto& [unit, times] = angles_.at(a);
-      const auto& [of, c] = *unit.begin();
-      angle = sum_node(angle, c * n * times, product_node(of));
+      const auto& [of, unit] = angles_.at(a);
+      angle = sum_node(angle, unit * n, product_node(of));
     }
     return angle;
   }
@@ -318,10 +322,8 @@ private:
       }
     }
     for (auto& [a, n] : common) { // sin²φ, not that of 2φ
-      const auto& [angle, times] = angles_.at(a);
-      const rational written = 1 / rational(angle.begin()->second * times);
-      const bool is_multiple = denominator(written) == 1 && abs(written) <= n;
-      const int size = is_multiple ? std::abs(int(numerator(written))) : n;
+      const rational written = 1 / angles_.at(a).second;
+      const int size = denominator(written) == 1 && written <= n ? int(numerator(written)) : n;
       n = n % size == 0 ? size : n;
     }
     const int i = ring_.find_atom("i");
@@ -462,9 +464,9 @@ private:
   std::map<std::string, rational>& units_;
   polynomial_ring ring_;
   formula_graph result_;
-  std::vector<int> nodes_;                           ///< of atoms that are nodes
-  std::map<int, std::pair<polynomial, int>> angles_; ///< φ of z, and how many
-  std::map<int, std::pair<monomial, bool>> circles_; ///< angles of sines (true) and cosines
+  std::vector<int> nodes_;                              ///< of atoms that are nodes
+  std::map<int, std::pair<monomial, rational>> angles_; ///< φ of z, a product and its factor
+  std::map<int, std::pair<monomial, bool>> circles_;    ///< angles of sines (true) and cosines
   bool must_repeat_ = false;
 };
 

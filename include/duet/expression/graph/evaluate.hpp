@@ -13,7 +13,6 @@
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
 
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
@@ -61,15 +60,7 @@ template <std::floating_point S>
   if (index < 2 ? s <= S(1) : !duet::detail::is_beyond_series(s)) {
     constexpr bool has_double = std::numeric_limits<S>::digits <= 53;
     const int terms = index < 2 ? (has_double ? 10 : 13) : (has_double ? 13 : 15);
-    std::array<S, 15> coefficients{}; // 1/(2k + index)!
-    long double factorial = 1;
-    for (int i = 2; i <= index; ++i) {
-      factorial *= i;
-    }
-    for (int k = 0; k < terms; ++k) {
-      coefficients[std::size_t(k)] = static_cast<S>(1 / factorial);
-      factorial *= (2.0L * k + index + 1) * (2.0L * k + index + 2);
-    }
+    const auto coefficients = duet::detail::stumpff_coefficients<S, 15>(index);
     const S square = s * s;
     const auto half = [&](int first) { // every other term
       int k = first + (terms - 1 - first) / 2 * 2;
