@@ -21,7 +21,8 @@ namespace duet::expression {
 
 namespace detail {
 
-/// The choice by `select` for the condition's own type, which argument-dependent lookup finds.
+/// a if the condition holds, otherwise b, by the `select` that argument-dependent lookup finds for
+/// it.
 [[nodiscard]] constexpr auto chosen(const auto& condition, const auto& a, const auto& b) {
   using duet::select;
   return select(
