@@ -654,9 +654,10 @@ public:
     return false;
   }
   [[nodiscard]] const R& step_size() const { return step_; }
-  /// ½ δᵀ(g + λ D δ) of the step δ, g the negative gradient and D the diagonal of JᵀWJ.
+  /// ½ δᵀ((2 − φ) g + λ D δ) of the step δ, which is φ times that of the linear problem; g is the
+  /// negative gradient and D the diagonal of JᵀWJ.
   [[nodiscard]] R predicted_decrease() const {
-    R sum = last_step_.dot(gradient_);
+    R sum = (2 - fraction_) * last_step_.dot(gradient_);
     for (std::size_t i = 0; i < normal_.rows(); ++i) {
       const auto d = last_step_.template segment<dimension>(Eigen::Index(i) * dimension);
       sum += damping_ * d.cwiseAbs2().dot(normal_.at(i, i).diagonal());
@@ -815,8 +816,8 @@ private:
     for (Eigen::Index i = dimension; i <= delta.size(); i += dimension) {
       largest_angle = std::max(largest_angle, R(delta.template segment<3>(i - 3).norm()));
     }
-    const R fraction = largest_angle > max_rotation ? R(max_rotation / largest_angle) : R(1);
-    last_step_ = fraction * delta;
+    fraction_ = largest_angle > max_rotation ? R(max_rotation / largest_angle) : R(1);
+    last_step_ = fraction_ * delta;
     return this->moved_by(controls_, last_step_);
   }
 
@@ -861,6 +862,7 @@ private:
   std::vector<R> limits_; ///< outlier limits of Huber's loss for each sample; 0: does not count
   std::vector<element> controls_, moved_; ///< control points; after the step
   R step_{0}, damping_{0};                ///< largest coordinate of the step, and its damping
+  R fraction_{1};                         ///< of the step of the linear problem that is taken
   int iterations_ = 0, descent_steps_ = 0;
   bool must_converge_ = false, is_bold_ = false;
   matrix_type normal_, factors_;
