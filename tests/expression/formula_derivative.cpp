@@ -47,6 +47,19 @@ TEST_CASE("derivative: formulas from text have the derivatives of dual numbers")
   }
 }
 
+TEST_CASE("derivative: terms of sums are collected") {
+  const auto text = [](const char* of) { return to_text(derivative(read_formula(of), "x")); };
+  CHECK(text("x*(2 - x)") == "2 - 2 * x");
+  CHECK(text("(x - 3)*(5 - x)") == "8 - 2 * x");
+  CHECK(text("x*(3*x + 1)") == "6 * x + 1");
+  CHECK(text("x*(0.3*x) + x*(0.7*x)") == "0.6 * x + 1.4 * x"); // their sum is rounded
+  std::string sum = "x";
+  for (int k = 0; k < 3000; ++k) {
+    sum += " + x*sin(" + std::to_string(k) + "*x)";
+  }
+  CHECK(evaluate<double>(derivative(read_formula(sum), "x"), {0.0})[0] == 1);
+}
+
 TEST_CASE("derivative: gradients, and what has no derivative") {
   const formula_graph f = read_formula("vector w; dot(w, w) + x");
   const formula_graph gradient = derivative(f, "w");

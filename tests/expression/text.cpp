@@ -83,6 +83,8 @@ TEST_CASE("derivatives as text") {
   CHECK(to_text(derivative(log(x) / x, x)) == "(1 / x - log(x) / x) / x");
   CHECK(to_text(derivative(pow(x, c<-2>), x)) == "-2 * x^-3");
   CHECK(to_text(derivative(x * y, y)) == "x");
+  CHECK(to_text(derivative(x * (2 - x), x)) == "2 - 2 * x");
+  CHECK(to_text(derivative((2_c + x) * x, x)) == "2 + 2 * x");
   CHECK(to_text(derivative(sqrt(x * x), x)) == "2 * x / (2 * sqrt(x^2))");
   CHECK(to_text(derivative(tanh(x + y), x)) == "1 / cosh(x + y)^2");
   CHECK(to_text(derivative(pow(x, 2.5_c), x)) == "2.5 * x^1.5");

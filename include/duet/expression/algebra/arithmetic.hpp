@@ -103,6 +103,17 @@ template <std::uint64_t A, std::uint64_t B>
 inline constexpr bool has_exact_sum<number_node<A>, number_node<B>> =
     is_sum_exact(number_node<A>::value, number_node<B>::value);
 
+/// Is T the operation applied to a number or constant and U, as 2 − u?
+template <class T, class Operation, class U>
+inline constexpr bool is_of_number_and = false;
+template <class Operation, std::uint64_t Bits, class U>
+inline constexpr bool
+    is_of_number_and<applied_node<Operation, number_node<Bits>, U>, Operation, U> = true;
+template <class Operation, class Tag, class U>
+inline constexpr bool
+    is_of_number_and<applied_node<Operation, constant_node<kind::scalar, Tag>, U>, Operation, U> =
+        true;
+
 } // namespace detail
 
 [[nodiscard]] constexpr auto operator-(const Term auto& a) { return apply<op::negative>(a); }
@@ -190,6 +201,10 @@ struct sum {
       return number_node<detail::bits_of(A::value + B::value)>{};
     } else if constexpr (std::is_same_v<A, B>) {
       return whole<2> * a;
+    } else if constexpr (detail::is_of_number_and<A, sum, B>) {
+      return operand<0>(a) + whole<2> * b; // doubling is exact
+    } else if constexpr (detail::is_of_number_and<B, sum, A>) {
+      return operand<0>(b) + whole<2> * a;
     } else if constexpr (detail::starts_with_minus<B>) {
       return a - -b;
     } else if constexpr (is_applied<A, negative>) {
@@ -224,6 +239,8 @@ struct difference {
       return a + -b;
     } else if constexpr (std::is_same_v<A, B>) {
       return zero_of<A::kind_of>();
+    } else if constexpr (detail::is_of_number_and<A, difference, B>) {
+      return operand<0>(a) - whole<2> * b;
     } else if constexpr (detail::starts_with_minus<B>) {
       return a + -b;
     }

@@ -4,8 +4,10 @@
 #include <duet/core/errors.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
 #include <duet/expression/graph/graph.hpp>
+#include <duet/expression/tree/number.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -54,10 +56,68 @@ private:
   }
   [[nodiscard]] int negated(int a) { return a == zero ? zero : of(operation::negative, a); }
   [[nodiscard]] int sum_of(int a, int b) {
-    return a == zero ? b : b == zero ? a : of(operation::sum, a, b);
+    return a == zero ? b : b == zero ? a : collected(operation::sum, a, b);
   }
   [[nodiscard]] int difference_of(int a, int b) {
-    return a == zero ? negated(b) : b == zero ? a : of(operation::difference, a, b);
+    return a == zero ? negated(b) : b == zero ? a : collected(operation::difference, a, b);
+  }
+  /// factor · node, or the factor alone for node −1.
+  struct linear_term {
+    double factor; ///< 1 or −1, or the number of a product
+    int node;
+  };
+  /// Adds the terms of a node with a sign, of long sums those at the end.
+  void add_terms(int node, double factor, std::vector<linear_term>& terms, int depth = 16) const {
+    using enum operation;
+    constexpr std::size_t max_terms = 32;
+    const graph_node& n = g_[node];
+    if (depth == 0 || terms.size() >= max_terms) {
+      terms.push_back({factor, node});
+    } else if (n.what == sum || n.what == difference) {
+      add_terms(n.operands[0], factor, terms, depth - 1);
+      add_terms(n.operands[1], n.what == sum ? factor : -factor, terms, depth - 1);
+    } else if (n.what == operation::negative) {
+      add_terms(n.operands[0], -factor, terms, depth - 1);
+    } else if (n.what == number) {
+      terms.push_back({factor * n.number, -1});
+    } else if (n.what == operation::product && g_.is_number(n.operands[0])) {
+      terms.push_back({factor * g_[n.operands[0]].number, n.operands[1]});
+    } else {
+      terms.push_back({factor, node});
+    }
+  }
+  /// a ± b, in which terms of a that occur in b have the sum of both factors: 2 − 2u of 2 − u − u.
+  [[nodiscard]] int collected(operation what, int a, int b) {
+    std::vector<linear_term> terms, added;
+    add_terms(a, 1, terms);
+    add_terms(b, what == operation::sum ? 1 : -1, added);
+    bool is_simpler = false;
+    for (const linear_term& t : added) {
+      const auto same = std::find_if(terms.begin(), terms.end(), [&](const linear_term& u) {
+        return u.node == t.node && is_sum_exact(u.factor, t.factor);
+      });
+      if (same == terms.end()) {
+        terms.push_back(t);
+      } else {
+        same->factor += t.factor;
+        is_simpler = true;
+      }
+    }
+    if (!is_simpler) {
+      return of(what, a, b);
+    }
+    int result = zero;
+    for (const linear_term& t : terms) {
+      const int size = constant(std::abs(t.factor));
+      const int term = t.node < 0 ? size : of(operation::product, size, t.node);
+      const bool is_negative = t.factor < 0;
+      if (t.factor != 0) {
+        result = result == zero ? (is_negative ? negated(term) : term)
+                                : of(is_negative ? operation::difference : operation::sum, result,
+                                     term);
+      }
+    }
+    return result;
   }
   [[nodiscard]] int product_of(int a, int b) {
     return a == zero || b == zero ? zero : of(operation::product, a, b);
