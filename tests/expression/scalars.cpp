@@ -112,14 +112,13 @@ TEST_CASE("functions of two scalars and choices") {
   CHECK(derivative(min(x, 2.0), x)(x = 1.0) == 1);
 }
 
-TEST_CASE("products are finite wherever the written order is" * doctest::should_fail()) {
+TEST_CASE("products are finite wherever the written order is") {
   CHECK((y * x * x)(x = 1e-200, y = 1e300) == 1e300 * 1e-200 * 1e-200);
   CHECK((0.5_c * x * y)(x = 1.5e308, y = 2.0) == 1.5e308);
-  CHECK((x * y * x / y)(x = 1e-200, y = 1e200) == doctest::Approx(1e-200));
+  CHECK((x * y * x)(x = 1e-200, y = 1e300) == 1e-100);
 }
 
-TEST_CASE("whole powers up to 16: values and slopes within 4 units of the last place" *
-          doctest::should_fail()) {
+TEST_CASE("whole powers up to 16: values and slopes within 4 units of the last place") {
   double worst_value = 0, worst_slope = 0;
   const auto check = [&]<int N>(std::integral_constant<int, N>) {
     const auto power = pow(x, c<N>);
@@ -141,7 +140,7 @@ TEST_CASE("whole powers up to 16: values and slopes within 4 units of the last p
   CHECK(worst_slope <= 4);
 }
 
-TEST_CASE("the derivative of sqrt(x^2) at 0 is that of dual numbers" * doctest::should_fail()) {
+TEST_CASE("the derivative of sqrt(x^2) at 0 is that of dual numbers") {
   const auto function = [](const auto& t) {
     using std::sqrt;
     return sqrt(t * t);
@@ -150,7 +149,7 @@ TEST_CASE("the derivative of sqrt(x^2) at 0 is that of dual numbers" * doctest::
   const double by_formula = derivative(function(x), x)(x = 0.0);
   CAPTURE(by_duals);
   CAPTURE(by_formula);
-  CHECK((by_formula == by_duals || (by_formula != by_formula && by_duals != by_duals)));
+  CHECK(by_formula == by_duals);
 }
 
 TEST_CASE("any scalar: 50 digits, float, Taylor numbers") {

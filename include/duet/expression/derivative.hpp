@@ -120,7 +120,12 @@ template <int I, class Operation, class Rate, class... Operands>
   if constexpr (is_zero<Rate>) {
     return rate;
   } else {
-    return Operation::template slope_by<I>(x...) * rate;
+    const auto slope = Operation::template slope_by<I>(x...);
+    if constexpr (slope.kind_of == kind::scalar && rate.kind_of == kind::scalar) {
+      return apply<op::slope_product>(slope, rate);
+    } else {
+      return slope * rate;
+    }
   }
 }
 

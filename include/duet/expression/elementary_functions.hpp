@@ -96,7 +96,9 @@ struct asin : detail::function<asin, duet::rule::asin> {
 };
 struct acos : detail::function<acos, duet::rule::acos> {
   static constexpr detail::function_name name = {"acos", "\\arccos"};
-  static constexpr auto differential(auto x, auto dx) { return -asin::slope_by<0>(x) * dx; }
+  static constexpr auto differential(auto x, auto dx) {
+    return -apply<slope_product>(asin::slope_by<0>(x), dx);
+  }
 };
 struct atan : detail::function<atan, duet::rule::atan> {
   static constexpr detail::function_name name = {"atan", "\\arctan"};

@@ -40,6 +40,8 @@ template <class Operation, class... X>
 inline constexpr bool has_partial<applied_node<Operation, X...>> = (has_partial<X> || ...);
 template <class Function, int... Orders, class... X>
 inline constexpr bool has_partial<applied_node<op::partial<Function, Orders...>, X...>> = true;
+template <class A, class B>
+inline constexpr bool has_partial<applied_node<op::slope_product, A, B>> = true;
 
 /// What stands for the K-th argument of a function while its derivative is derived.
 template <int K, class X>
@@ -68,6 +70,11 @@ using written_t = typename written<Node>::type;
 template <class Operation, class... X>
 struct written<applied_node<Operation, X...>, true> {
   using type = decltype(apply<Operation>(written_t<X>{}...));
+};
+
+template <class A, class B>
+struct written<applied_node<op::slope_product, A, B>, true> {
+  using type = decltype(written_t<A>{} * written_t<B>{});
 };
 
 /// Of a function's derivative.

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/scalar_traits.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/rules/of_many.hpp>
 #include <duet/expression/algebra/product.hpp>
@@ -12,6 +13,7 @@
 #include <duet/expression/tree/printed.hpp>
 
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <string>
 #include <type_traits>
@@ -25,13 +27,21 @@ namespace op {
 
 struct log;
 
-/// x^n by products, for whole n that the compiler knows.
+/// x^n for whole n that the compiler knows: by products from −4 to 5, which are within 4 units of
+/// the last place, beyond by `pow`.
 template <int Exponent>
 struct whole_power {
   static_assert(Exponent >= 2 || Exponent <= -1);
   static constexpr kind kind_of(kind a) { return a; }
   template <class X>
   static constexpr X value(const X& x) {
+    constexpr bool is_accurate = -4 <= Exponent && Exponent <= 5;
+    if constexpr (!is_accurate && std::floating_point<real_type_t<X>> && !Infinitesimal<X>) {
+      if (!std::is_constant_evaluated()) {
+        using std::pow;
+        return X(pow(x, X(Exponent)));
+      }
+    }
     if constexpr (Exponent == -1) {
       return X(1 / x);
     } else if constexpr (Exponent < 0) { // x^n may be out of range where its reciprocal is not
@@ -50,7 +60,8 @@ struct whole_power {
     if constexpr (Exponent == 2) {
       return whole<Exponent> * x * dx;
     } else {
-      return whole<Exponent> * applied_node<whole_power<Exponent - 1>, X>{} * dx;
+      return apply<slope_product>(whole<Exponent> * applied_node<whole_power<Exponent - 1>, X>{},
+                                  dx);
     }
   }
   static printed print(notation style, const printed& x) {

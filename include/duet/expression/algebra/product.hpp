@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/dual/partials.hpp>
+#include <duet/dual/promotion.hpp>
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/latex_arithmetic.hpp>
@@ -36,13 +38,6 @@ inline constexpr int exponent_of<X, X> = 1;
 template <int N, class X>
 inline constexpr int exponent_of<applied_node<op::whole_power<N>, X>, X> = N;
 
-/// A product of scalars, the second a whole positive power of X.
-template <class T, class X>
-inline constexpr bool ends_with_power_of = false;
-template <class A, class B, class X>
-inline constexpr bool ends_with_power_of<applied_node<op::product, A, B>, X> =
-    exponent_of<B, X> > 0 && X::kind_of == kind::scalar;
-
 /// X of x^n, and x itself of what is no power.
 template <class T>
 struct base {
@@ -68,6 +63,15 @@ inline constexpr bool has_exact_product<number_node<A>, number_node<B>> =
 template <std::uint64_t A, class B, class X>
 inline constexpr bool has_exact_product<number_node<A>, applied_node<op::product, B, X>> =
     has_exact_product<number_node<A>, B>;
+
+/// A product of a number and something else that may take further factors before the number: of a
+/// whole number from 1 to 16, so that nothing overflows that did not.
+template <class T>
+inline constexpr bool has_small_number = false;
+template <std::uint64_t Bits, class X>
+inline constexpr bool has_small_number<applied_node<op::product, number_node<Bits>, X>> =
+    number_node<Bits>::value >= 1 && number_node<Bits>::value <= 16 &&
+    number_node<Bits>::value == int(number_node<Bits>::value);
 
 /// a/b is a double without rounding.
 [[nodiscard]] constexpr bool is_quotient_exact(double a, double b) {
@@ -137,9 +141,9 @@ struct product {
       return (a * operand<0>(b)) * operand<1>(b);
     } else if constexpr (is_number<A>) {
       return;
-    } else if constexpr (has_number<A>) {
+    } else if constexpr (detail::has_small_number<A>) {
       return operand<0>(a) * (operand<1>(a) * b);
-    } else if constexpr (has_number<B>) {
+    } else if constexpr (detail::has_small_number<B>) {
       return operand<0>(b) * (a * operand<1>(b));
     } else if constexpr (detail::is_inverse<A>) {
       return b / operand<1>(a);
@@ -150,8 +154,6 @@ struct product {
                          detail::exponent_of<B, base_of_b> > 0) {
       constexpr int n = detail::exponent_of<A, base_of_a> + detail::exponent_of<B, base_of_b>;
       return applied_node<whole_power<n>, base_of_a>{};
-    } else if constexpr (detail::ends_with_power_of<A, base_of_b>) {
-      return operand<0>(a) * (operand<1>(a) * b);
     }
   }
   static constexpr auto value(const auto& a, const auto& b) {
@@ -164,6 +166,34 @@ struct product {
     }
     return {a.inside(precedence::negative_number) + " * " + b.inside(precedence::product),
             precedence::product};
+  }
+};
+
+/// The slope of a function times the rate of its argument; 0 where the rate is exactly 0, also if
+/// the slope is infinite, as dual numbers have it: of √(x²) at 0.
+struct slope_product : bilinear_operation {
+  static constexpr kind kind_of(kind, kind) { return kind::scalar; }
+  template <class A, class B>
+  static constexpr auto simplified(A a, B b) {
+    if constexpr (is_number<A> || is_number<B>) {
+      return a * b;
+    } else if constexpr (is_applied<A, negative>) {
+      return -apply<slope_product>(operand<0>(a), b);
+    } else if constexpr (is_applied<B, negative>) {
+      return -apply<slope_product>(a, operand<0>(b));
+    } else if constexpr (detail::has_small_number<A>) {
+      return operand<0>(a) * apply<slope_product>(operand<1>(a), b);
+    } else if constexpr (detail::has_small_number<B>) {
+      return operand<0>(b) * apply<slope_product>(a, operand<1>(b));
+    }
+  }
+  template <class A, class B>
+  static constexpr auto value(const A& a, const B& b) {
+    using S = promote_t<A, B>;
+    return duet::detail::zero_preserving_product(S(a), S(b));
+  }
+  static printed print(notation style, const printed& a, const printed& b) {
+    return product::print(style, a, b);
   }
 };
 

@@ -112,9 +112,9 @@ private:
       const int term = t.node < 0 ? size : of(operation::product, size, t.node);
       const bool is_negative = t.factor < 0;
       if (t.factor != 0) {
-        result = result == zero ? (is_negative ? negated(term) : term)
-                                : of(is_negative ? operation::difference : operation::sum, result,
-                                     term);
+        result = result == zero
+                     ? (is_negative ? negated(term) : term)
+                     : of(is_negative ? operation::difference : operation::sum, result, term);
       }
     }
     return result;
