@@ -25,8 +25,8 @@ void require_unit(const vector3<double>& n, const char* function, const char* na
 }
 
 /// Rotation that takes one unit vector to another: a half turn about their bisector.
-[[nodiscard]] quaternion<double> relative_rotation(const vector3<double>& from,
-                                                   const vector3<double>& to) {
+[[nodiscard]] quaternion<double> rotation_taking(const vector3<double>& from,
+                                                 const vector3<double>& to) {
   vector3<double> bisector = from + to;
   if (!(bisector.norm() > 1e-8)) { // opposite vectors: any orthogonal one
     int smallest = 0;
@@ -88,7 +88,7 @@ task_space_region pointing_goal(const vector3<double>& axis, const vector3<doubl
   require_unit(axis, "pointing_goal", "axis");
   require_unit(direction, "pointing_goal", "direction");
   auto result = free_axis_goal(
-      pose(relative_rotation(axis, direction), vector3<double>(vector3<double>::Zero())), axis);
+      pose(rotation_taking(axis, direction), vector3<double>(vector3<double>::Zero())), axis);
   result.lower = {-infinity, -infinity, -infinity};
   result.upper = {infinity, infinity, infinity};
   result.max_tilt = tilt;
@@ -100,7 +100,7 @@ task_space_region position_and_pointing_goal(const vector3<double>& position,
                                              const vector3<double>& direction, double tilt) {
   require_unit(axis, "position_and_pointing_goal", "axis");
   require_unit(direction, "position_and_pointing_goal", "direction");
-  auto result = free_axis_goal(pose(relative_rotation(axis, direction), position), axis);
+  auto result = free_axis_goal(pose(rotation_taking(axis, direction), position), axis);
   result.max_tilt = tilt;
   return result;
 }

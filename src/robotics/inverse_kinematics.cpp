@@ -169,7 +169,7 @@ public:
     if (is_out_of_reach && best.reason != stop_reason::reached) {
       best.reason = stop_reason::out_of_reach;
     } else if (best.reason == stop_reason::no_progress) {
-      best.reason = obstacle(best.joints, goal);
+      best.reason = reason_without_progress(best.joints, goal);
     }
     best.iterations = iterations;
     best.restarts = restarts;
@@ -205,7 +205,8 @@ public:
   }
 
   /// Reason why the search cannot continue from a configuration.
-  [[nodiscard]] stop_reason obstacle(const vector& theta, const scaled_goal& goal) const {
+  [[nodiscard]] stop_reason reason_without_progress(const vector& theta,
+                                                    const scaled_goal& goal) const {
     const equations current = equations_at(theta, goal);
     if (step(current, damping(current)).is_bounded) {
       return stop_reason::joint_limit;
@@ -654,7 +655,7 @@ private:
       }
     }
     if (best.reason == stop_reason::no_progress) {
-      best.reason = search_.obstacle(best.joints, goal);
+      best.reason = search_.reason_without_progress(best.joints, goal);
     }
     best.iterations = iterations;
     best.restarts = restarts;

@@ -18,7 +18,7 @@
 #include <type_traits>
 
 /// \file
-/// Turns about axes that stand still, screws, poses and their parts (N17–N19); real and dual parts
+/// Rotations about fixed axes, screws, poses and their parts (N17–N19); real and dual parts
 /// of a + εb, and the conjugates a − εb (N10, N13, N15).
 
 namespace duet::expression {

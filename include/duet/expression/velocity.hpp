@@ -15,8 +15,8 @@
 
 /// \file
 /// Velocities of rotations and poses as formulas (N7, N18): three and six numbers instead of four
-/// and eight, and in the frame asked for. What a factor of a product adds, in spatial axes the
-/// factors before it carry along, in body axes those behind it.
+/// and eight, in the requested frame. In spatial axes the contribution of a factor of a product is
+/// displaced by the factors before it, in body axes by those behind it.
 
 namespace duet::expression::detail {
 

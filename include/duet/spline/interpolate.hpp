@@ -81,7 +81,7 @@ closed(std::vector<quaternion<T>> q) {
   using std::sqrt;
   const bool is_opposite = innermost(dot(q.front(), q.back())) < 0;
   const quaternion<T> again = is_opposite ? -q.front() : q.front();
-  const vector3<T> half = rotation_vector_between(quaternion<T>(conj(again) * q.back()));
+  const vector3<T> half = log_out_of_line(quaternion<T>(conj(again) * q.back()));
   const auto tolerance = sqrt(std::numeric_limits<real_type_t<T>>::epsilon());
   const auto check = [&](const auto& x, const char* unit) {
     using R = real_type_t<T>;
@@ -181,11 +181,13 @@ inline constexpr bool is_standard_vector<std::vector<X, Allocator>> = true;
 /// | ends | cubics | quintic |
 /// |---|---|---|
 /// | `natural` | no acceleration | no acceleration, no snap |
-/// | `clamped` | given velocity | given velocity; fifth derivative continuous at the next knot |
-/// | `end_acceleration` | given acceleration | given acceleration; fifth derivative as for
-/// `clamped` | | `fully_clamped` | | given velocity and acceleration | | `not_a_knot` | jerk
-/// continuous at the next knot | fifth derivative at the next two | | `periodic` | as smooth as
-/// inside | as smooth as inside |
+/// | `clamped` | given velocity | given velocity; (a) |
+/// | `end_acceleration` | given acceleration | given acceleration; (a) |
+/// | `fully_clamped` | | given velocity and acceleration |
+/// | `not_a_knot` | jerk continuous at the next knot | (a), at the next two knots |
+/// | `periodic` | as smooth as inside | as smooth as inside |
+///
+/// (a): fifth derivative continuous at the next knot.
 ///
 /// The unknowns are the increments of P2, or the rates at the knots. Their real parts are found by
 /// Newton's method, O(n) per step, and if neighbouring data points are far apart, by continuation

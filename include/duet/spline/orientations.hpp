@@ -111,11 +111,11 @@ template <class T>
 /// Logarithm and exponential as elsewhere, but compiled once: in interpolation the cost of calls
 /// does not matter.
 template <class T>
-[[nodiscard]] DUET_OUT_OF_LINE vector3<T> rotation_vector_between(const quaternion<T>& q) {
+[[nodiscard]] DUET_OUT_OF_LINE vector3<T> log_out_of_line(const quaternion<T>& q) {
   return log_vector(q, "interpolate");
 }
 template <class T>
-[[nodiscard]] DUET_OUT_OF_LINE quaternion<T> apply_rotation(const vector3<T>& v) {
+[[nodiscard]] DUET_OUT_OF_LINE quaternion<T> exp_out_of_line(const vector3<T>& v) {
   return duet::exp(v);
 }
 

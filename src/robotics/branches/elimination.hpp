@@ -24,8 +24,8 @@
 /// The axis of the sixth joint displaced by joints 3 to 5 is the axis of the goal displaced by
 /// joints 2 and 1 backwards. Of the 14 equations of its `line_coordinates` six remain after
 /// elimination of the eight products of θ₁ and θ₂; multiplied by cos θ₄/2 and sin θ₄/2 they are
-/// twelve, linear in twelve products of θ₄/2 and θ₅, with a matrix that depends on θ₃. (Page:
-/// all_inverse_kinematics.)
+/// twelve, linear in twelve products of θ₄/2 and θ₅, with a matrix that depends on θ₃; see
+/// docs/explanation/six_joint_solver.md.
 
 namespace duet::detail {
 DUET_ABI_BEGIN

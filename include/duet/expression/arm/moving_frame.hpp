@@ -12,12 +12,12 @@
 #include <cstring>
 
 /// \file
-/// Apart from duet::detail::displacement, which chains are followed by, as measured: a formula of
-/// an arm of seven joints and its Jacobian take 1054 instructions in lanes, 1161 by displacements
-/// (g++ -O2; clang -O2: 974 and 1066; twenty joints: 2839 and 3063, 2710 and 2991).
-///
-/// A rigid motion in doubles while factors are appended to it: the columns of its rotation, which
-/// are the axes that joints turn about, its place and its quaternion.
+/// Rigid motions in doubles while factors are appended: the columns of the rotation, which are the
+/// axes of the joints, the origin, and the quaternion.
+
+// Separate from duet::detail::displacement, by which chains are followed: seven joints and their
+// Jacobian take 1054 instructions in lanes, 1161 by displacements (g++ -O2; clang -O2: 974 and
+// 1066; twenty joints: 2839 and 3063, 2710 and 2991).
 
 namespace duet::expression::detail {
 

@@ -21,10 +21,8 @@
 #include <utility>
 
 /// \file
-/// Apart from the walk along chains for the speed that moving_frame.hpp tells.
-///
-/// Products of rigid motions in doubles, and their spatial Jacobians, factor by factor: what a
-/// joint adds to the Jacobian is its axis where it stands.
+/// Products of rigid motions in doubles and their spatial Jacobians, factor by factor: a joint
+/// contributes its axis, displaced by the factors before it.
 
 namespace duet::expression::detail {
 

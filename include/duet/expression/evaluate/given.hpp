@@ -17,8 +17,7 @@
 #include <utility>
 
 /// \file
-/// The values that a formula is evaluated at, and what its nodes are of them; arguments by name,
-/// and what the compiler says of those that are missing, unknown or double.
+/// Arguments of an evaluation, by name, and errors for missing, unknown and repeated ones.
 
 namespace duet::expression::detail {
 

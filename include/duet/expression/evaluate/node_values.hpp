@@ -17,12 +17,11 @@
 #include <utility>
 
 /// \file
-/// A store for the values of nodes, and evaluation into it: all different nodes of some formulas in
-/// one list, operands first, each evaluated once. It goes by stages, so that all sines that can be
-/// taken at once are.
+/// Evaluation of formulas: all different nodes in one list, operands first, each evaluated once. It
+/// proceeds in stages: all sines that are ready are computed together.
 ///
-/// What is evaluated knows nodes by their numbers in the list: functions whose names spell out
-/// long lists of long types are what compilers would spend their time on.
+/// Nodes are identified by their numbers in the list, as functions whose names contain long lists
+/// of long types would take most of the compile time.
 
 namespace duet::expression {
 

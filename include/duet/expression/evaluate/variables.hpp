@@ -11,7 +11,7 @@
 #include <tuple>
 
 /// \file
-/// By which symbols a formula is differentiated, and in which directions each of them moves.
+/// Variables of differentiation and the directions in which they move.
 
 namespace duet::expression {
 

@@ -18,7 +18,7 @@
 #include <Eigen/LU>
 
 /// \file
-/// Of matrices: dot products and norms, trace, determinant, adjugate and inverse, and solutions of
+/// Dot products, norms, trace, determinant, adjugate and inverse of matrices, and solutions of
 /// linear equations.
 
 namespace duet::expression {

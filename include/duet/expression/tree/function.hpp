@@ -15,7 +15,7 @@
 #include <utility>
 
 /// \file
-/// What all functions of scalars have in common, and those that only derivatives need.
+/// Common base of functions of scalars, and functions that only derivatives need.
 
 namespace duet::expression {
 

@@ -13,9 +13,8 @@
 #include <type_traits>
 
 /// \file
-/// What a formula holds beside its type: the values of the constants in it, and by their types all
-/// symbols it was written with, those that simplification removed included.
-/// For those who extend duet.
+/// Constants and symbols of a formula: the values of its constants, and as types all symbols that
+/// it was written with, also those that simplification removed. For those who extend duet.
 
 namespace duet::expression {
 

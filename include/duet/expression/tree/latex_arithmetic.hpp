@@ -10,7 +10,7 @@
 #include <vector>
 
 /// \file
-/// What sums, products, quotients and powers are in LaTeX. For those who extend duet.
+/// LaTeX of sums, products, quotients and powers. For those who extend duet.
 
 namespace duet::expression::detail {
 

@@ -7,8 +7,8 @@
 #include <type_traits>
 
 /// \file
-/// What formulas are made of: nodes are types without any data, so equal subexpressions are equal
-/// types, and nothing can dangle. For those who extend duet.
+/// Nodes of formulas: types without data, so that equal subexpressions are equal types and nothing
+/// can dangle. For those who extend duet.
 
 namespace duet::expression {
 

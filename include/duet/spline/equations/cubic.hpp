@@ -193,7 +193,7 @@ public:
     R shortest = u[1] - u[0], longest = shortest;
     for (std::size_t i = 0; i < n; ++i) {
       rotations_[i] = relative_rotation(data_[i], data_[i + 1]);
-      angles_[i] = rotation_vector_between(rotations_[i]);
+      angles_[i] = log_out_of_line(rotations_[i]);
       const bool is_shifted = kind_ == end_condition_kind::not_a_knot;
       const std::size_t span = !is_shifted || i == 0 ? i : std::min(i - 1, n - 3);
       arc& a = arcs_[i];
@@ -236,7 +236,7 @@ public:
   void scale(const R& lambda) {
     for (std::size_t i = 0; i < rotations_.size(); ++i) {
       angles_[i] = lambda * components(angles_[i]);
-      rotations_[i] = apply_rotation(angles_[i]);
+      rotations_[i] = exp_out_of_line(angles_[i]);
     }
     for (vector3<T>& rate : end_rates_) {
       rate = lambda * components(rate);
@@ -269,15 +269,15 @@ public:
     for (std::size_t j = 0; j < 3; ++j) {
       steps[j] = a.change[j] * components(omega[j]);
       if (j > 0 && a.from[j] != 0) {
-        const quaternion<T> back = apply_rotation<T>(R(-a.from[j]) * components(omega[j]));
+        const quaternion<T> back = exp_out_of_line<T>(R(-a.from[j]) * components(omega[j]));
         for (std::size_t k = 0; k < j; ++k) {
           steps[k] = rotate(back, steps[k]);
         }
       }
     }
     const quaternion<T> along_arc =
-        apply_rotation(steps[0]) * apply_rotation(steps[1]) * apply_rotation(steps[2]);
-    return rotation_vector_between(quaternion<T>(conj(along_arc) * rotations_[row]));
+        exp_out_of_line(steps[0]) * exp_out_of_line(steps[1]) * exp_out_of_line(steps[2]);
+    return log_out_of_line(quaternion<T>(conj(along_arc) * rotations_[row]));
   }
 
   /// Equation Σ weights_j x_j = right for small rotations, which commute to first order.
@@ -351,13 +351,13 @@ private:
       const arc& a = arcs_[i];
       if (a.span == result.size()) {
         const auto back = [&](std::size_t j) {
-          return apply_rotation<T>(R(-a.from[j]) * components(increments[a.span + 1 + j]));
+          return exp_out_of_line<T>(R(-a.from[j]) * components(increments[a.span + 1 + j]));
         };
         result.push_back(normalized(data_[i] * back(1) * back(0)));
       }
     }
     while (result.size() < basis_.size()) {
-      result.push_back(normalized(result.back() * apply_rotation(increments[result.size()])));
+      result.push_back(normalized(result.back() * exp_out_of_line(increments[result.size()])));
     }
     return result;
   }
@@ -418,7 +418,7 @@ private:
     const auto [b, right] = end_equation(at_start);
     three_vector<T> sum = b[0] * components(omega[0]) + b[1] * components(omega[1]);
     if (!at_start) {
-      sum = rotated(conj(apply_rotation(omega[2])), sum);
+      sum = rotated(conj(exp_out_of_line(omega[2])), sum);
     }
     return sum + b[2] * components(omega[2]) - components(right);
   }

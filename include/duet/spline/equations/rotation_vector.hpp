@@ -167,7 +167,7 @@ public:
     rotations_.resize(last);
     for (std::size_t i = 0; i < last; ++i) {
       steps_[i] = (u[i + 1] - u[i]) / unit_;
-      rotations_[i] = rotation_vector_between(relative_rotation(q[i], q[i + 1]));
+      rotations_[i] = log_out_of_line(relative_rotation(q[i], q[i + 1]));
     }
     make_pieces();
   }
