@@ -46,7 +46,7 @@ STANDARD = set("__cplusplus __cpp_exceptions __cpp_rtti __has_include __FAST_MAT
 
 CONFIG = "duet/core/config.hpp"
 FIRST_LINE = re.compile(r"# [^\n]*\n\nHeaders: (`duet/[a-z_/]+\.hpp`(?:, `duet/[a-z_/]+\.hpp`)*)\n")
-SECOND_LINE = re.compile(r"# [^\n]*\n\n[^\n]*\n\n(?:\*\*After this page you can\*\*|This (?:page|tutorial)) [^\n]*(?:\n[^\n]+)*[.:]\n")
+SECOND_LINE = re.compile(r"# [^\n]*\n\n[^\n]*\n\nThis (?:page|tutorial) [^\n]*(?:\n[^\n]+)*[.:]\n")
 
 problems = []
 
