@@ -5,6 +5,7 @@
 
 #include <duet/core/compiler/instructions.hpp>
 #include <duet/core/compiler/vector.hpp>
+#include <duet/core/owning_result.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
 #include <duet/core/structure.hpp>

@@ -3,6 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
+#include <duet/core/owning_result.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/derivative.hpp>
