@@ -43,6 +43,12 @@ struct value_and_jacobian {
 
 namespace detail {
 
+template <class X>
+concept AnyNumber = Scalar<X> || Arithmetic<X>;
+/// Two vectors or tuples of them, or two scalars.
+template <class X, class V>
+concept PointAndDirection = (Variables<X> && Variables<V>) || (AnyNumber<X> && AnyNumber<V>);
+
 /// Returns f(x); writes ∂f_i/∂x_j into `jacobian` after `prepare(rows)` has resized it.
 template <class Tag, int Chunk, class Output, class F, class X, class J, class Prepare>
 [[nodiscard]] auto write_jacobian(F&& f, const X& x, J& jacobian, const Prepare& prepare) {
@@ -127,9 +133,8 @@ template <int Chunk = 0, class Tag = void, detail::FunctionOfAny F, Variables X,
 ///
 /// \return `value_and_derivative`
 template <class Tag = void, detail::FunctionOfAny F, class X, class V>
-  requires(Variables<X>&& Variables<V>)
-|| ((Scalar<X> || Arithmetic<X>)&&(Scalar<V> || Arithmetic<V>))
-        [[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
+  requires detail::PointAndDirection<X, V>
+[[nodiscard]] auto directional_derivative(F&& f, const X& x, const V& v) {
   using tag = detail::tag_for<Tag, F>;
   const auto y = [&] {
     if constexpr (Variables<X>) {

@@ -106,7 +106,8 @@ template <class Frame, bool WithRotation, class S, class C, class X, class At, c
   m.resize(6, chain.size());
   const auto put_screw = [&](Eigen::Index i, const auto& step, const auto& axis, const auto& point)
                              DUET_INLINE_LAMBDA { set_column(m, screw_of(step, axis, point), i); };
-  const auto link = walk < WithRotation || !is_spatial, S > (chain, theta, on.link, put_screw);
+  constexpr bool needs_rotation = WithRotation || !is_spatial;
+  const auto link = walk<needs_rotation, S>(chain, theta, on.link, put_screw);
   for (Eigen::Index i = on.link; i < chain.size(); ++i) { // these joints only move other links
     set_column(m, no_twist<S>(), i);
   }

@@ -104,8 +104,9 @@ closed(std::vector<quaternion<T>> q) {
 /// True if samples over T fit a curve of type `Spline`: T is its scalar, or its scalar has
 /// derivatives and T holds constants.
 template <class T, class Spline, class S = typename Spline::scalar_type>
-concept SampleOf = std::same_as<promote_t<S, T>, S> && contains_tag<S, screw_tag>()
-== contains_tag<T, screw_tag>() && std::same_as<real_type_t<S>, real_type_t<T>>;
+concept SampleOf = std::same_as<promote_t<S, T>, S> &&
+    std::same_as<real_type_t<S>, real_type_t<T>> &&
+    (contains_tag<S, screw_tag>() == contains_tag<T, screw_tag>());
 
 template <class Spline, class T>
 [[nodiscard]] auto over_scalar_of_curve(const std::vector<quaternion<T>>& samples) {
