@@ -50,4 +50,10 @@ struct judgement {
 /// \throws std::exception with a message of one line for what is no claim
 [[nodiscard]] judgement judge(const claim& c);
 
+/// agrees, disagrees or no value.
+[[nodiscard]] const char* outcome_text(const judgement& j);
+
+/// The claim and its judgement as a line of JSON.
+[[nodiscard]] std::string to_json(const claim& c, const judgement& j);
+
 } // namespace check_formula

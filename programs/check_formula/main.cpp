@@ -18,7 +18,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -147,17 +146,11 @@ constexpr int all_agree = 0, some_disagree = 1, bad_input = 2;
   }
   return text;
 }
-[[nodiscard]] std::string or_none(const std::string& value) {
-  return value.empty() ? "no value" : value;
-}
 
 void print(const claim& c, const judgement& j) {
   const std::string relation =
       c.wrt ? "the derivative of " + c.reference + " with respect to " + *c.wrt : c.reference;
-  const char* outcome = j.outcome == verdict::agrees      ? "agrees"
-                        : j.outcome == verdict::disagrees ? "disagrees"
-                                                          : "no value";
-  std::cout << outcome << ": " << duet::printable(c.text) << (c.wrt ? " as " : " = ")
+  std::cout << outcome_text(j) << ": " << duet::printable(c.text) << (c.wrt ? " as " : " = ")
             << duet::printable(relation) << "\n";
   if (j.simplest) {
     std::cout << "  simplest input:  " << input_text(j.simplest->input) << "\n"
@@ -191,49 +184,6 @@ void print(const claim& c, const judgement& j) {
   }
 }
 
-[[nodiscard]] std::string json(std::string_view text) {
-  constexpr std::string_view hexadecimal = "0123456789abcdef";
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20) {
-      result += {'\\', 'u', '0', '0', hexadecimal[byte / 16], hexadecimal[byte % 16]};
-    } else {
-      result += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-    }
-  }
-  return result + "\"";
-}
-void print_json(const claim& c, const judgement& j) {
-  const char* outcome = j.outcome == verdict::agrees      ? "agrees"
-                        : j.outcome == verdict::disagrees ? "disagrees"
-                                                          : "no value";
-  const auto at = [](const values_at& values) {
-    std::string text = "{\"input\":{";
-    for (const auto& [name, value] : values.input) {
-      text += (text.back() == '{' ? "" : ",") + json(name) + ":" + json(value);
-    }
-    return text + "},\"claimed\":" + json(or_none(values.claimed)) +
-           ",\"expected\":" + json(or_none(values.expected)) + "}";
-  };
-  std::cout << "{\"verdict\":\"" << outcome << "\",\"claim\":" << json(c.text)
-            << (c.wrt ? ",\"derivative_of\":" : ",\"equals\":") << json(c.reference);
-  if (c.wrt) {
-    std::cout << ",\"wrt\":" << json(*c.wrt) << ",\"derivative\":" << json(j.right)
-              << ",\"latex\":" << json(j.right_latex);
-  }
-  std::cout << ",\"agree\":" << j.agree << ",\"disagree\":" << j.disagree
-            << ",\"undecided\":" << j.undecided << ",\"one_sided\":" << j.one_sided
-            << ",\"neither\":" << j.neither;
-  if (j.simplest) {
-    std::cout << ",\"simplest\":" << at(*j.simplest);
-  }
-  if (j.first_one_sided) {
-    std::cout << ",\"first_one_sided\":" << at(*j.first_one_sided);
-  }
-  std::cout << "}\n";
-}
-
 void complain(const std::string& problem) {
   std::cout.flush();
   std::cerr << duet::printable("duet-check-formula: " + problem) + "\n";
@@ -244,7 +194,11 @@ void complain(const std::string& problem) {
   try {
     const claim c = claim_of(options);
     const judgement j = judge(c);
-    (as_json ? print_json : print)(c, j);
+    if (as_json) {
+      std::cout << to_json(c, j) << "\n";
+    } else {
+      print(c, j);
+    }
     if (j.outcome == verdict::no_value) {
       complain(where + "there is no input at which both sides have a value (try --range)");
     }

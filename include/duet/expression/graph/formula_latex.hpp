@@ -11,6 +11,7 @@
 #include <duet/expression/tree/latex_text.hpp>
 #include <duet/expression/tree/printed.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <string>
@@ -185,6 +186,27 @@ namespace detail {
                                     : printed_call(style, written, {x[0], x[1]});
 }
 
+/// Formulas of more operations are not written in LaTeX.
+inline constexpr double max_latex_size = 2000;
+
+/// The number of operations of a formula that is written out, each repeated where it is used.
+[[nodiscard]] inline double written_size(const formula_graph& f) {
+  const graph& g = f.operations();
+  std::vector<double> sizes(std::size_t(g.size()), 1);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    for (const int operand : g[int(i)].operands) {
+      sizes[i] += operand >= 0 ? sizes[std::size_t(operand)] : 0;
+    }
+  }
+  double size = 0;
+  for (const named_value& y : f.outputs()) {
+    for (const int node : y.nodes) {
+      size = std::max(size, sizes[std::size_t(node)]);
+    }
+  }
+  return size;
+}
+
 } // namespace detail
 
 /// The only output of a formula for a paper, to stand in mathematics mode, as `to_latex` writes
@@ -192,27 +214,24 @@ namespace detail {
 /// \throws invalid_input for several outputs, and if the formula has more than 2000 operations
 [[nodiscard]] inline std::string to_latex(const formula_graph& f) {
   using detail::latex_terms;
-  constexpr double max_size = 2000;
   const graph& g = f.operations();
   duet::detail::require(f.outputs().size() == 1, "duet: to_latex takes a formula with one output");
+  duet::detail::require(detail::written_size(f) <= detail::max_latex_size,
+                        "duet: to_latex: the formula has more than ", detail::max_latex_size,
+                        " operations");
   const std::vector<bool> needed = f.needed();
-  std::vector<double> sizes(needed.size(), 0); // of the tree
   std::vector<printed> texts(needed.size());
   for (int i = 0; i < g.size(); ++i) {
     const std::size_t k = std::size_t(i);
     if (!needed[k]) {
       continue;
     }
-    sizes[k] = 1;
     std::array<printed, 3> operands;
     for (std::size_t j = 0; j < 3; ++j) {
       if (g[i].operands[j] >= 0) {
-        sizes[k] += sizes[std::size_t(g[i].operands[j])];
         operands[j] = texts[std::size_t(g[i].operands[j])];
       }
     }
-    duet::detail::require(sizes[k] <= max_size, "duet: to_latex: the formula has more than ",
-                          max_size, " operations");
     texts[k] = detail::latex_of_kind(detail::latex_node(g, g[i], operands), true);
   }
   const named_value& y = f.outputs()[0];

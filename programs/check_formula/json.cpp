@@ -1,0 +1,67 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+
+#include "check_formula.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace check_formula {
+namespace {
+
+[[nodiscard]] std::string json(std::string_view text) {
+  constexpr std::string_view hexadecimal = "0123456789abcdef";
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20) {
+      result += {'\\', 'u', '0', '0', hexadecimal[byte / 16], hexadecimal[byte % 16]};
+    } else {
+      result += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+    }
+  }
+  return result + "\"";
+}
+[[nodiscard]] std::string json(const input_texts& input) {
+  std::string text = "{";
+  for (const auto& [name, value] : input) {
+    text += (text == "{" ? "" : ",") + json(name) + ":" + json(value);
+  }
+  return text + "}";
+}
+[[nodiscard]] std::string json(const values_at& values) {
+  const auto or_none = [](const std::string& value) {
+    return json(value.empty() ? "no value" : value);
+  };
+  return "{\"input\":" + json(values.input) + ",\"claimed\":" + or_none(values.claimed) +
+         ",\"expected\":" + or_none(values.expected) + "}";
+}
+
+} // namespace
+
+const char* outcome_text(const judgement& j) {
+  return j.outcome == verdict::agrees      ? "agrees"
+         : j.outcome == verdict::disagrees ? "disagrees"
+                                           : "no value";
+}
+
+std::string to_json(const claim& c, const judgement& j) {
+  std::string text = "{\"verdict\":" + json(outcome_text(j)) + ",\"claim\":" + json(c.text) +
+                     (c.wrt ? ",\"derivative_of\":" : ",\"equals\":") + json(c.reference);
+  if (c.wrt) {
+    text += ",\"wrt\":" + json(*c.wrt) + ",\"derivative\":" + json(j.right) +
+            ",\"latex\":" + json(j.right_latex);
+  }
+  const auto count = [](int n) { return std::to_string(n); };
+  text += ",\"agree\":" + count(j.agree) + ",\"disagree\":" + count(j.disagree) +
+          ",\"undecided\":" + count(j.undecided) + ",\"one_sided\":" + count(j.one_sided) +
+          ",\"neither\":" + count(j.neither);
+  if (j.simplest) {
+    text += ",\"simplest\":" + json(*j.simplest);
+  }
+  if (j.first_one_sided) {
+    text += ",\"first_one_sided\":" + json(*j.first_one_sided);
+  }
+  return text + "}";
+}
+
+} // namespace check_formula
