@@ -12,6 +12,7 @@
 #include <duet/expression/graph/formula_latex.hpp>
 #include <duet/expression/graph/formula_text.hpp>
 #include <duet/expression/graph/graph.hpp>
+#include <duet/expression/graph/is_equal.hpp>
 #include <duet/expression/graph/read_formula.hpp>
 #include <duet/interop/multiprecision.hpp>
 
@@ -471,6 +472,9 @@ judgement judge(const claim& c) {
   result.outcome = result.disagree > 0 ? verdict::disagrees
                    : result.agree > 0  ? verdict::agrees
                                        : verdict::no_value;
+  constexpr int max_proved_operations = 2000;
+  result.is_proved = result.outcome == verdict::agrees && operations <= max_proved_operations &&
+                     is_equal(left, right, {.unit = c.rotations}).verdict == equality::proved;
   return result;
 }
 

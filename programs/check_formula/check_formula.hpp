@@ -43,6 +43,7 @@ struct judgement {
   int neither = 0;   ///< number of inputs at which no side has a value
   std::optional<values_at> simplest;        ///< disagreement
   std::optional<values_at> first_one_sided; ///< likewise
+  bool is_proved = false;                   ///< equal by algebra, with values at the same inputs
   input_texts loss;                         ///< input at which double loses digits
   std::string right, right_latex;           ///< the derivative; empty for equality
 };

@@ -54,12 +54,15 @@ std::string to_json(const claim& c, const judgement& j) {
   const auto count = [](int n) { return std::to_string(n); };
   text += ",\"agree\":" + count(j.agree) + ",\"disagree\":" + count(j.disagree) +
           ",\"undecided\":" + count(j.undecided) + ",\"one_sided\":" + count(j.one_sided) +
-          ",\"neither\":" + count(j.neither);
+          ",\"neither\":" + count(j.neither) + ",\"proved\":" + (j.is_proved ? "true" : "false");
   if (j.simplest) {
     text += ",\"simplest\":" + json(*j.simplest);
   }
   if (j.first_one_sided) {
     text += ",\"first_one_sided\":" + json(*j.first_one_sided);
+  }
+  if (!j.loss.empty()) {
+    text += ",\"loses_digits_at\":" + json(j.loss);
   }
   return text + "}";
 }

@@ -172,6 +172,9 @@ void print(const claim& c, const judgement& j) {
     std::cout << ", " << j.neither << " without a value";
   }
   std::cout << "\n";
+  if (j.is_proved) {
+    std::cout << "  proof:           equal by algebra wherever they have values\n";
+  }
   if (j.first_one_sided) {
     const bool is_claim = !j.first_one_sided->claimed.empty();
     std::cout << "  one-sided:       " << j.one_sided << ", such as "

@@ -66,6 +66,13 @@ run(2 "no input at which both sides have a value" "log(x)" --equals "log(x)" --r
 run(0 "^agrees" "sqrt(x^2)" --equals x --range x=0:10)
 run(1 "x = -1" "sqrt(x^2)" --equals x)
 
+# Proofs, which cover the inputs without a value.
+run(0 "proof: " "2 x*exp(x^2)" --derivative-of "exp(x^2)" --wrt x)
+run(0 "proof: " "rotate(q*p, w)" --equals "rotate(q, rotate(p, w))" --rotation q,p --vector w)
+run(0 "\"proved\":true" "2w" --derivative-of "dot(w, w)" --wrt w --vector w --json)
+run(0 "\"one_sided\":1.*\"proved\":false" "x/x" --equals 1 --json)
+run(1 "\"proved\":false" "x" --equals 1 --json)
+
 # Options.
 run(0 "usage: .*--derivative-of FORMULA" --help)
 run(0 "^duet-check-formula ${version}\n$" --version)
