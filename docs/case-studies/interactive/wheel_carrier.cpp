@@ -5,9 +5,9 @@
 
 #include "live.hpp"
 
-#include "../../examples/wheel_carrier/carrier.hpp"
-#include "../../examples/wheel_carrier/comparison.hpp"
-#include "../../examples/wheel_carrier/equal_arcs.hpp"
+#include "../../../examples/wheel_carrier/carrier.hpp"
+#include "../../../examples/wheel_carrier/comparison.hpp"
+#include "../../../examples/wheel_carrier/equal_arcs.hpp"
 
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
