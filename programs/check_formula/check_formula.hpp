@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,9 @@ struct judgement {
 
 /// agrees, disagrees or no value.
 [[nodiscard]] const char* outcome_text(const judgement& j);
+
+/// A text as JSON.
+[[nodiscard]] std::string json_text(std::string_view text);
 
 /// The claim and its judgement as a line of JSON.
 [[nodiscard]] std::string to_json(const claim& c, const judgement& j);

@@ -6,9 +6,8 @@
 #include <string_view>
 
 namespace check_formula {
-namespace {
 
-[[nodiscard]] std::string json(std::string_view text) {
+std::string json_text(std::string_view text) {
   constexpr std::string_view hexadecimal = "0123456789abcdef";
   std::string result = "\"";
   for (const char c : text) {
@@ -21,16 +20,19 @@ namespace {
   }
   return result + "\"";
 }
+
+namespace {
+
 [[nodiscard]] std::string json(const input_texts& input) {
   std::string text = "{";
   for (const auto& [name, value] : input) {
-    text += (text == "{" ? "" : ",") + json(name) + ":" + json(value);
+    text += (text == "{" ? "" : ",") + json_text(name) + ":" + json_text(value);
   }
   return text + "}";
 }
 [[nodiscard]] std::string json(const values_at& values) {
   const auto or_none = [](const std::string& value) {
-    return json(value.empty() ? "no value" : value);
+    return json_text(value.empty() ? "no value" : value);
   };
   return "{\"input\":" + json(values.input) + ",\"claimed\":" + or_none(values.claimed) +
          ",\"expected\":" + or_none(values.expected) + "}";
@@ -45,11 +47,11 @@ const char* outcome_text(const judgement& j) {
 }
 
 std::string to_json(const claim& c, const judgement& j) {
-  std::string text = "{\"verdict\":" + json(outcome_text(j)) + ",\"claim\":" + json(c.text) +
-                     (c.wrt ? ",\"derivative_of\":" : ",\"equals\":") + json(c.reference);
+  std::string text = "{\"verdict\":" + json_text(outcome_text(j)) + ",\"claim\":" + json_text(c.text) +
+                     (c.wrt ? ",\"derivative_of\":" : ",\"equals\":") + json_text(c.reference);
   if (c.wrt) {
-    text += ",\"wrt\":" + json(*c.wrt) + ",\"derivative\":" + json(j.right) +
-            ",\"latex\":" + json(j.right_latex);
+    text += ",\"wrt\":" + json_text(*c.wrt) + ",\"derivative\":" + json_text(j.right) +
+            ",\"latex\":" + json_text(j.right_latex);
   }
   const auto count = [](int n) { return std::to_string(n); };
   text += ",\"agree\":" + count(j.agree) + ",\"disagree\":" + count(j.disagree) +

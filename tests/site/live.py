@@ -3,12 +3,15 @@
 
 """The pages that compute, in a browser, from disk: whatever their reader moves, the numbers that come out are those of the
 same functions compiled for this machine; no page complains, is too large or wider than the screen; where there is no
-WebAssembly it says so, and shows its picture. Writes pictures of them.
+WebAssembly it says so, and shows its picture. Claims are judged as by duet-check-formula, within a time limit, and what is
+typed is text. Writes pictures of them.
 
 usage: python3 tests/site/live.py <folder of pages and libraries> <folder for pictures>
 """
 
 import ctypes
+import gzip
+import json
 import re
 import sys
 from pathlib import Path
@@ -17,7 +20,7 @@ from browser import Browser
 from reader import Reader
 
 SOURCES = Path(__file__).resolve().parent.parent.parent / "docs/case-studies"
-LARGEST = 1_000_000
+LARGEST = 500_000  # compressed
 # Of what numbers are relative to; see `scales`.
 TOLERANCE = 1e-12
 NO_WEBASSEMBLY = "delete window.WebAssembly"
@@ -143,8 +146,8 @@ def check_size(page):
     text = (page.folder / f"{page.name}.html").read_text()
     files = [page.folder / f"{page.name}.html"]
     files += [(page.folder / address).resolve() for address in re.findall(r"(?:src|href)=\"(.*?)\"", text)]
-    size = sum(file.stat().st_size for file in files)
-    expect(size <= LARGEST, f"{page.name} has {size} bytes")
+    size = sum(len(gzip.compress(file.read_bytes())) for file in files)
+    expect(size <= LARGEST, f"{page.name} has {size} bytes, compressed")
     return size
 
 
@@ -269,6 +272,98 @@ def try_arm(page):
     expect("out of reach" in page.value_of("document.querySelector('.live-says').textContent"), "the page does not say that the goal is out of reach")
 
 
+class Claims:
+    """The page of claims: what it says of them, and what this machine does."""
+
+    FIELDS = ("formula", "claimed", "variable", "vectors", "rotations")
+
+    def __init__(self, page):
+        self.page = page
+        self.native = ctypes.CDLL(str(page.folder / f"{page.name}.so")).judgement_of
+        self.native.restype = ctypes.c_char_p
+
+    def on_this_machine(self, *claim):
+        return json.loads(self.native(*(text.encode() for text in (*claim, "", "", "", "")[:5])))
+
+    def answer(self):
+        """The page's, once there is one, and the text that says it."""
+        self.page.reader.wait_for(f"duetLive.pages.{self.page.name}.answer")
+        return self.page.value_of(f"[duetLive.pages.{self.page.name}.answer, document.querySelector('.live-verdict').innerText]")
+
+    def type(self, *claim):
+        for name, text in zip(self.FIELDS, (*claim, "", "", "", "")):
+            self.page.value_of(f"document.getElementById('check-{name}').value = {json.dumps(text)}")
+
+    def judged(self, *claim):
+        """By the page, as by this machine."""
+        self.type(*claim)
+        self.page.value_of("document.querySelector('.live-form').requestSubmit()")
+        answer, said = self.answer()
+        expected = self.on_this_machine(*claim)
+        for each in (answer, expected):
+            each.pop("loses_digits_at", 0)  # in which double precision of machines differs
+        expect(answer == expected, f"{claim}: the page answers {answer}, not {expected}")
+        return said
+
+    def chosen(self, number):
+        """The text that says the verdict on an example."""
+        self.page.value_of(f"document.querySelectorAll('.live-buttons button')[{number}].click()")
+        return self.answer()[1]
+
+    def expect_said(self, said, *parts):
+        for part in parts:
+            expect(part in said, f"{self.page.name} says {said!r} without {part!r}")
+
+
+FUNCTIONS = """sqrt(x) cbrt(x) exp(2x) exp2(x) expm1(x) log(x) log2(x) log10(x) log1p(x) sin(x) cos(x) tan(x) asin(x) acos(x)
+    atan(x) sinh(x) cosh(x) tanh(x) asinh(x) acosh(x) atanh(x) erf(x) erfc(x) abs(x) x^-2 x^x 2^(3x) atan2(x,y) hypot(x,y) floor(x) fmod(x,3)
+    remainder(y,x) fma(x,x,x) x*y/(x+y) max(x,y) stumpff0(x) stumpff2(x) arc_ratio(x,y) x*tgamma(y) x*lgamma(y) x*floor(y) x*ceil(y) x*abs(y)
+    x*select(y<1&&y!=0||!(y<=3),y,2) x^2*theta_1 x/1e-9 sqrt(x)*sin(x)^2 quaternion(x,1,2,3) [x,x^2,sin(x)] pi*x x*inf""".split()
+
+
+def try_claims(page):
+    claims = Claims(page)
+    for number, parts in enumerate((
+            ["Right, and proved", "with respect to x"], ["Wrong", "x = 1", "1.38177329067604", "−0.301168678939757", "cos(x) - x * sin(x)", "\\cos(x) - x \\sin(x)"],
+            ["Wrong", "t = 0", "[1, 0, 0]", "[2, 0, 0]"], ["Right, wherever", "x = 0, only your derivative has a value", "x = 1e-08"],
+            ["Right, and proved", "with respect to w"])):
+        claims.expect_said(claims.chosen(number), *parts)
+    claims.expect_said(claims.judged("x^3", "3x^2"), "Right, and proved", "122 agree.")
+    claims.expect_said(claims.judged("theta^3 + y", "theta^2", "theta"), "Wrong", "theta = ")
+    expect(page.value_of("document.querySelector('.live-math math').textContent") == "3θ2", "the derivative is not typeset")
+    claims.expect_said(claims.judged("log(x - x)", "1", "x"), "No verdict")
+    claims.expect_said(claims.judged("rotate(q*p, w)", "rotate(q, rotate(p, w))", "w", "w", "q p"), "numbers")
+    claims.expect_said(claims.judged("tgamma(x)", "1"), "gamma function")
+    claims.expect_said(claims.judged("x*y", "y"), "With respect to: ", "name one of x, y")
+    claims.expect_said(claims.judged("x*y", "y", "z"), "no variable 'z'")
+    # Errors, and the caret at their columns.
+    claims.expect_said(claims.judged("sin(x))", "1"), "Formula: column 7", "\n      ^")
+    expect(page.value_of("[document.activeElement.id, document.activeElement.selectionStart]") == ["check-formula", 6], "the cursor is not at the error")
+    claims.expect_said(claims.judged("𝑥*𝑥", "2𝑥 +"), "Your derivative: column 5")
+    # What is typed is text.
+    hostile = "<img src=none onerror=\"document.title='run'\">"
+    title = page.value_of("document.title")
+    for i in range(len(Claims.FIELDS)):
+        claims.expect_said(claims.judged(*["x^2", "2x", "", "", ""][:i], hostile, *["2x", "", "", ""][i:]), "img" if i > 1 else hostile)
+    claims.expect_said(claims.judged("x", "x", "", "θ1, <b>bold</b>"), "<b>bold</b>")
+    page.reader.wait_for_frames()
+    expect(page.value_of("document.querySelectorAll('.live-host img, .live-host b').length") == 0 and page.value_of("document.title") == title, "what is typed is read as HTML")
+    # All functions, typeset.
+    for function in FUNCTIONS:
+        latex = claims.on_this_machine(function, "[1, 2, 3]" if function[0] == "[" else "quaternion(1,1,1,1)" if function[0] == "q" else "1", "x").get("latex")
+        expect(latex and page.value_of(f"Boolean(duetLive.pages.{page.name}.typeset({json.dumps(latex)}))"), f"the derivative of {function} is not typeset: {latex}")
+    # A claim that takes long, and the next one.
+    page.value_of(f"duetLive.pages.{page.name}.time_limit = .2")
+    claims.type("*".join(f"sin(x+{i})^x" for i in range(3000)), "1")
+    page.value_of("document.querySelector('.live-form').requestSubmit()")
+    claims.expect_said(claims.answer()[1], "Stopped", "after 0.2 s")
+    page.value_of(f"duetLive.pages.{page.name}.time_limit = 60")
+    claims.type("sin(2x)", "2cos(2x)")
+    page.value_of("document.getElementById('check-claimed').focus()")
+    page.reader.press("Enter")
+    claims.expect_said(claims.answer()[1], "Right, and proved")
+
+
 def check_without_webassembly(page):
     script = page.reader.call("Page.addScriptToEvaluateOnNewDocument", source=NO_WEBASSEMBLY)["identifier"]
     for width in (390, 1280):
@@ -277,7 +372,7 @@ def check_without_webassembly(page):
         page.reader.wait_for("[...document.images].every(image => image.complete)")
         said = page.value_of("document.querySelector('.live-missing').textContent")
         expect("WebAssembly, which is missing" in said, f"{page.name} without WebAssembly says {said}")
-        shown = page.value_of("document.images.length > 0 && [...document.images].every(i => i.naturalWidth > 0 && i.offsetWidth > 0)")
+        shown = page.value_of("(shown => shown.length > 0 && shown.every(i => i.naturalWidth !== 0 && i.offsetWidth > 0))([...document.querySelectorAll('.live img, .live pre')])")
         expect(shown, f"{page.name} without WebAssembly shows no picture")
         expect(not page.value_of("document.querySelectorAll('.live-host').length"), f"{page.name} without WebAssembly is live")
         page.check_width(width)
@@ -302,7 +397,7 @@ def main():
     folder, pictures = Path(sys.argv[1]).resolve(), Path(sys.argv[2])
     pictures.mkdir(parents=True, exist_ok=True)
     tries = {"wheel_carrier": (try_wheel_carrier, None), "rotations": (try_rotations, ".live-handle:nth-child(3)"),
-             "arm": (try_arm, ".live-handle:nth-child(1)")}
+             "arm": (try_arm, ".live-handle:nth-child(1)"), "check_derivative": (try_claims, None)}
     with Browser() as browser:
         reader = Reader(browser)
         for name, (attempt, handle) in tries.items():
@@ -322,11 +417,14 @@ def main():
                     page.open(width, is_dark)
                     page.check_width(width)
                     page.picture(pictures, suffix)
-                    page.move(0, *(["ArrowDown"] if name == "arm" else ["ArrowLeft"] * 3))
+                    if name == "check_derivative":
+                        Claims(page).chosen(2)
+                    else:
+                        page.move(0, *(["ArrowDown"] if name == "arm" else ["ArrowLeft"] * 3))
                     page.check_width(width)
                     page.picture(pictures, f"{suffix}_moved")
                     page.check_complaints(suffix)
-            print(f"{name}: {size} bytes, first figure after {first_figure:.0f} ms, numbers within {page.worst:.1e} of this machine's")
+            print(f"{name}: {size} bytes compressed, first figure after {first_figure:.0f} ms, numbers within {page.worst:.1e} of this machine's")
     for failure in failures:
         print(f"duet: {failure}", file=sys.stderr)
     sys.exit(bool(failures))

@@ -8,7 +8,7 @@ import time
 
 from browser import Tab
 
-KEYS = {"Tab": 9, "End": 35, "Home": 36, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
+KEYS = {"Tab": 9, "Enter": 13, "End": 35, "Home": 36, "ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40}
 
 
 class Reader(Tab):
@@ -39,7 +39,7 @@ class Reader(Tab):
 
     def press(self, key):
         """A key, as ArrowRight, on what has the focus."""
-        about = {"key": key, "code": key, "windowsVirtualKeyCode": KEYS[key]}
+        about = {"key": key, "code": key, "windowsVirtualKeyCode": KEYS[key]} | ({"text": "\r"} if key == "Enter" else {})
         self.call("Input.dispatchKeyEvent", type="keyDown", **about)
         self.call("Input.dispatchKeyEvent", type="keyUp", **about)
 

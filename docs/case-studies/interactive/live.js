@@ -445,11 +445,12 @@ window.duetLive = (() => {
   };
 
   /// Starts the page where there is <div class="live" data-live="<name>">: `build(host, call)` puts what is
-  /// live into the host. Where that cannot be, what the page has in that place stays, and is told why.
-  const start = (name, build) => {
+  /// live into the host. Where that cannot be, what the page has in that place stays, and is told why. What
+  /// `begin` promises is given to `build`: a caller of the module, unless the page makes something else of it.
+  const start = (name, build, begin = (factory, wasmBinary, page) => factory({ wasmBinary }).then((module) => caller(module, page.calls))) => {
     for (const place of document.querySelectorAll(`.live[data-live="${name}"]`)) {
       const stay = (why) => {
-        place.prepend(element("p", { class: "live-missing" }, why + " This is a picture of what it computes."));
+        place.prepend(element("p", { class: "live-missing" }, why + " This is an example of what it computes."));
       };
       if (typeof WebAssembly !== "object" || typeof DecompressionStream !== "function") {
         stay("This page computes in the browser by WebAssembly, which is missing or switched off here.");
@@ -460,12 +461,12 @@ window.duetLive = (() => {
         stay("What this page computes with was not loaded.");
         continue;
       }
-      unpacked(factory.packed).then((wasmBinary) => factory({ wasmBinary })).then((module) => {
-        const page = { calls: {} };
+      const page = { calls: {} };
+      unpacked(factory.packed).then((wasmBinary) => begin(factory, wasmBinary, page)).then((call) => {
         const host = element("div", { class: "live-host" });
         pages[name] = page;
         place.append(host);
-        build(host, caller(module, page.calls));
+        build(host, call);
         place.classList.add("live-runs");
         requestAnimationFrame(() => (page.first_figure = performance.now()));
       }).catch((error) => {

@@ -5,6 +5,7 @@
 usage: page.py <document.md> <page.html>
 """
 
+import html
 import re
 import sys
 
@@ -16,6 +17,7 @@ live = re.search(r"^<div class=\"live\".*?^</div>$", text, re.MULTILINE | re.DOT
 scripts = text[text.index("<noscript>"):]
 live = re.sub(r"!\[(.*?)\]\((.*?)\)\n\n\*(.*?)\*\n\n```sh.*?```\n",
               r'<figure><img src="\2" alt="\1" loading="lazy">\n<figcaption>\3</figcaption></figure>', live, flags=re.DOTALL)
+live = re.sub(r"```\w+\n(.*?)```\n", lambda code: f"<pre>{html.escape(code[1])}</pre>\n", live, flags=re.DOTALL)
 with open(page, "w", encoding="utf-8") as file:
     file.write(f"""<!DOCTYPE html>
 <html lang="en">
