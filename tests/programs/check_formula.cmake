@@ -72,6 +72,7 @@ run(0 "proof: " "rotate(q*p, w)" --equals "rotate(q, rotate(p, w))" --rotation q
 run(0 "\"proved\":true" "2w" --derivative-of "dot(w, w)" --wrt w --vector w --json)
 run(0 "\"one_sided\":1.*\"proved\":false" "x/x" --equals 1 --json)
 run(1 "\"proved\":false" "x" --equals 1 --json)
+run(0 "\"loses_digits_at\":{\"x\":\"1e-08\"}" "(1 - cos(x))/x^2" --equals "2 sin(x/2)^2/x^2" --json)
 
 # Options.
 run(0 "usage: .*--derivative-of FORMULA" --help)
