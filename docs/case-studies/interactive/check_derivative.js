@@ -22,7 +22,8 @@
         answer = module.ccall("judgement_of", "string", data.claim.map(() => "string"), data.claim);
       } catch (error) {
         module = undefined;
-        answer = error.message.startsWith("{") ? error.message : JSON.stringify({ error: "this claim cannot be judged here: " + error.message, field: "" });
+        const message = String(error.message ?? error);
+        answer = message.startsWith("{") ? message : JSON.stringify({ error: "this claim cannot be judged here: " + message, field: "" });
       }
       self.postMessage(answer);
     };
@@ -56,7 +57,10 @@
         done(with_what);
       };
       worker.onmessage = ({ data }) => answer(JSON.parse(data));
-      worker.onerror = (event) => fail(new Error(event.message));
+      worker.onerror = (event) => {
+        fail(new Error(event.message));
+        stop();
+      };
       worker.postMessage(message);
     }));
   };
