@@ -150,7 +150,7 @@ for picture in sorted((TOP / "docs/figures").iterdir()):
     size = picture.stat().st_size
     problem_if(size > 204800, f"docs/figures/{picture.name} has {size} bytes, more than 200 kB: scripts/shrink_svg")
 
-for path in sorted((TOP / "docs").rglob("*.md")):
+for path in sorted({*(TOP / "docs").rglob("*.md")} - {TOP / "docs/index.md"}):
     page, text = path.relative_to(TOP).as_posix(), read(path)
     headers = FIRST_LINE.match(text)
     problem_if(not headers, f"{page} has no line of headers below its title")
