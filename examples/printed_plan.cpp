@@ -3,7 +3,7 @@
 /// \file
 /// Motion planning exactly as in the notes (N22–N25), for a Panda: minimum-norm joint rates, a
 /// single step, plans towards a goal, inverse kinematics, a path of poses, and the effect of the
-/// step size beta. Prints the tables of docs/case-studies/two_sources.md.
+/// step size beta. Prints the tables of docs/case-studies/planner_of_the_notes.md.
 
 #include <duet/core/random_source.hpp>
 #include <duet/kinematics/robots.hpp>
@@ -35,11 +35,11 @@ void single_step() {
   vector7<double> rate = vector7<double>::Zero();
   rate[2] = 1; // of gamma = [t; alpha]: the tip rises at 1 m/s
   const vector rates = B * rate;
-  std::printf("N22: the tip rises at 1 m/s where the joints turn at");
+  std::printf("N22: for a tip that rises at 1 m/s the joint velocities are");
   for (const double x : rates) {
     std::printf(" %.4f", std::abs(x) < 1e-12 ? 0 : x);
   }
-  std::printf(" rad/s\n\n| N23: a step of | leaves |\n|---|---|\n");
+  std::printf(" rad/s.\n\n| N23: step of the tip | distance left |\n|---|---|\n");
   for (const double h : {.1, .01, .001}) {
     const auto next = pose(quaternion<double>(1), Eigen::Vector3d(0, 0, h)) * current;
     const auto residual = pose_error_between(arm.pose(resolved_step(arm, theta, next, 1)), next);
@@ -99,8 +99,9 @@ void plans() {
 /// A circle of 10 cm as a sequence of poses (note 1 of N25).
 void paths() {
   const auto first = arm.pose(gripper_down());
-  std::printf("\n| N25, note 1: poses | beta | stopped | largest deviation | in steps |\n"
-              "|---|---|---|---|---|\n");
+  std::printf(
+      "\n| N25, note 1: poses | beta | outcome | largest deviation | in distances of poses |\n"
+      "|---|---|---|---|---|\n");
   for (const int n : {50, 100, 200}) {
     const double full_turn = 6.283185307179586;
     std::vector<dual_quaternion<double>> path;

@@ -98,7 +98,7 @@ configurations(const carrier& mechanism, const std::vector<double>& samples,
     off.add(values.back(), configuration_of(exact));
   }
   std::printf("\nErrors of the configuration, in metres and radians, per metre, per metre twice\n\n"
-              "| | median | maximum | at u | at both ends |\n|---|---|---|---|---|\n");
+              "| | median | maximum | at u | at lower, upper end |\n|---|---|---|---|---|\n");
   const char* const orders[] = {"", ", first derivative", ", second derivative"};
   for (std::size_t k = 0; k < 3; ++k) {
     std::printf("| x, y, z%s |%s\n", orders[k],
@@ -118,7 +118,7 @@ constexpr int convergence_rows[] = {25, 50, 100, 200, 400};
 std::string convergence(const carrier& mechanism, const arc_length& arcs,
                         const std::vector<state>& states) {
   std::printf("\nConvergence: maximal errors in percent over the whole travel, observed order in "
-              "parentheses\n\n| rows | delta_E clamped | ddelta_E clamped | delta_E natural | "
+              "parentheses\n\n| samples | delta_E clamped | ddelta_E clamped | delta_E natural | "
               "ddelta_E natural |\n|---|---|---|---|---|\n");
   std::string csv = "rows,delta_E_clamped,ddelta_E_clamped,delta_E_natural,ddelta_E_natural\n";
   const known_ends known = ends_of(states.front(), states.back());

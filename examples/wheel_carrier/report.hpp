@@ -55,9 +55,9 @@ inline std::string error_cells(const std::vector<double>& samples,
 }
 
 inline void print_header_of_errors() {
-  std::printf(
-      "| | delta_E median | maximum | at u | at both ends | ddelta_E median | maximum | at u | "
-      "at both ends |\n|---|---|---|---|---|---|---|---|---|\n");
+  std::printf("| | delta_E median | maximum | at u | at lower, upper end | ddelta_E median | "
+              "maximum | at u | "
+              "at lower, upper end |\n|---|---|---|---|---|---|---|---|---|\n");
 }
 
 inline void print_error_row(const std::string& name, const std::vector<double>& samples,
