@@ -35,7 +35,7 @@ void single_step() {
   vector7<double> rate = vector7<double>::Zero();
   rate[2] = 1; // of gamma = [t; alpha]: the tip rises at 1 m/s
   const vector rates = B * rate;
-  std::printf("N22: for a tip that rises at 1 m/s the joint velocities are");
+  std::printf("N22: the tip rises at 1 m/s for joint velocities of");
   for (const double x : rates) {
     std::printf(" %.4f", std::abs(x) < 1e-12 ? 0 : x);
   }
