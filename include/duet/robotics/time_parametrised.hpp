@@ -111,7 +111,7 @@ DUET_ABI_BEGIN
 /// approach to time-optimal path parameterization based on reachability analysis, IEEE T-RO 2018
 /// (TOPP-RA).
 /// Limits are satisfied everywhere, not only at samples, because they bound Bernstein coefficients.
-/// With jerk limits the motion is locally optimal (docs/how-to/time_parametrise.md), and
+/// With jerk limits the motion is locally optimal (docs/how-to/limit_jerk.md), and
 /// accelerations are continuous: zero at ends at rest, free at ends in motion.
 ///
 /// \param path  joint path: a `motion_plan` or a vector of joint coordinates, equal neighbours
