@@ -228,7 +228,7 @@ TEST_CASE(
 }
 
 // Boost answers these arguments from a table or a special case, mostly by a constant. They are in
-// docs/how-to/use_with_boost.md. If this test fails with a newer Boost, update that page.
+// docs/reference/boost_functions.md. If this test fails with a newer Boost, update that page.
 TEST_CASE("Boost.Math over dual: known errors at arguments that Boost compares with a constant") {
   const auto lost = [](const D& y) { return y.epsilon() == 0; };
   const auto at = [](double x) { return D::variable(x); };

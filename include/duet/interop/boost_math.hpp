@@ -21,7 +21,7 @@
 /// Boost returns table values or special cases for some arguments, as Γ(3) = 2 and erf(0) = 0,
 /// which lose the derivative: the result is a constant. Series and Newton's method (sinc_pi,
 /// lambert_w0) stop when the value is right and higher derivatives are not. Most of Boost.Math
-/// takes dual numbers without any header of duet's; docs/how-to/use_with_boost.md lists the
+/// takes dual numbers without any header of duet's; docs/reference/boost_functions.md lists the
 /// exceptions.
 
 namespace duet::rule {

@@ -26,7 +26,7 @@
 /// Boost.Math, except Legendre's, Hermite's and Laguerre's, by recurrences; derivatives of every
 /// order by recurrences (see dual/rules/elementary.hpp), infinite ones at the ends of domains
 /// included. Names, arguments and signs are those of `<cmath>`. Orders, degrees, moduli and
-/// characteristics are plain numbers, see docs/how-to/use_with_boost.md.
+/// characteristics are plain numbers, see docs/reference/boost_functions.md.
 ///
 /// An opt-in header, as Boost's take seconds to compile.
 
