@@ -61,12 +61,12 @@ DUET_ABI_BEGIN
 
 template <class T>
 recording<T> loaded_recording(const std::string& path, const std::string& times,
-                              const euler_columns* angles) {
+                              const table_columns& columns) {
   recording<T> result;
   std::vector<table_row> rows;
   std::size_t count = 0;
   result.remark = for_each_table_row(
-      path, times, !std::is_same_v<T, double>, angles, [&](const table_row& row) {
+      path, times, !std::is_same_v<T, double>, columns, [&](const table_row& row) {
         ++count;
         if (row.issue.empty()) {
           rows.push_back(row);
@@ -88,9 +88,9 @@ recording<T> loaded_recording(const std::string& path, const std::string& times,
   return result;
 }
 template recording<double> loaded_recording(const std::string&, const std::string&,
-                                            const euler_columns*);
+                                            const table_columns&);
 template recording<screw_dual<double>> loaded_recording(const std::string&, const std::string&,
-                                                        const euler_columns*);
+                                                        const table_columns&);
 
 DUET_ABI_END
 } // namespace duet::detail

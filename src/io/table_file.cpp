@@ -141,9 +141,9 @@ void write_table(const std::string& path, const lookup_table<screw_dual<double>>
 
 template <class T>
 lookup_table<T> loaded_table(const std::string& path, const std::string& times,
-                             const euler_columns* angles) {
+                             const table_columns& columns) {
   lookup_table<T> table;
-  for_each_table_row(path, times, !std::is_same_v<T, double>, angles, [&](const table_row& row) {
+  for_each_table_row(path, times, !std::is_same_v<T, double>, columns, [&](const table_row& row) {
     if (!row.issue.empty()) {
       raise(file_error(path, row.line, row.issue));
     }
@@ -162,9 +162,9 @@ lookup_table<T> loaded_table(const std::string& path, const std::string& times,
   return table;
 }
 template lookup_table<double> loaded_table(const std::string&, const std::string&,
-                                           const euler_columns*);
+                                           const table_columns&);
 template lookup_table<screw_dual<double>> loaded_table(const std::string&, const std::string&,
-                                                       const euler_columns*);
+                                                       const table_columns&);
 
 DUET_ABI_END
 } // namespace duet::detail

@@ -16,6 +16,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -29,26 +30,43 @@ namespace {
 // Columns by their names in a header.
 
 /// Contents of a column; `other` is ignored.
-enum class table_column : std::size_t { u, x, y, z, qw, qx, qy, qz, other };
+enum class table_column : std::size_t { u, x, y, z, qw, qx, qy, qz, nanosec, other };
 
 constexpr const char* known_columns =
-    "known columns are u (tau, t, time, timestamp), x y z (tx, px, p_x, p_RS_R_x ...) and qw qx qy "
-    "qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need `euler_columns`";
+    "known columns are u (tau, t, time, timestamp; sec and nanosec), x y z (tx, px, p_x, p_RS_R_x "
+    "...) and qw qx qy qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need "
+    "`euler_columns`";
+
+/// Characters that separate the parts of a name.
+constexpr std::string_view name_separators = "._/";
 
 /// Name in a header, with its meaning and unit.
 struct column_name {
   table_column what = table_column::other;
-  bool is_a_time = false; ///< `u` in seconds, or in a unit of time
-  bool is_of_ros = false; ///< time as `rostopic echo -p` writes it
+  bool is_a_time = false;   ///< `u` in seconds, or in a unit of time
+  bool is_of_ros = false;   ///< time as `rostopic echo -p` writes it
+  bool is_seconds = false;  ///< whole seconds, with nanoseconds in a column of their own
+  bool is_arrival = false;  ///< time at which a program received the row
+  bool is_measured = false; ///< time in the header of a message
+  bool has_prefix = false;
   std::string name;
   std::string unit; ///< as written, empty if absent
 
-  explicit column_name(std::string_view cell) {
+  /// \param prefix  removed from the name; without it, the name is read as a whole
+  explicit column_name(std::string_view cell, std::string_view prefix = {}) {
     if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') { // as spreadsheets write
       cell = cell.substr(1, cell.size() - 2);
     }
+    has_prefix = cell.starts_with(prefix);
+    if (has_prefix && !prefix.empty()) {
+      cell.remove_prefix(
+          std::min(cell.find_first_not_of(name_separators, prefix.size()), cell.size()));
+    }
     const std::size_t bracket = std::min(cell.find_first_of("[("), cell.size());
     name = lower(trimmed(cell.substr(0, bracket)));
+    std::replace_if(
+        name.begin(), name.end(),
+        [](char c) { return name_separators.find(c) != name_separators.npos; }, '_');
     if (bracket < cell.size()) {
       unit = lower(cell.substr(bracket + 1, cell.find_first_of("])", bracket) - bracket - 1));
     }
@@ -59,28 +77,41 @@ private:
   [[nodiscard]] static std::string lower(std::string_view text) {
     std::string result(trimmed(text));
     for (char& c : result) {
-      c = c == '.' ? '_' : char(std::tolower(static_cast<unsigned char>(c)));
+      c = char(std::tolower(static_cast<unsigned char>(c)));
     }
     return result;
   }
 
-  /// Column that the name denotes; also sets `is_a_time`, `is_of_ros` and `unit`.
+  /// Column that the name denotes; also sets the kind of a time and its unit.
   [[nodiscard]] table_column meaning() {
     if (name == "u" || name == "tau") {
       return table_column::u;
     }
     is_of_ros = name == "%time" || name == "field_header_stamp";
-    if (is_time(name) || is_of_ros) {
-      is_a_time = true;
+    is_arrival = name == "%time" || name == "_"
+                                            "_time"; // of rostopic and PlotJuggler
+    is_measured = name.ends_with("header_stamp");
+    is_a_time = is_time(name) || is_arrival || is_measured;
+    if (is_a_time) {
       return table_column::u;
     }
     const std::size_t cut = name.rfind('_');
-    const std::string last = cut == std::string::npos ? "" : name.substr(cut + 1);
-    if ((last == "s" || last == "ms" || last == "us" || last == "ns") &&
-        is_time(name.substr(0, cut)) && unit.empty()) {
+    const std::string last = cut == std::string::npos ? name : name.substr(cut + 1);
+    const std::string before = cut == std::string::npos ? "" : name.substr(0, cut);
+    if ((last == "s" || last == "ms" || last == "us" || last == "ns") && is_time(before) &&
+        unit.empty()) {
       unit = last; // timestamp_ns
       is_a_time = true;
       return table_column::u;
+    }
+    if (unit.empty() && (name == last || is_time(before) || before.ends_with("_stamp"))) {
+      is_seconds = last == "sec" || last == "secs";
+      is_a_time = is_seconds || last == "nanosec" || last == "nanosecs" || last == "nsec" ||
+                  last == "nsecs";
+      is_measured = before.ends_with("header_stamp");
+      if (is_a_time) {
+        return is_seconds ? table_column::u : table_column::nanosec;
+      }
     }
     const std::string_view axes = "wxyz";
     const std::size_t axis = name.empty() ? axes.npos : axes.find(name.back());
@@ -106,53 +137,146 @@ private:
   }
 };
 
-/// Columns of the eight numbers of a row: u, x y z, qw qx qy qz; or of seven, with three Euler
-/// angles instead of the last four.
+/// Columns of the eight numbers of a row: u, x y z, qw qx qy qz, and of the nanoseconds beside u;
+/// with Euler angles, three of them instead of the quaternion.
 struct table_layout {
   static constexpr std::size_t absent = std::size_t(-1);
+  static constexpr std::size_t nanosec = std::size_t(table_column::nanosec);
 
-  std::array<std::size_t, 8> at;
-  std::array<std::string, 8> names; ///< names as in the header
+  std::array<std::size_t, 9> at;
+  std::array<std::string, 9> names; ///< names as in the header
   std::size_t columns = 0;
-  std::array<std::string, 8> units;
+  std::array<std::string, 9> units;
   bool has_time = false;   ///< true if the parameter is a time
+  bool is_seconds = false; ///< true for whole seconds, with nanoseconds in a column of their own
   bool is_euroc = false;   ///< true if named as in the files of the EuRoC data set
   bool is_of_ros = false;  ///< true if the time is as `rostopic echo -p` writes it
   bool has_angles = false; ///< true for Euler angles instead of a quaternion
+  std::string prefix;      ///< detected before the names of the columns, or empty
 
   table_layout() { at.fill(absent); }
 
-  /// Reads a header.
+  /// Reads a header. Without a stated prefix, and if columns are missing, it detects one.
   ///
   /// \param has_position  true if the rows must have positions
-  /// \param angles        columns of Euler angles; null: rotations are quaternions
   /// \return problem with the header, empty if valid
   [[nodiscard]] std::string read(const std::vector<std::string_view>& header, bool has_position,
-                                 const euler_columns* angles) {
-    columns = header.size();
-    has_angles = angles != nullptr;
-    for (std::size_t i = 0; i < columns; ++i) {
-      const column_name cell(header[i]);
-      const std::size_t k = has_angles ? angle_column(*angles, cell) : std::size_t(cell.what);
-      if (k == std::size_t(table_column::other)) {
-        continue;
-      }
-      // ROS writes two times: the second, in the header of the message, is that of the measurement.
-      const bool is_better_time = names[k] == "%time" && cell.name == "field_header_stamp";
-      if (at[k] != absent && !is_better_time) {
-        return "the header has both '" + names[k] + "' and '" + std::string(header[i]) + "'";
-      }
-      at[k] = i;
-      names[k] = header[i];
-      units[k] = cell.unit;
-      has_time = has_time || cell.is_a_time;
-      is_euroc = is_euroc || cell.name.starts_with("p_rs_");
-      is_of_ros = is_of_ros || cell.is_of_ros;
+                                 const table_columns& stated) {
+    std::string problem = read_below(stated.prefix, header, has_position, stated);
+    if (problem.empty() || !stated.prefix.empty()) {
+      return problem;
     }
-    return missing(has_position, angles);
+    std::vector<table_layout> found;
+    for (const std::string& each : prefixes(header, stated)) {
+      table_layout layout;
+      if (layout.read_below(each, header, has_position, stated).empty() &&
+          std::none_of(found.begin(), found.end(),
+                       [&](const table_layout& other) { return other.at == layout.at; })) {
+        layout.prefix = each;
+        found.push_back(layout);
+      }
+    }
+    if (found.size() > 1) {
+      return "the header has the columns of '" + found[0].prefix + "' and of '" + found[1].prefix +
+             "' (expected one of them as `table_columns::prefix`)";
+    }
+    if (found.size() == 1 && !is_repeated) {
+      *this = found[0];
+      return {};
+    }
+    return problem;
+  }
+
+  /// Contradiction of the names of a header in the file with this stated layout, or an empty text.
+  [[nodiscard]] std::string contradiction(const std::vector<std::string_view>& header,
+                                          std::string_view below) const {
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      const table_column what = column_name(header[i], below).what;
+      const std::size_t k = std::size_t(what);
+      if (what != table_column::other && (!has_angles || k < 4) && at[k] != absent && at[k] != i) {
+        return "the file names column " + std::to_string(i + 1) + " '" + std::string(header[i]) +
+               "', but the stated header has '" + names[k] + "' in column " +
+               std::to_string(at[k] + 1);
+      }
+    }
+    return {};
   }
 
 private:
+  bool is_repeated = false; ///< true if two columns have the same meaning
+
+  /// Prefixes of columns that may hold the last number of a rotation.
+  [[nodiscard]] static std::vector<std::string>
+  prefixes(const std::vector<std::string_view>& header, const table_columns& stated) {
+    std::vector<std::string> result;
+    if (header.size() > 1000) {
+      return result; // a wider file needs a stated prefix, as the search is quadratic
+    }
+    const std::string last = stated.angles ? column_name(stated.angles->names()[2]).name : "w";
+    for (const std::string_view cell : header) {
+      if (!column_name(cell).name.ends_with(last)) {
+        continue;
+      }
+      for (std::size_t cut = 0; (cut = cell.find_first_of(name_separators, cut + 1)) != cell.npos &&
+                                result.size() < 100;) {
+        const std::size_t begin = cell.front() == '"' ? 1 : 0;
+        const std::string_view part = cell.substr(begin, cut + 1 - begin);
+        if (std::find(result.begin(), result.end(), part) == result.end()) {
+          result.emplace_back(part);
+        }
+      }
+    }
+    return result;
+  }
+
+  /// Reads the columns whose names begin with a prefix; times may be without it.
+  ///
+  /// \return problem with the header, empty if valid
+  [[nodiscard]] std::string read_below(std::string_view below,
+                                       const std::vector<std::string_view>& header,
+                                       bool has_position, const table_columns& stated) {
+    columns = header.size();
+    has_angles = stated.angles.has_value();
+    bool has_arrival = false, has_measured = false;
+    for (const bool is_inside : {true, false}) {
+      if (!is_inside && at[0] != absent) {
+        break; // the time has the prefix, too
+      }
+      for (std::size_t i = 0; i < columns; ++i) {
+        const column_name cell(header[i], below);
+        const std::size_t k =
+            stated.angles ? angle_column(*stated.angles, cell) : std::size_t(cell.what);
+        const bool is_parameter = k == 0 || k == nanosec;
+        if (k == std::size_t(table_column::other) || cell.has_prefix != is_inside ||
+            (!is_inside && !is_parameter)) {
+          continue;
+        }
+        // Messages of ROS have two times: that in their header is the time of the measurement.
+        if (has_measured && cell.is_arrival) {
+          continue;
+        }
+        if (has_arrival && cell.is_measured) {
+          at[0] = absent;
+        } else if (at[k] != absent) {
+          is_repeated = true;
+          return "the header has both '" + names[k] + "' and '" + std::string(header[i]) + "'";
+        }
+        has_arrival = cell.is_arrival || (has_arrival && !is_parameter);
+        has_measured = has_measured || cell.is_measured;
+        at[k] = i;
+        names[k] = header[i];
+        units[k] = cell.unit;
+        is_euroc = is_euroc || cell.name.starts_with("p_rs_");
+        if (k == 0) {
+          has_time = cell.is_a_time;
+          is_seconds = cell.is_seconds;
+          is_of_ros = cell.is_of_ros;
+        }
+      }
+    }
+    return missing(has_position, stated);
+  }
+
   /// Index of a column of angles, which take the positions of the first three numbers of a
   /// quaternion.
   [[nodiscard]] static std::size_t angle_column(const euler_columns& angles,
@@ -162,7 +286,8 @@ private:
         return std::size_t(table_column::qw) + k;
       }
     }
-    return std::size_t(cell.what < table_column::qw ? cell.what : table_column::other);
+    const bool is_of_quaternion = cell.what >= table_column::qw && cell.what <= table_column::qz;
+    return std::size_t(is_of_quaternion ? table_column::other : cell.what);
   }
 
   [[nodiscard]] static bool is_unit_of(const euler_columns& angles, const std::string& unit) {
@@ -173,11 +298,16 @@ private:
   }
 
   /// Problem with the header: missing columns, or units of angles other than the given one.
-  [[nodiscard]] std::string missing(bool has_position, const euler_columns* angles) const {
+  [[nodiscard]] std::string missing(bool has_position, const table_columns& stated) const {
+    const std::optional<euler_columns>& angles = stated.angles;
+    if (is_seconds != (at[nanosec] != absent)) {
+      return "the header has '" + names[is_seconds ? 0 : nanosec] + "', but names no column " +
+             (is_seconds ? "nanosec" : "sec");
+    }
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < (has_angles ? 7 : 8); ++k) {
       if (at[k] == absent && (k == 0 || k >= 4 || has_position)) {
-        const std::string name = has_angles && k >= 4 ? angles->names()[k - 4] : short_names[k];
+        const std::string name = angles && k >= 4 ? angles->names()[k - 4] : short_names[k];
         return "the header names no column " + name + ": " + known_columns;
       }
       if (has_angles && k >= 4 && !is_unit_of(*angles, units[k])) {
@@ -192,24 +322,26 @@ private:
 /// Comment before the first row that seems to name the columns.
 class commented_header {
 public:
-  void inspect(std::size_t line, std::string_view comment, const euler_columns* angles) {
+  void inspect(std::size_t line, std::string_view comment, const table_columns& stated) {
     std::vector<std::string_view> cells;
     split_cells(comment, cells);
     if (cells.size() > 1 && cells[0].ends_with(':')) { // `columns: t x y z ...`
       cells.erase(cells.begin());
     }
-    std::array<bool, 9> has{};
+    std::array<bool, 10> has{};
     for (const std::string_view cell : cells) {
-      has[std::size_t(column_name(cell).what)] = true;
+      has[std::size_t(column_name(cell, stated.prefix).what)] = true;
     }
     const auto has_angle = [&](const std::string& name) {
       return std::any_of(cells.begin(), cells.end(), [&](std::string_view cell) {
-        return column_name(cell).name == column_name(name).name;
+        return column_name(cell, stated.prefix).name == column_name(name).name;
       });
     };
     const bool has_rotation =
-        angles == nullptr ? has[4] && has[5] && has[6] && has[7]
-                          : std::all_of(angles->names().begin(), angles->names().end(), has_angle);
+        (!stated.angles ? has[4] && has[5] && has[6] && has[7]
+                        : std::all_of(stated.angles->names().begin(), stated.angles->names().end(),
+                                      has_angle)) ||
+        table_layout().read(cells, false, stated).empty();
     if (has_rotation ||
         (!is_certain_ && cells.size() > 1 && column_name(cells[0]).what == table_column::u)) {
       line_ = line;
@@ -224,13 +356,13 @@ public:
   ///
   /// \throws file_error if it is ambiguous
   [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
-                                                   bool has_position, const euler_columns* angles,
+                                                   bool has_position, const table_columns& stated,
                                                    const std::optional<table_layout>& usual) const {
     table_layout result;
     std::string problem;
     if (cells_.size() == columns) {
       const std::vector<std::string_view> header(cells_.begin(), cells_.end());
-      problem = result.read(header, has_position, angles);
+      problem = result.read(header, has_position, stated);
       if (problem.empty()) {
         return result;
       }
@@ -238,10 +370,20 @@ public:
       problem = "the comment names " + std::to_string(cells_.size()) +
                 " columns, but the rows have " + std::to_string(columns);
     }
-    if (problem.empty() || (usual && angles == nullptr && agrees_with(*usual))) {
+    if (problem.empty() || (usual && !stated.angles && agrees_with(*usual))) {
       return std::nullopt;
     }
     raise(file_error(path, line_, problem));
+  }
+
+  /// \throws file_error if the comment names the columns in another order than a stated header
+  void require_agreement(const std::string& path, const table_layout& stated,
+                         std::string_view prefix) const {
+    const std::vector<std::string_view> header(cells_.begin(), cells_.end());
+    if (const std::string problem = stated.contradiction(header, prefix);
+        is_certain_ && header.size() == stated.columns && !problem.empty()) {
+      raise(file_error(path, line_, problem));
+    }
   }
 
   /// Remark on a comment that could be a header of this number of columns, but is not; empty
@@ -362,12 +504,19 @@ class table_row_reader {
 public:
   /// \param times_path    file of times, empty if times are in the rows
   /// \param has_position  true if rows must have positions
-  /// \param angles        columns of Euler angles; null: rotations are quaternions
-  /// \throws file_error for an invalid file of times
+  /// \throws file_error for an invalid file of times, and for a stated header without all columns
   table_row_reader(std::string path, std::string times_path, bool has_position,
-                   const euler_columns* angles)
+                   table_columns columns)
       : path_(std::move(path)), times_path_(std::move(times_path)), has_position_(has_position),
-        angles_(angles) {
+        columns_(std::move(columns)) {
+    split_cells(columns_.header, cells_);
+    if (!cells_.empty()) {
+      stated_.emplace();
+      if (const std::string problem = stated_->read(cells_, has_position_, columns_);
+          !problem.empty()) {
+        raise(file_error(path_, "stated columns: " + problem));
+      }
+    }
     if (!times_path_.empty()) {
       read_times();
     }
@@ -381,14 +530,15 @@ public:
     const bool is_begin = !format_ && !header_;
     if (parts.text.empty()) {
       if (is_begin) {
-        comment_.inspect(line, parts.comment, angles_);
+        comment_.inspect(line, parts.comment, columns_);
       }
       return std::nullopt;
     }
     split_cells(parts.text, cells_);
     if (is_begin && are_words(cells_)) {
-      header_.emplace();
-      if (const std::string problem = header_->read(cells_, has_position_, angles_);
+      header_ = stated_ ? *stated_ : table_layout();
+      if (const std::string problem = stated_ ? stated_->contradiction(cells_, columns_.prefix)
+                                              : header_->read(cells_, has_position_, columns_);
           !problem.empty()) {
         fail(line, problem);
       }
@@ -490,8 +640,8 @@ private:
     table_layout result;
     static_cast<void>(
         has_commas
-            ? result.read({"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"}, true, nullptr)
-            : result.read({"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"}, true, nullptr));
+            ? result.read({"timestamp", "x", "y", "z", "qw", "qx", "qy", "qz"}, true, {})
+            : result.read({"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"}, true, {}));
     return result;
   }
 
@@ -526,7 +676,7 @@ private:
     row_format result;
     result.layout = header;
     const std::string& unit = header.units[0];
-    if (header.has_time && unit.empty()) {
+    if (header.has_time && !header.is_seconds && unit.empty()) {
       const std::string_view first = header.at[0] < cells_.size() ? cells_[header.at[0]] : "";
       const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
       const guessed_time_unit guess =
@@ -538,12 +688,16 @@ private:
                         : is_of_ros     ? header.names[0] + " as rostopic writes it, in nanoseconds"
                                         : "timestamps of this size are taken for " + guess.name;
       }
-    } else if (header.has_time) {
+    } else if (header.has_time && !header.is_seconds) {
       result.digits = digits_of_time_unit(path_, line, unit);
       if (result.digits > 0) {
         result.remark =
             std::string(header.is_euroc ? "a EuRoC file: " : "") + "timestamps in " + unit;
       }
+    }
+    if (!header.prefix.empty()) {
+      result.remark = "columns of '" + header.prefix + "'" +
+                      (result.remark.empty() ? "" : "; " + result.remark);
     }
     for (std::size_t k = 1; has_position_ && k < 4; ++k) {
       if (!header.units[k].empty() && header.units[k] != "m") {
@@ -554,11 +708,14 @@ private:
   }
 
   void choose_format(std::size_t line, bool has_commas) {
-    if (!header_) {
+    if (!header_ && stated_) {
+      comment_.require_agreement(path_, *stated_, columns_.prefix);
+      header_ = stated_;
+    } else if (!header_) {
       header_ =
-          comment_.layout(path_, cells_.size(), has_position_, angles_, usual_layout(has_commas));
+          comment_.layout(path_, cells_.size(), has_position_, columns_, usual_layout(has_commas));
     }
-    if (!header_ && angles_ != nullptr) {
+    if (!header_ && columns_.angles) {
       fail(line, "there is no header before the first row (expected names of the columns of "
                  "angles)");
     }
@@ -573,8 +730,8 @@ private:
 
   void read_columns(table_row& row) const {
     const table_layout& layout = format_->layout;
-    std::array<double, 8> x{};
-    for (std::size_t k = 0; k < 8; ++k) {
+    std::array<double, 9> x{};
+    for (std::size_t k = 0; k < 9; ++k) {
       if (layout.at[k] != table_layout::absent) {
         note(row, read_cell(path_, row.line, layout.names[k], cells_[layout.at[k]], x[k]));
       }
@@ -582,7 +739,7 @@ private:
     if (!row.issue.empty()) {
       return;
     }
-    const quaternion<double> q = layout.has_angles ? angles_->rotation({x[4], x[5], x[6]})
+    const quaternion<double> q = layout.has_angles ? columns_.angles->rotation({x[4], x[5], x[6]})
                                                    : quaternion<double>(x[4], x[5], x[6], x[7]);
     if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
       row.issue = "the quaternion of " + layout.names[4] + ", " + layout.names[5] + ", " +
@@ -590,10 +747,31 @@ private:
                   ", not 1";
       return;
     }
-    require_integer(path_, row.line, layout.names[0], x[0], format_->guessed_unit);
-    row.time = file_time(cells_[layout.at[0]], format_->digits);
+    if (layout.is_seconds) {
+      read_seconds(row, x[0], x[8]);
+    } else {
+      require_integer(path_, row.line, layout.names[0], x[0], format_->guessed_unit);
+      row.time = file_time(cells_[layout.at[0]], format_->digits);
+    }
     row.position = {x[1], x[2], x[3]};
     row.rotation = unit_of_file(q);
+  }
+
+  /// Time of two columns, added as integers.
+  void read_seconds(table_row& row, double seconds, double nanoseconds) const {
+    const auto require_between = [&](std::size_t k, double x, double least, double most) {
+      if (x != std::floor(x) || x < least || x > most) {
+        note(row, format_->layout.names[k] + " is " + std::string(cells_[format_->layout.at[k]]) +
+                      " (expected an integer from " + to_text(least) + " to " + to_text(most) +
+                      ")");
+      }
+    };
+    require_between(0, seconds, -9e9, 9e9);
+    require_between(8, nanoseconds, 0, 999'999'999);
+    if (row.issue.empty()) {
+      row.time = file_time(
+          std::to_string(std::int64_t(seconds) * 1'000'000'000 + std::int64_t(nanoseconds)), 9);
+    }
   }
 
   void read_matrix(table_row& row) const {
@@ -625,7 +803,8 @@ private:
 
   std::string path_, times_path_;
   bool has_position_;
-  const euler_columns* angles_;
+  table_columns columns_;
+  std::optional<table_layout> stated_; ///< layout of the stated header, if there is one
   std::vector<time_row> times_;
   std::string times_remark_;
   std::optional<table_layout> header_;
@@ -659,9 +838,9 @@ file_time::file_time(std::string_view cell, std::size_t digits) {
 }
 
 std::string for_each_table_row(const std::string& path, const std::string& times_path,
-                               bool has_position, const euler_columns* angles,
+                               bool has_position, const table_columns& columns,
                                const std::function<void(const table_row&)>& row) {
-  table_row_reader reader(path, times_path, has_position, angles);
+  table_row_reader reader(path, times_path, has_position, columns);
   for_each_line(path, [&](std::size_t line, std::string_view text) {
     if (const std::optional<table_row> r = reader.read(line, text)) {
       row(*r);

@@ -71,7 +71,7 @@ template <class T>
 /// \return assumptions about the format, empty if there were none
 /// \throws file_error as `table_row_reader`
 std::string for_each_table_row(const std::string& path, const std::string& times_path,
-                               bool has_position, const euler_columns* angles,
+                               bool has_position, const table_columns& columns,
                                const std::function<void(const table_row&)>& row);
 
 DUET_ABI_END

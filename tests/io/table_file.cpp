@@ -38,8 +38,9 @@ using poses = duet::lookup_table<screw>;
 
 /// What messages about headers end with.
 const std::string known_columns =
-    "known columns are u (tau, t, time, timestamp), x y z (tx, px, p_x, p_RS_R_x ...) and qw qx qy "
-    "qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need `euler_columns`";
+    "known columns are u (tau, t, time, timestamp; sec and nanosec), x y z (tx, px, p_x, p_RS_R_x "
+    "...) and qw qx qy qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need "
+    "`euler_columns`";
 
 /// Temporary file that is removed at the end.
 class scratch_file {

@@ -252,6 +252,7 @@ TEST_CASE("default-initialized aggregates have the documented default values") {
   DUET_CHECK(motion<dual<double, 1, screw_tag>>);
   DUET_CHECK(printed_derivatives<double>);
   DUET_CHECK(recording_issue);
+  DUET_CHECK(table_columns);
   DUET_CHECK(recording<double>);
   DUET_CHECK(lane_mask<double, 4>);
 #undef DUET_CHECK

@@ -56,11 +56,11 @@ DUET_ABI_BEGIN
 /// \throws as `load_recording`
 template <class T>
 [[nodiscard]] recording<T> loaded_recording(const std::string& path, const std::string& times,
-                                            const euler_columns* angles);
+                                            const table_columns& columns);
 extern template recording<double> loaded_recording(const std::string&, const std::string&,
-                                                   const euler_columns*);
+                                                   const table_columns&);
 extern template recording<screw_dual<double>>
-loaded_recording(const std::string&, const std::string&, const euler_columns*);
+loaded_recording(const std::string&, const std::string&, const table_columns&);
 
 DUET_ABI_END
 } // namespace duet::detail
@@ -82,7 +82,16 @@ DUET_ABI_BEGIN
 template <class T>
 [[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,
                                                                    const std::string& times = {}) {
-  return detail::loaded_recording<detail::table_numbers_t<T>>(path, times, nullptr);
+  return detail::loaded_recording<detail::table_numbers_t<T>>(path, times, {});
+}
+
+/// Reads a recording whose columns are stated, as `load_table` with `table_columns`.
+///
+/// \return `recording<double>` or `recording<screw_dual<double>>`
+template <class T>
+[[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,
+                                                                   const table_columns& columns) {
+  return detail::loaded_recording<detail::table_numbers_t<T>>(path, {}, columns);
 }
 
 /// Reads a recording whose rotations are Euler angles, in the given columns, sequence and unit.
@@ -92,7 +101,7 @@ template <class T>
 template <class T>
 [[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,
                                                                    const euler_columns& angles) {
-  return detail::loaded_recording<detail::table_numbers_t<T>>(path, {}, &angles);
+  return detail::loaded_recording<detail::table_numbers_t<T>>(path, {}, {.angles = angles});
 }
 
 template <class T = void, class... More>

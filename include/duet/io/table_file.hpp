@@ -9,6 +9,7 @@
 #include <duet/spline/orientations.hpp>
 
 #include <array>
+#include <optional>
 #include <string>
 #include <type_traits>
 
@@ -22,11 +23,13 @@
 ///   seconds; integers that as seconds would be later than the year 5000 are read as milliseconds
 ///   (from 1e11 on), microseconds (1e14) or nanoseconds (1e17). Times of rostopic (%time, or
 ///   field.header.stamp if present) are nanoseconds if they are integers, seconds if they have a
-///   decimal point, as it prints them. Columns u and tau are not times and are read unchanged;
+///   decimal point, as it prints them. Columns sec and nanosec (secs, nsecs, header.stamp.sec ...)
+///   hold one time together. Columns u and tau are not times and are read unchanged;
 /// - 8 numbers separated by blanks: TUM's `timestamp tx ty tz qx qy qz qw`, times by the same rule;
 /// - 8 numbers separated by commas, the first 1e17 or more: EuRoC's `timestamp,x,y,z,qw,qx,qy,qz`.
 ///   Smaller ones are rejected, as w may be first or last (likewise with semicolons instead of
 ///   commas);
+/// - a header that the program states as `table_columns`, for any order of columns;
 /// - 12 numbers: KITTI's matrix [R t], row by row; the time is the row's index from 0 on, or in a
 ///   file of times.
 
@@ -73,6 +76,20 @@ private:
   angle_unit unit_;
 };
 
+/// Columns of a file, stated by the program where the file does not name them in full.
+///
+/// Example, for rows without a header: `table_columns{.header = "t x y z qx qy qz qw"}`
+struct table_columns {
+  /// Names of all columns in their order, as a header of the file would have them; other names for
+  /// columns to ignore. Empty: names of the file.
+  std::string header = {};
+  /// Beginning of the names of one pose among several in the file, as `left.pose`; times may be
+  /// without it. Empty: detected if the names are complete for one prefix alone.
+  std::string prefix = {};
+  /// Columns of Euler angles instead of a quaternion; empty: quaternions or matrices.
+  std::optional<euler_columns> angles = {};
+};
+
 /// Tolerance for R Rᵀ = 1 of a matrix in a file, entry by entry; loose, as files are printed with
 /// few digits.
 inline constexpr double rotation_matrix_tolerance = 1e-3;
@@ -105,11 +122,11 @@ void write_table(const std::string& path, const lookup_table<screw_dual<double>>
 /// \throws as `load_table`
 template <class T>
 [[nodiscard]] lookup_table<T> loaded_table(const std::string& path, const std::string& times,
-                                           const euler_columns* angles);
+                                           const table_columns& columns);
 extern template lookup_table<double> loaded_table(const std::string&, const std::string&,
-                                                  const euler_columns*);
+                                                  const table_columns&);
 extern template lookup_table<screw_dual<double>>
-loaded_table(const std::string&, const std::string&, const euler_columns*);
+loaded_table(const std::string&, const std::string&, const table_columns&);
 
 DUET_ABI_END
 } // namespace duet::detail
@@ -159,7 +176,19 @@ void save_table(const std::string& path, const lookup_table<T>& table,
 template <class T>
 [[nodiscard]] lookup_table<detail::table_numbers_t<T>> load_table(const std::string& path,
                                                                   const std::string& times = {}) {
-  return detail::loaded_table<detail::table_numbers_t<T>>(path, times, nullptr);
+  return detail::loaded_table<detail::table_numbers_t<T>>(path, times, {});
+}
+
+/// Reads a lookup table whose columns are stated: by a header for a file without one, a prefix of
+/// their names, or Euler angles. Otherwise as above.
+///
+/// \return `lookup_table<double>` or `lookup_table<screw_dual<double>>`
+/// \throws file_error as above, for a stated header without all columns, and for one with another
+/// order than the names in the file
+template <class T>
+[[nodiscard]] lookup_table<detail::table_numbers_t<T>> load_table(const std::string& path,
+                                                                  const table_columns& columns) {
+  return detail::loaded_table<detail::table_numbers_t<T>>(path, {}, columns);
 }
 
 /// Reads a lookup table whose rotations are Euler angles, in the given columns, sequence and unit.
@@ -169,7 +198,7 @@ template <class T>
 template <class T>
 [[nodiscard]] lookup_table<detail::table_numbers_t<T>> load_table(const std::string& path,
                                                                   const euler_columns& angles) {
-  return detail::loaded_table<detail::table_numbers_t<T>>(path, {}, &angles);
+  return detail::loaded_table<detail::table_numbers_t<T>>(path, {}, {.angles = angles});
 }
 
 template <class T = void, class... More>
