@@ -1,7 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
+#include "support/random.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/dual_quaternion/pose.hpp>
+#include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
@@ -9,9 +14,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <tuple>
+#include <type_traits>
+#include <vector>
 
 // Jacobians, gradients and Hessians of functions of rotations, against closed forms.
 
@@ -172,6 +181,130 @@ TEST_CASE("jacobian in a frame: a vector of run-time size takes several passes")
   CHECK(gradient(product, two, body).gradient == Eigen::Vector2d(9, 12));
   CHECK(hessian(product, two, body).hessian == (Eigen::Matrix2d() << 0, 6, 6, 4).finished());
   CHECK_THROWS_AS((void)jacobian(rotated, Eigen::VectorXd(), body), duet::invalid_input);
+}
+
+TEST_CASE("jacobian in a frame: std::vectors of rotations and poses as arrays of known size") {
+  using pose = duet::dual_quaternion<double>;
+  duet_test::random_source random(11);
+  const auto vector_of = [&]() -> vector {
+    return {random.normal(), random.normal(), random.normal()};
+  };
+  // A closed polygon of poses: every result depends on two neighbours.
+  const auto steps = [](const auto& x) {
+    using element = std::decay_t<decltype(conj(x[0]) * x[1])>;
+    std::vector<element> y;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      y.push_back(conj(x[i]) * x[(i + 1) % x.size()]);
+    }
+    return y;
+  };
+  const auto check = [&](const auto& known) {
+    const std::vector<typename std::decay_t<decltype(known)>::value_type> x(known.begin(),
+                                                                            known.end());
+    const auto check_frame = [&](auto frame) {
+      const auto [y, J] = jacobian(steps, x, frame);
+      const auto array_of_steps = [&](const auto& at) {
+        auto z = at;
+        for (std::size_t i = 0; i < at.size(); ++i) {
+          z[i] = conj(at[i]) * at[(i + 1) % at.size()];
+        }
+        return z;
+      };
+      const auto [z, K] = jacobian(array_of_steps, known, frame);
+      CHECK(std::equal(y.begin(), y.end(), z.begin(), z.end()));
+      REQUIRE(J.rows() == K.rows());
+      REQUIRE(J.cols() == K.cols());
+      CHECK(max_abs_difference(J, K) < 1e-14);
+      // A function of three rotations.
+      const auto scalar = [&](const auto& at) {
+        const auto step = conj(at[0]) * at[1];
+        return step.x() * step.x() + step.w() + at[2].w() * at[0].x();
+      };
+      if constexpr (std::is_same_v<std::decay_t<decltype(x[0])>, quaternion>) {
+        CHECK(max_abs_difference(gradient(scalar, x, frame).gradient,
+                                 gradient(scalar, known, frame).gradient) < 1e-14);
+        CHECK(max_abs_difference(hessian(scalar, x, frame).hessian,
+                                 hessian(scalar, known, frame).hessian) < 1e-14);
+      }
+    };
+    check_frame(spatial);
+    check_frame(body);
+    check_frame(duet::frame::hybrid);
+  };
+  std::array<quaternion, 7> rotations{quaternion(1), quaternion(0, 1, 0, 0)};
+  std::array<pose, 7> poses{pose(1)};
+  for (std::size_t i = 2; i < 7; ++i) {
+    rotations[i] = duet::from_rotation_vector(vector_of());
+    poses[i] = duet::pose(rotations[i], vector_of());
+  }
+  poses[1] = duet::pose(quaternion(0, 0, 1, 0), vector(0, 0, 0));
+  check(rotations);
+  check(poses);
+  // Closed form in body axes: ∂ (a⁻¹ b) / ∂a = −Ad((a⁻¹ b)⁻¹), ∂ / ∂b = 1.
+  const auto J = jacobian(steps, std::vector<pose>{poses[2], poses[3]}, body).jacobian;
+  CHECK(max_abs_difference(J.block<6, 6>(0, 0), -duet::Ad(conj(poses[3]) * poses[2])) < 1e-14);
+  CHECK(max_abs_difference(J.block<6, 6>(0, 6), Eigen::Matrix<double, 6, 6>::Identity()) < 1e-15);
+  // One element, and none.
+  const auto first = [](const auto& x) { return x[0]; };
+  CHECK(max_abs_difference(jacobian(first, std::vector{q}, body).jacobian, matrix::Identity()) <
+        1e-15);
+  CHECK(duet_test::message_of([&] { (void)jacobian(steps, std::vector<pose>(), body); }) ==
+        "duet: jacobian: the function has no variables");
+  CHECK(duet_test::message_of([&] {
+          (void)hessian([](const auto& x) { return x[0].w(); }, std::vector<quaternion>(), body);
+        }) == "duet: hessian: the function has no variables");
+}
+
+TEST_CASE("jacobian in a frame: tuples of rotations and vectors of run-time size") {
+  // f(R, l, a) = (R Σ l_i a_i, R): blocks of R in its 3 columns, then of l, then of a.
+  const auto f = [](const auto& x, const auto& lengths, const auto& directions) {
+    auto sum = (lengths[0] * directions[0]).eval();
+    for (std::size_t i = 1; i < directions.size(); ++i) {
+      sum += lengths[Eigen::Index(i)] * directions[i];
+    }
+    return std::tuple(duet::rotate(x, sum), x);
+  };
+  for (const int n : {1, 2, 9}) {
+    Eigen::VectorXd lengths(n);
+    std::vector<vector> directions;
+    vector sum(0, 0, 0);
+    for (int i = 0; i < n; ++i) {
+      lengths[i] = 0.5 * i - 1;
+      directions.emplace_back(i, 1 - i, i * i);
+      sum += lengths[i] * directions.back();
+    }
+    for (const quaternion& at : {q, quaternion(1), quaternion(0, 0, 0, 1)}) {
+      const auto J = jacobian(f, std::tuple(at, lengths, directions), body).jacobian;
+      const matrix R = rotation_matrix(at);
+      REQUIRE(J.rows() == 6);
+      REQUIRE(J.cols() == 3 + 4 * n);
+      CHECK(max_abs_difference(J.topLeftCorner(3, 3), -R * hat(sum)) < 2e-14 * (1 + sum.norm()));
+      CHECK(max_abs_difference(J.bottomLeftCorner(3, 3), matrix::Identity()) < 1e-15);
+      CHECK(J.bottomRightCorner(3, 4 * n).isZero(0));
+      for (int i = 0; i < n; ++i) {
+        const auto k = std::size_t(i);
+        CHECK(max_abs_difference(J.block(0, 3 + i, 3, 1), R * directions[k]) < 1e-13);
+        CHECK(max_abs_difference(J.block(0, 3 + n + 3 * i, 3, 3), lengths[i] * R) < 1e-14);
+      }
+    }
+  }
+  // Two vectors of run-time size, one of integers, inside another differentiation.
+  const auto product = [](const auto& x, const auto& y) { return x[0] * y[0] * y[1]; };
+  const auto slope = [&](const auto& t) {
+    using T = std::decay_t<decltype(t)>;
+    Eigen::VectorX<T> x(1);
+    x[0] = t * t;
+    return gradient(product, std::tuple(x, std::vector<int>{3, 5}), body).gradient;
+  };
+  const auto [g, rate] = duet::derivative(slope, 2.0);
+  CHECK(g == vector(15, 20, 12));
+  CHECK(rate == vector(0, 20, 12));
+  const auto H = hessian(product,
+                         std::tuple(Eigen::VectorXd(Eigen::VectorXd::Constant(1, 4)),
+                                    std::vector<double>{3, 5}),
+                         spatial)
+                     .hessian;
+  CHECK(H == (matrix() << 0, 5, 3, 5, 0, 4, 3, 4, 0).finished());
 }
 
 TEST_CASE("gradient and hessian in a frame: squared distance of rotations") {

@@ -169,6 +169,7 @@ template <int N, class R>
 template <class F, class X, class P>
 class newton {
   static constexpr int n = manifold<X>::dimension;
+  static_assert(n > 0, "duet: an unknown vector needs a size known at compile time");
   using tag = derivative_tag<newton>;
 
 public:

@@ -25,7 +25,7 @@ namespace duet {
 
 /// Tangent space of an X: the coordinates of its perturbations and rates.
 ///
-/// - `dimension`: their number, `Eigen::Dynamic` if known only at run time
+/// - `dimension`: their number, `Eigen::Dynamic` if known only at run time, then `size(x)`
 /// - `scalar`: the scalar of an X
 /// - `plus(x, δ, frame)`: x moved by the tangent vector δ, whose scalar may be any
 /// - `velocity(x, ẋ, frame)`: the tangent vector of the rate ẋ, an Eigen column
@@ -35,6 +35,37 @@ namespace duet {
 /// specialised separately, so that Newton's method and Jacobians never see redundant coordinates.
 template <class X>
 struct manifold;
+
+namespace detail {
+
+/// Number of tangent coordinates of x.
+template <class X>
+[[nodiscard]] constexpr Eigen::Index tangent_dimension(const X& x) {
+  if constexpr (manifold<X>::dimension == Eigen::Dynamic) {
+    return manifold<X>::size(x);
+  } else {
+    return manifold<X>::dimension;
+  }
+}
+
+/// Part x of an object moved by its coordinates in δ, which begin at `first`; advances `first`.
+template <class X, class Delta, class Frame>
+[[nodiscard]] auto moved_part(const X& x, const Delta& delta, Frame frame, Eigen::Index& first) {
+  const Eigen::Index size = tangent_dimension(x);
+  const Eigen::Index begin = std::exchange(first, first + size);
+  return manifold<X>::plus(x, delta.template segment<manifold<X>::dimension>(begin, size), frame);
+}
+
+/// Writes the velocity of a part of an object into `result` from `first` on; advances `first`.
+template <class X, class Frame, class Result>
+void write_velocity(const X& x, const X& rate, Frame frame, Result& result, Eigen::Index& first) {
+  const auto velocity = manifold<X>::velocity(x, rate, frame);
+  constexpr int size = std::decay_t<decltype(velocity)>::SizeAtCompileTime;
+  result.template segment<size>(std::exchange(first, first + velocity.size()), velocity.size()) =
+      velocity.template cast<typename Result::Scalar>();
+}
+
+} // namespace detail
 
 template <class X>
   requires(Scalar<X> || Arithmetic<X>)
@@ -56,12 +87,13 @@ template <class X>
 struct manifold<X> {
   static constexpr int dimension = X::SizeAtCompileTime;
   using scalar = detail::differentiable_t<typename X::Scalar>;
+  [[nodiscard]] static Eigen::Index size(const X& x) { return x.size(); }
   template <class Delta, class Frame = spatial_frame>
   [[nodiscard]] static auto plus(const X& x, const Delta& delta, Frame = {}) {
-    static_assert(dimension > 0, "duet: an unknown vector needs a size known at compile time");
     using S = std::decay_t<decltype(x.coeff(0) + delta[0])>;
     Eigen::Matrix<S, X::RowsAtCompileTime, X::ColsAtCompileTime> y;
-    for (int i = 0; i < dimension; ++i) {
+    y.resize(x.rows(), x.cols());
+    for (Eigen::Index i = 0; i < x.size(); ++i) {
       y(i) = x(i) + delta[i];
     }
     return y;
@@ -77,49 +109,66 @@ struct manifold<X> {
   }
 };
 
-/// Not moved as a whole, but in passes over the components.
-template <class X>
-  requires(Scalar<X> || Arithmetic<X>)
-struct manifold<std::vector<X>> {
-  static constexpr int dimension = Eigen::Dynamic;
-  using scalar = detail::differentiable_t<X>;
+namespace detail {
+
+/// Functions that arrays and `std::vector`s share.
+template <class X, int Dimension>
+struct manifold_of_sequence {
+  static constexpr int dimension = Dimension;
+  using element = typename X::value_type;
+  using scalar = typename manifold<element>::scalar;
+  [[nodiscard]] static Eigen::Index size(const X& x) {
+    Eigen::Index sum = 0;
+    for (const element& each : x) {
+      sum += tangent_dimension(each);
+    }
+    return sum;
+  }
   template <class Frame>
-  [[nodiscard]] static Eigen::Matrix<scalar, dimension, 1>
-  velocity(const std::vector<X>&, const std::vector<X>& rate, Frame) {
-    Eigen::Matrix<scalar, dimension, 1> result(Eigen::Index(rate.size()));
-    for (std::size_t i = 0; i < rate.size(); ++i) {
-      result[Eigen::Index(i)] = rate[i];
+  [[nodiscard]] static auto velocity(const X& x, const X& rate, Frame frame) {
+    Eigen::Matrix<scalar, dimension, 1> result;
+    result.resize(tangent_dimension(x));
+    Eigen::Index first = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      write_velocity<element>(x[i], rate[i], frame, result, first);
     }
     return result;
   }
 };
 
+} // namespace detail
+
+template <class X>
+  requires requires { manifold<X>::dimension; }
+struct manifold<std::vector<X>>
+    : detail::manifold_of_sequence<std::vector<X>, int(Eigen::Dynamic)> {
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const std::vector<X>& x, const Delta& delta, Frame frame = {}) {
+    Eigen::Index first = 0;
+    std::vector<decltype(detail::moved_part(x[0], delta, frame, first))> y;
+    y.reserve(x.size());
+    for (const X& each : x) {
+      y.push_back(detail::moved_part(each, delta, frame, first));
+    }
+    return y;
+  }
+};
+
 template <class X, std::size_t N>
   requires requires { manifold<X>::dimension; }
-struct manifold<std::array<X, N>> {
-  static constexpr int dimension =
-      manifold<X>::dimension == Eigen::Dynamic ? Eigen::Dynamic : int(N) * manifold<X>::dimension;
-  using scalar = typename manifold<X>::scalar;
+struct manifold<std::array<X, N>>
+    : detail::manifold_of_sequence<std::array<X, N>, manifold<X>::dimension == Eigen::Dynamic
+                                                         ? int(Eigen::Dynamic)
+                                                         : int(N) * manifold<X>::dimension> {
   template <class Delta, class Frame = spatial_frame>
   [[nodiscard]] static auto plus(const std::array<X, N>& x, const Delta& delta, Frame frame = {}) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return std::array{
-          manifold<X>::plus(x[I], delta.template segment<part>(int(I) * part), frame)...};
-    }
-    (std::make_index_sequence<N>{});
+    Eigen::Index first = 0;
+    return std::apply(
+        [&](const auto&... each) {
+          return std::array{detail::moved_part(each, delta, frame, first)...};
+        },
+        x);
   }
-  template <class Frame>
-  [[nodiscard]] static auto velocity(const std::array<X, N>& x, const std::array<X, N>& rate,
-                                     Frame frame) {
-    Eigen::Matrix<scalar, dimension, 1> result;
-    for (std::size_t i = 0; i < N; ++i) {
-      result.template segment<part>(int(i) * part) = manifold<X>::velocity(x[i], rate[i], frame);
-    }
-    return result;
-  }
-
-private:
-  static constexpr int part = manifold<X>::dimension;
 };
 
 template <class... X>
@@ -129,42 +178,31 @@ struct manifold<std::tuple<X...>> {
                                        ? Eigen::Dynamic
                                        : (manifold<X>::dimension + ...);
   using scalar = std::common_type_t<typename manifold<X>::scalar...>;
-
+  [[nodiscard]] static Eigen::Index size(const std::tuple<X...>& x) {
+    return std::apply([](const X&... each) { return (detail::tangent_dimension(each) + ...); }, x);
+  }
   template <class Delta, class Frame = spatial_frame>
   [[nodiscard]] static auto plus(const std::tuple<X...>& x, const Delta& delta, Frame frame = {}) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return std::make_tuple(manifold<X>::plus(
-          std::get<I>(x), delta.template segment<manifold<X>::dimension>(offset<I>), frame)...);
-    }
-    (indices);
+    Eigen::Index first = 0;
+    return std::apply(
+        [&](const X&... each) { // braces, so that elements are taken in order
+          return std::tuple<decltype(detail::moved_part(each, delta, frame, first))...>{
+              detail::moved_part(each, delta, frame, first)...};
+        },
+        x);
   }
   template <class Frame>
   [[nodiscard]] static auto velocity(const std::tuple<X...>& x, const std::tuple<X...>& rate,
                                      Frame frame) {
     Eigen::Matrix<scalar, dimension, 1> result;
+    result.resize(detail::tangent_dimension(x));
+    Eigen::Index first = 0;
     [&]<std::size_t... I>(std::index_sequence<I...>) {
-      ((result.template segment<manifold<X>::dimension>(offset<I>) =
-            manifold<X>::velocity(std::get<I>(x), std::get<I>(rate), frame)
-                .template cast<scalar>()),
-       ...);
+      (detail::write_velocity<X>(std::get<I>(x), std::get<I>(rate), frame, result, first), ...);
     }
-    (indices);
+    (std::index_sequence_for<X...>{});
     return result;
   }
-
-private:
-  static constexpr auto indices = std::index_sequence_for<X...>{};
-
-  /// Index of the first coordinate of the I-th element.
-  template <std::size_t I>
-  static constexpr int offset = [] {
-    constexpr int dimensions[] = {manifold<X>::dimension...};
-    int sum = 0;
-    for (std::size_t i = 0; i < I; ++i) {
-      sum += dimensions[i];
-    }
-    return sum;
-  }();
 };
 
 } // namespace duet

@@ -23,8 +23,8 @@
 
 namespace duet {
 
-/// Variables of the drivers with a frame: scalars, vectors, arrays, rotations, poses, and tuples of
-/// them, in which vectors have a fixed size.
+/// Variables of the drivers with a frame: scalars, vectors, rotations, poses, and arrays,
+/// `std::vector`s and tuples of them.
 template <class X>
 concept ManifoldPoint = requires {
   manifold<X>::dimension;
@@ -35,42 +35,46 @@ namespace detail {
 /// The tangent coordinates of x as variables, `N` of them from `first` on.
 template <class D, int N, class X>
 [[nodiscard]] DUET_ALWAYS_INLINE Eigen::Matrix<D, manifold<X>::dimension, 1>
-tangent_seeds(int first) {
+tangent_seeds(const X& x, Eigen::Index first) {
   Eigen::Matrix<D, manifold<X>::dimension, 1> delta;
-  unrolled<manifold<X>::dimension>([&](int i) DUET_INLINE_LAMBDA {
+  const auto set = [&](Eigen::Index i) DUET_INLINE_LAMBDA {
     const bool is_variable = i >= first && i < first + N;
-    delta[i] = is_variable ? D::variable(typename D::value_type(0), i - first) : D(0);
-  });
+    delta[i] = is_variable ? D::variable(typename D::value_type(0), int(i - first)) : D(0);
+  };
+  if constexpr (manifold<X>::dimension == Eigen::Dynamic) {
+    delta.resize(tangent_dimension(x));
+    for (Eigen::Index i = 0; i < delta.size(); ++i) {
+      set(i);
+    }
+  } else {
+    unrolled<manifold<X>::dimension>(set);
+  }
   return delta;
 }
 
 template <class X>
-inline constexpr int tangents_per_pass = std::min(manifold<X>::dimension, single_pass_limit);
+inline constexpr int tangents_per_pass = manifold<X>::dimension == Eigen::Dynamic
+                                             ? chunk
+                                             : std::min(manifold<X>::dimension, single_pass_limit);
 
 /// A single vector whose number of coordinates is known only at run time.
 template <class X>
 concept RunTimeVector = VectorLike<X> && vector_argument<X>::size_at_compile_time == Eigen::Dynamic;
 
-/// Argument whose number of coordinates is known where the passes need it.
-template <class X>
-concept OfKnownDimension = ManifoldPoint<X> &&
-    (manifold<X>::dimension != Eigen::Dynamic || RunTimeVector<X>);
-
 /// Calls visit(f(x moved by variables from `first` on), first, count) for every pass over the
 /// tangent coordinates of x.
 template <class Tag, class F, class X, class Frame, class Visit>
 void for_each_tangent_pass(F&& f, const X& x, Frame frame, Visit&& visit) {
-  constexpr int size = manifold<X>::dimension;
   constexpr int n = tangents_per_pass<X>;
   using D = dual<typename manifold<X>::scalar, n, Tag>;
-  for (int first = 0; first < size; first += n) {
-    visit(result_of_call(call(f, manifold<X>::plus(x, tangent_seeds<D, n, X>(first), frame))),
-          first, std::min(n, size - first));
+  const Eigen::Index size = tangent_dimension(x);
+  for (Eigen::Index first = 0; first < size; first += n) {
+    visit(result_of_call(call(f, manifold<X>::plus(x, tangent_seeds<D, n>(x, first), frame))),
+          first, std::min<Eigen::Index>(n, size - first));
   }
 }
 template <class Tag, class F, RunTimeVector X, class Frame, class Visit>
 void for_each_tangent_pass(F&& f, const X& x, Frame, Visit&& visit) {
-  require(vector_argument<X>::size(x) > 0, "duet: jacobian: the function has no variables");
   for_each_pass<Tag>(f, x, visit); // vectors ignore the frame
 }
 
@@ -82,7 +86,7 @@ template <class Tag, class X, class Frame>
   } else {
     constexpr int n = tangents_per_pass<X>;
     using D = dual<typename manifold<X>::scalar, n, Tag>;
-    return manifold<X>::plus(x, tangent_seeds<D, n, X>(0), frame);
+    return manifold<X>::plus(x, tangent_seeds<D, n>(x, 0), frame);
   }
 }
 
@@ -95,20 +99,22 @@ concept NeedsFrame =
 /// f(x) and the Jacobian ∂y/∂x in tangent-space coordinates: column j is the velocity of y = f(x)
 /// while x moves along its j-th tangent coordinate.
 ///
-/// f may return any of the types of x too. A vector alone, as x or as result, may have a size known
-/// at run time, such as the configuration of a chain read from a file. Vectors ignore the frame.
+/// f may return any of the types of x too. Sizes may be known at run time only, such as those of
+/// the configuration of a chain from a file or of a trajectory, a `std::vector` of poses; 16
+/// coordinates then take one evaluation of f. Vectors ignore the frame.
 ///
-/// \param x      a scalar, fixed-size vector, rotation (three coordinates), pose (six), array or
-///   `std::tuple` of them, which f takes as one argument or as several
+/// \param x      a scalar, vector, rotation (three coordinates), pose (six), array, `std::vector`
+/// or
+///   `std::tuple` of them, which f takes as one argument or as several; columns in that order
 /// \param frame  axes of the tangent coordinates of rotations and poses, on both sides:
 ///   `frame::spatial`, left perturbations exp(δ/2) x, `frame::body`, right perturbations x
 ///   exp(δ/2), or `frame::hybrid`, fixed axes too, but δ = [v; ω] translates a pose's origin by v
 ///   and rotates it by ω, independently
 /// \return `value_and_jacobian`
+/// \throws invalid_input if x has no coordinates
 ///
 /// Example: `jacobian([](const auto& q) { return conj(q); }, q, frame::body)` is −R(q).
-template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
-          FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
   requires(!HasOwnJacobian<F>)
 [[nodiscard]] auto jacobian(F&& f, const X& x, Frame frame) {
   using tag = detail::tag_for<Tag, F>;
@@ -119,13 +125,8 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
   value_and_jacobian<
       value, Eigen::Matrix<typename target::scalar, target::dimension, manifold<X>::dimension>>
       result{};
-  const Eigen::Index dimension = [&]() -> Eigen::Index {
-    if constexpr (detail::RunTimeVector<X>) {
-      return detail::vector_argument<X>::size(x);
-    } else {
-      return manifold<X>::dimension;
-    }
-  }();
+  const Eigen::Index dimension = detail::tangent_dimension(x);
+  detail::require(dimension > 0, "duet: jacobian: the function has no variables");
   detail::for_each_tangent_pass<tag>(
       f, x, frame, [&](const output& y, Eigen::Index first, Eigen::Index count) {
         if (first == 0) {
@@ -161,8 +162,7 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
 /// moves by δ. Arguments as `jacobian`; f returns a scalar.
 ///
 /// \return `value_and_gradient`
-template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
-          FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto gradient(F&& f, const X& x, Frame frame) {
   auto [value, row] = jacobian<Tag>(std::forward<F>(f), x, frame);
   static_assert(Scalar<decltype(value)>, "duet: gradient needs a function that returns a scalar");
@@ -180,20 +180,18 @@ template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
 /// not along screws.
 ///
 /// \return `value_gradient_and_hessian`
-template <class Tag = void, detail::FunctionOfAny F, detail::OfKnownDimension X,
-          FrameConstant Frame>
+template <class Tag = void, detail::FunctionOfAny F, ManifoldPoint X, FrameConstant Frame>
 [[nodiscard]] auto hessian(F&& f, const X& x, Frame frame) {
   if constexpr (detail::RunTimeVector<X>) {
     return hessian<Tag>(std::forward<F>(f), x);
   } else {
-    constexpr int n = manifold<X>::dimension;
     // The tangent vector is an ordinary vector, of which f is a function.
     const auto moved = [&](const auto& delta) {
       return detail::call(f, manifold<X>::plus(x, delta, frame));
     };
-    using vector = Eigen::Matrix<typename manifold<X>::scalar, n, 1>;
+    using vector = Eigen::Matrix<typename manifold<X>::scalar, manifold<X>::dimension, 1>;
     return hessian<std::conditional_t<std::is_void_v<Tag>, std::decay_t<F>, Tag>>(
-        moved, vector(vector::Zero()));
+        moved, vector(vector::Zero(detail::tangent_dimension(x))));
   }
 }
 
@@ -202,20 +200,6 @@ template <class Tag = void, class F, class X, FrameConstant Frame>
 DUET_REFUSED("this type has no tangent coordinates; those of rotations are in "
              "<duet/quaternion/exponential.hpp>, of poses in <duet/dual_quaternion/twist.hpp>")
 value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd> jacobian(F&&, const X&, Frame);
-
-/// Message for vectors of run-time size that are not the only argument.
-#define DUET_REFUSES_RUN_TIME_SIZE(driver, ...)                                                    \
-  template <class Tag = void, class F, ManifoldPoint X, FrameConstant Frame>                       \
-    requires(!HasOwnJacobian<F> && !detail::OfKnownDimension<X>)                                   \
-  DUET_REFUSED("with a frame, a vector of run-time size must be the only argument; in tuples "     \
-               "and arrays give it a size known at compile time")                                  \
-  __VA_ARGS__                                                                                      \
-  driver(F&&, const X&, Frame);
-
-DUET_REFUSES_RUN_TIME_SIZE(jacobian, value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd>)
-DUET_REFUSES_RUN_TIME_SIZE(gradient, value_and_gradient<double, Eigen::VectorXd>)
-DUET_REFUSES_RUN_TIME_SIZE(hessian,
-                           value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>)
 
 /// Message for a rotation, pose or tuple without a frame.
 #define DUET_ASKS_FOR_FRAME(driver, ...)                                                           \
