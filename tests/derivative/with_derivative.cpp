@@ -1,5 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/message.hpp"
+#include "support/random.hpp"
+
 #include <duet/core/batch/batch.hpp>
 #include <duet/core/batch/math.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -7,15 +10,23 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/with_derivative.hpp>
 #include <duet/dual/math.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/gradient.hpp>
+#include <duet/expression/graph/formula_derivative.hpp>
+#include <duet/expression/graph/reverse.hpp>
 #include <duet/expression/graph/trace.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/text.hpp>
 
 #include <doctest/doctest.h>
 
 #include <array>
 #include <cmath>
+#include <string>
 #include <tuple>
 #include <type_traits>
+#include <vector>
 
 namespace test_derivative_with_derivative {
 
@@ -118,6 +129,92 @@ TEST_CASE("with_derivative: traces record the function, and the derivative where
   const auto slope =
       duet::expression::trace([&](const auto& x) { return derivative(f, x).derivative; }, u);
   CHECK(slope(u = 2.0) == 6);
+  CHECK(duet::derivative([&](const auto& x) { return slope(u = x); }, 2.0).derivative == 3);
+  CHECK(evaluate(duet::expression::reverse_gradient(slope, {"u"}), std::vector{2.0}) ==
+        std::vector{6.0, 3.0});
+  // The trace itself has the derivative of x², so it is not differentiated.
+  const auto traced = duet::expression::trace([&](const auto& x) { return 1 + f(x); }, u);
+  const std::string refusal = "duet: the formula has a function of with_derivative, whose given "
+                              "derivative is not recorded (trace the derivative, or use a typed "
+                              "formula)";
+  CHECK(traced(u = 2.0) == 5);
+  CHECK(duet_test::message_of([&] {
+          (void)duet::derivative([&](const auto& x) { return traced(u = x); }, 2.0);
+        }) == refusal);
+  CHECK(duet_test::message_of([&] { (void)duet::expression::reverse_gradient(traced, {"u"}); }) ==
+        refusal);
+  CHECK(duet_test::message_of([&] { (void)duet::expression::derivative(traced, "u"); }) == refusal);
+}
+
+TEST_CASE("with_derivative: typed formulas have the given derivative, of every order") {
+  using namespace duet::expression;
+  constexpr symbol<"u"> u;
+  constexpr symbol<"v"> v;
+  // 7 instead of 1, so that the derivative can come from nowhere else.
+  constexpr auto g = with_derivative([](double x) { return exponential(x); },
+                                     [](const auto& x) { return 7 * generic_exp(x); });
+  constexpr auto f = g(u * v) * u;
+  CHECK(to_text(f) == "f(u * v) * u");
+  CHECK(to_text(derivative(f, u)) == "f'(u * v) * v * u + f(u * v)");
+  CHECK(to_latex(derivative(derivative(f, u), u)) == "v^{2} u f''(u v) + 2 v f'(u v)");
+  const auto generic = [g](const auto& x) { return g(x[0] * x[1]) * x[0]; };
+  duet_test::random_source random(2);
+  for (int i = 0; i < 100; ++i) {
+    const double a = i == 0 ? 0 : random.normal(), b = i < 2 ? 0 : random.normal();
+    const auto typed = hessian(f, wrt(u, v))(u = a, v = b);
+    const auto dual = duet::hessian(generic, Eigen::Vector2d(a, b));
+    const double size = 1 + dual.hessian.norm();
+    CHECK(typed.value == dual.value);
+    CHECK((typed.gradient - dual.gradient).norm() <= 1e-14 * size);
+    CHECK((typed.hessian - dual.hessian).norm() <= 1e-14 * size);
+    CHECK(std::abs(derivative(f, u)(u = a, v = b) - dual.gradient[0]) <= 1e-14 * size);
+    CHECK(std::abs(gradient(f, wrt(v))(u = a, v = b).gradient[0] - dual.gradient[1]) <=
+          1e-14 * size);
+    // Over dual numbers, the next derivative.
+    const auto along = [&](const auto& x) { return derivative(f, u)(u = x, v = b); };
+    CHECK(std::abs(duet::derivative(along, a).derivative - dual.hessian(0, 0)) <= 1e-14 * size);
+  }
+}
+
+namespace {
+
+/// A function object with a name, whose rule for higher orders is itself.
+struct root_function {
+  static constexpr const char* name = "root";
+  double operator()(double x) const { return std::sqrt(x); }
+};
+struct root_slope {
+  auto operator()(const auto& x) const {
+    return 0.5 / with_derivative(root_function(), root_slope())(x);
+  }
+};
+
+} // namespace
+
+TEST_CASE("with_derivative: typed formulas of function objects and of several arguments") {
+  using namespace duet::expression;
+  constexpr symbol<"u"> u;
+  constexpr symbol<"v"> v;
+  constexpr auto root = with_derivative(root_function(), root_slope());
+  const auto third = derivative(derivative(derivative(root(u), u), u), u);
+  CHECK(to_text(derivative(root(u), u)) == "root'(u)");
+  CHECK(to_latex(third) == "\\operatorname{root}'''(u)");
+  CHECK(third(u = 4.0) == doctest::Approx(3.0 / 256));
+  CHECK(to_text(derivative(third, u)) == "root^(4)(u)");
+  // A rule that is with_derivative itself, of double alone.
+  constexpr auto slope = with_derivative([](double x) { return 2 * x; }, [](double) { return 2.; });
+  constexpr auto square = with_derivative([](double x) { return x * x; }, slope);
+  CHECK(derivative(derivative(square(u), u), u)(u = 3.0) == 2);
+  constexpr auto product =
+      with_derivative([](double x, double y) { return x * y; }, [](auto, auto y) { return y; },
+                      [](auto x, auto) { return x; });
+  const auto h = product(u, v * v);
+  CHECK(to_text(derivative(derivative(h, v), u)) == "2 * f^(1,1)(u, v^2) * v");
+  CHECK(to_latex(derivative(h, v)) == "2 v f^{(0,1)}\\left(u, v^{2}\\right)");
+  CHECK(derivative(h, v)(u = 3.0, v = 5.0) == 30);
+  CHECK(hessian(h, wrt(u, v))(u = 3.0, v = 5.0).hessian ==
+        (Eigen::Matrix2d() << 0, 10, 10, 6).finished());
+  CHECK(product(u, c<2>)(u = 3.0) == 6);
 }
 
 } // namespace test_derivative_with_derivative

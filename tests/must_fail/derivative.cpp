@@ -11,6 +11,10 @@
 #include <duet/derivative/sparse.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/derivative/with_derivative.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/derivative.hpp>
+#include <duet/expression/symbol.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 
@@ -470,6 +474,36 @@ int main() {
   const auto f = [](const auto& x) { return x[0] * x[1]; };
 #endif
   return duet::gradient(f, Eigen::Vector2d(1, 2)).value == 2 ? 0 : 1;
+}
+
+//// with_derivative_of_captures_in_formula
+// expect: duet: with_derivative: in a formula the function and its derivatives must be lambdas
+
+int main() {
+  constexpr duet::expression::symbol<"u"> u;
+#ifdef DUET_MUST_FAIL
+  const double scale = 2;
+  const auto f = [scale](double x) { return scale * x; };
+#else
+  const auto f = [](double x) { return 2 * x; };
+#endif
+  const auto g = duet::with_derivative(f, [](double) { return 2.0; });
+  return derivative(g(u), u)(u = 1.0) == 2 ? 0 : 1;
+}
+
+//// with_derivative_of_number_beside_formula
+// expect: duet: with_derivative: beside formulas, numbers are written as c<2> or are symbols
+
+int main() {
+  using duet::expression::c;
+  constexpr duet::expression::symbol<"u"> u;
+  const auto slope = [](double, double) { return 1.0; };
+  const auto f = duet::with_derivative([](double x, double y) { return x + y; }, slope, slope);
+#ifdef DUET_MUST_FAIL
+  return f(u, 2.0)(u = 1.0) == 3 ? 0 : 1;
+#else
+  return f(u, c<2>)(u = 1.0) == 3 ? 0 : 1;
+#endif
 }
 
 //// with_derivative_of_first_order

@@ -50,7 +50,13 @@ struct given_rule {
     if constexpr (Infinitesimal<T>) {
       return lift(*this, x, rest...);
     } else {
-      return call_as(f, x, rest...);
+      const T y = call_as(f, x, rest...);
+      if constexpr (is_recording<T>) {
+        if (!y.is_constant()) {
+          y.home()->mark_given(y.node_in(*y.home()));
+        }
+      }
+      return y;
     }
   }
   template <class T>
@@ -72,12 +78,17 @@ struct promoted {
 template <class X, class Y, class... Rest>
 struct promoted<X, Y, Rest...> : promoted<promote_t<differentiable_t<X>, Y>, Rest...> {};
 
+/// True if all objects of the type are alike, so that a formula, which is a type, can hold one.
+template <class F>
+inline constexpr bool is_stateless = std::is_empty_v<F>&& std::is_default_constructible_v<F>;
+
 } // namespace detail
 
 /// A function of one to three scalars with user-defined derivatives, as `with_derivative` returns.
 template <class F, class... Slopes>
 class function_with_derivative {
 public:
+  constexpr function_with_derivative() = default;
   constexpr explicit function_with_derivative(F f, Slopes... slopes)
       : rule_{std::move(f), {std::move(slopes)...}} {}
 
@@ -89,18 +100,42 @@ public:
     using T = typename detail::promoted<X...>::type;
     return rule_.value(static_cast<T>(x)...);
   }
+  /// f of formulas of scalars, a formula whose derivatives are the user-defined ones.
+  template <class... X>
+    requires(sizeof...(X) == sizeof...(Slopes) && (detail::is_symbolic<X> || ...))
+  [[nodiscard]] constexpr auto operator()(const X&... x) const {
+    static_assert((detail::is_symbolic<X> && ...),
+                  "duet: with_derivative: beside formulas, numbers are written as c<2> or are "
+                  "symbols");
+    static_assert(
+        detail::is_stateless<function_with_derivative>,
+        "duet: with_derivative: in a formula the function and its derivatives must be lambdas "
+        "without captures, [](double x) { return table(x); }, as a formula is a type");
+    return formula_of_rule(rule_, x...);
+  }
 
 private:
   detail::given_rule<F, Slopes...> rule_;
 };
+
+namespace detail {
+
+template <class F, class... Slopes>
+inline constexpr bool
+    is_stateless<function_with_derivative<F, Slopes...>> = is_stateless<F> &&
+                                                           (is_stateless<Slopes> && ...);
+
+} // namespace detail
 
 /// The function f with the derivative df/dx instead of the one that duet would compute.
 ///
 /// For values by tables, iterations, other libraries or handwritten code. Derivatives of any
 /// scalar, duals in duals, `taylor`, `second_order_dual` and batches are taken from `slopes`. A
 /// derivative that is generic is differentiated by duet for the higher orders; one of `double`
-/// alone gives the first order only, unless it is a `with_derivative` as well. A trace records what
-/// f computes; to have the formula of a derivative, trace the derivative.
+/// alone gives the first order only, unless it is a `with_derivative` as well. In typed formulas f
+/// and `slopes` are lambdas without captures or function objects; f prints by its member `name`, or
+/// as f. A trace records what f computes, and refuses to be differentiated itself; to have the
+/// formula of a derivative, trace the derivative.
 ///
 /// \param f       a function of one, two or three scalars; `double f(double)` suffices
 /// \param slopes  ∂f/∂x, of several arguments one partial derivative each, of all arguments

@@ -100,6 +100,13 @@ struct written_partial<Function, std::integer_sequence<int, K...>, Orders...> {
     }
   }
 };
+template <class Rule, int... K, int... Orders>
+struct written_partial<op::given_function<Rule>, std::integer_sequence<int, K...>, Orders...> {
+  template <class... X>
+  static constexpr auto of(X... x) {
+    return apply<op::written_derivative<Rule, Orders...>>(x...);
+  }
+};
 template <class Function, int... Orders, class Value, class... X>
 struct written<applied_node<op::partial<Function, Orders...>, Value, X...>, true> {
   static constexpr auto make() {

@@ -284,12 +284,19 @@ namespace duet::expression {
 
 /// The numbers of the outputs of a formula, one after the other, over any scalar S.
 /// \param inputs  the numbers of the inputs, likewise
-/// \throws invalid_input for another number of inputs
+/// \throws invalid_input for another number of inputs; over dual numbers, for a function of
+/// `with_derivative`, whose derivative is not recorded
 template <class S>
 [[nodiscard]] std::vector<S> evaluate(const formula_graph& f, const std::vector<S>& inputs) {
   duet::detail::require(int(inputs.size()) == f.input_size(), "duet: evaluate: the formula has ",
                         f.input_size(), " input numbers, not ", inputs.size());
-  const detail::node_values<S> values(f.operations(), f.needed(), inputs);
+  const std::vector<bool> needed = f.needed();
+  for (std::size_t i = 0; Infinitesimal<S> && i < needed.size(); ++i) {
+    if (needed[i]) {
+      f.operations().require_own_derivative(int(i));
+    }
+  }
+  const detail::node_values<S> values(f.operations(), needed, inputs);
   std::vector<S> result;
   for (const named_value& y : f.outputs()) {
     for (const int node : y.nodes) {

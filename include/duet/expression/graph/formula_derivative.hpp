@@ -37,6 +37,9 @@ public:
         rates_[i] = known->second;
       } else if (needed[i] && int(i) != variable) {
         rates_[i] = rate(g_[int(i)], int(i));
+        if (rates_[i] != zero) {
+          g_.require_own_derivative(int(i));
+        }
       }
     }
   }

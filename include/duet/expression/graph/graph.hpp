@@ -165,6 +165,23 @@ public:
     return insert(n);
   }
 
+  /// Marks the value of a function whose derivative the user gave: that of its operations is
+  /// another one.
+  void mark_given(int i) {
+    if (!is_number(i) && !is(i, operation::variable)) {
+      has_given_derivative_.resize(std::max(has_given_derivative_.size(), std::size_t(i) + 1));
+      has_given_derivative_[std::size_t(i)] = true;
+    }
+  }
+  /// \throws invalid_input for such a node
+  void require_own_derivative(int i) const {
+    duet::detail::require(std::size_t(i) >= has_given_derivative_.size() ||
+                              !has_given_derivative_[std::size_t(i)],
+                          "duet: the formula has a function of with_derivative, whose given "
+                          "derivative is not recorded (trace the derivative, or use a typed "
+                          "formula)");
+  }
+
   /// True if the i-th node is of that operation.
   [[nodiscard]] bool is(int i, operation what) const { return (*this)[i].what == what; }
   /// True if the i-th node is a constant.
@@ -386,6 +403,7 @@ private:
   std::vector<graph_node> nodes_;
   std::vector<int> table_;
   std::vector<std::string> names_;
+  std::vector<bool> has_given_derivative_; ///< by nodes; shorter if the last have none
 };
 
 } // namespace duet::expression

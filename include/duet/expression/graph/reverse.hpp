@@ -107,6 +107,7 @@ public:
     for (int i = root; i >= 0; --i) {
       const recorded& adjoint = values_[std::size_t(i)];
       if (!(adjoint.is_constant() && adjoint.number() == 0)) {
+        g_.require_own_derivative(i);
         propagate(g_[i], i, adjoint);
       }
     }

@@ -10,6 +10,8 @@
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
 
+#include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -124,6 +126,20 @@ struct function {
   }
 };
 
+/// A user's function with a mark of its derivatives, by its member `name` if it has one.
+template <class Rule>
+[[nodiscard]] printed printed_given(notation style, const std::string& mark,
+                                    const std::string& latex_mark,
+                                    std::initializer_list<printed> x) {
+  std::string name = "f";
+  if constexpr (requires { decltype(Rule::f)::name; }) {
+    name = decltype(Rule::f)::name;
+  }
+  const std::string text = name + mark;
+  const std::string latex = (name.size() == 1 ? name : "\\operatorname{" + name + "}") + latex_mark;
+  return printed_call(style, {text.c_str(), latex.c_str()}, x);
+}
+
 } // namespace detail
 
 /// π in the precision of the arguments.
@@ -167,5 +183,42 @@ struct polygamma {
   }
 };
 
+/// A user's function with given derivatives.
+template <class Rule>
+struct given_function : detail::function<given_function<Rule>, Rule> {
+  static printed print(notation style, const auto&... x) {
+    return detail::printed_given<Rule>(style, "", "", {x...});
+  }
+};
+
+/// A derivative of a user's function as it is written, of order `Orders` by each argument.
+template <class Rule, int... Orders>
+struct written_derivative {
+  static constexpr kind kind_of(auto...) { return kind::scalar; }
+  static printed print(notation style, const auto&... x) {
+    std::string orders;
+    ((orders += (orders.empty() ? "" : ",") + std::to_string(Orders)), ...);
+    constexpr int order = (0 + ... + Orders);
+    if (sizeof...(Orders) == 1 && order <= 3) {
+      const std::string primes(std::size_t(order), '\'');
+      return detail::printed_given<Rule>(style, primes, primes, {x...});
+    }
+    return detail::printed_given<Rule>(style, "^(" + orders + ")", "^{(" + orders + ")}", {x...});
+  }
+};
+
 } // namespace op
+
+namespace detail {
+
+/// The rule of `with_derivative` applied to formulas of scalars.
+template <class Rule, ScalarTerm... X>
+[[nodiscard]] constexpr auto formula_of_rule(const Rule&, const X&... x) {
+  return apply<op::given_function<Rule>>(x...);
+}
+
+} // namespace detail
+
+using detail::formula_of_rule; // found by arguments
+
 } // namespace duet::expression
