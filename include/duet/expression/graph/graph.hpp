@@ -173,7 +173,8 @@ public:
       has_given_derivative_[std::size_t(i)] = true;
     }
   }
-  /// \throws invalid_input for such a node
+  /// Requires that the derivative of a node is that of its operations.
+  /// \throws invalid_input for a node marked by `mark_given`
   void require_own_derivative(int i) const {
     duet::detail::require(std::size_t(i) >= has_given_derivative_.size() ||
                               !has_given_derivative_[std::size_t(i)],
