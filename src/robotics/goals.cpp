@@ -75,6 +75,20 @@ task_space_region position_goal(const vector3<double>& position) {
           .rotation_upper = std::numbers::pi};
 }
 
+task_space_region pose_goal(const dual_quaternion<double>& a, const pose_tolerance& tolerance) {
+  const double side = tolerance.translation / std::sqrt(3),
+               angle = tolerance.rotation / std::sqrt(2);
+  detail::require(side >= 0 && angle >= 0 && side - side == 0 && angle - angle == 0,
+                  "duet: pose_goal: the tolerance is ", tolerance.translation, ", ",
+                  tolerance.rotation, " (expected finite numbers, not negative)");
+  return {.frame = a,
+          .lower = {-side, -side, -side},
+          .upper = {side, side, side},
+          .max_tilt = angle,
+          .rotation_lower = -angle,
+          .rotation_upper = angle};
+}
+
 task_space_region free_axis_goal(const dual_quaternion<double>& a, const vector3<double>& axis) {
   return {.frame = a,
           .axis = components(axis),

@@ -5,7 +5,10 @@
 
 #include "robotics/chains.hpp"
 #include "support/allocations.hpp"
+#include "support/message.hpp"
 
+#include <duet/kinematics/adapted.hpp>
+#include <duet/kinematics/tree_loop.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 
 #include <algorithm>
@@ -298,6 +301,59 @@ TEST_CASE("inverse_kinematics: unreachable goals report the reason") {
   CHECK(hurried.reason == stop_reason::iteration_limit);
   CHECK(hurried.iterations == 2);
   CHECK(hurried.restarts == 0);
+}
+
+TEST_CASE("inverse_kinematics: a pose within a tolerance, for arms with fewer than six joints") {
+  const pose_tolerance tolerance{1e-3, .02};
+  duet_test::random_source random(44);
+  // Two parallel axes, links of 0.4 and 0.3: beside their plane the nearest pose is that below.
+  std::array<joint<>, 2> planar;
+  planar[1].origin = frame_with_z_axis({.4, 0, 0}, {0, 0, 1});
+  const chain two = with_tool(serial_chain<2>(planar), frame_with_z_axis({.3, 0, 0}, {0, 0, 1}));
+  const vector start = Eigen::Vector2d(.5, -.9);
+  for (const double beside : {5e-4, 2e-3}) {
+    const bool is_close = beside < 1e-3;
+    const auto goal = at(0, 0, beside) * two.pose(vector(Eigen::Vector2d(.7, -1.1)));
+    const auto nearest = inverse_kinematics(two, goal, start, {.max_restarts = 5});
+    CHECK(nearest.reason != stop_reason::reached);
+    CHECK(std::abs(nearest.deviation.translation - beside) < 1e-9);
+    CHECK(nearest.deviation.rotation < 1e-6);
+    CHECK((tolerance.ratio(nearest.deviation) <= 1) == is_close);
+    const auto within =
+        inverse_kinematics(two, pose_goal(goal, tolerance), start, {.max_restarts = 5});
+    CHECK((within.reason == stop_reason::reached) == is_close);
+    CHECK((tolerance.ratio(deviation_by_matrices(two, within.joints, goal)) <= 1) == is_close);
+  }
+  // Five joints of a UR5e, four, and three, beside poses that they reach: more in angle than the
+  // nearest pose keeps, which moves the origin instead.
+  chain arm = robots::ur5e().table();
+  for (const int locked : {5, 3, 1}) {
+    arm = with_locked_joint(arm, locked, .3);
+    CAPTURE(arm.size());
+    for (int k = 0; k < 40; ++k) {
+      const vector theta = configuration(arm, random);
+      const Eigen::Vector3d axis(random.normal(), random.normal(), random.normal());
+      const auto off = at(4e-4, -2e-4, 0, (k == 0 ? 0 : .012) * axis.normalized());
+      const auto goal = arm.pose(theta) * off;
+      const vector guess = theta + .1 * vector::Ones(arm.size());
+      const auto within = inverse_kinematics(arm, pose_goal(goal, tolerance), guess);
+      CHECK(within.reason == stop_reason::reached);
+      CHECK(is_within_limits(arm, within.joints));
+      const pose_error error = deviation_by_matrices(arm, within.joints, goal);
+      CHECK(error.translation <= tolerance.translation + 2e-6);
+      CHECK(error.rotation <= tolerance.rotation + 2e-6);
+    }
+  }
+  // A whole pose, and invalid tolerances.
+  const auto panda = arms()[0];
+  const auto goal = panda.pose(configuration(panda, random));
+  CHECK(is_solution(panda,
+                    inverse_kinematics(panda, pose_goal(goal, 0), configuration(panda, random)),
+                    goal, 3e-6));
+  CHECK(duet_test::message_of([&] {
+          (void)pose_goal(goal, {-1, .1});
+        }) == "duet: pose_goal: the tolerance is -1, 0.1 (expected finite numbers, not negative)");
+  CHECK(!duet_test::message_of([&] { (void)pose_goal(goal, {1, std::nan("")}); }).empty());
 }
 
 TEST_CASE("inverse_kinematics: out of reach, the result is the nearest pose") {

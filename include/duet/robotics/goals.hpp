@@ -6,6 +6,7 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
+#include <duet/kinematics/motion_plan.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
@@ -72,6 +73,15 @@ struct task_space_region {
 /// Goal for a pose up to rotations about an axis of the tip, a unit vector in its frame.
 [[nodiscard]] task_space_region free_axis_goal(const dual_quaternion<double>& a,
                                                const vector3<double>& axis);
+
+/// Goal for a pose within a tolerance: success for arms with fewer than six joints, which reach
+/// most poses only approximately. The region is the largest box of equal sides and equal ranges of
+/// angles inside the tolerance: sides 2 translation/√3; tilts and rotations about z up to
+/// rotation/√2.
+///
+/// \throws invalid_input for a tolerance that is negative or not finite
+[[nodiscard]] task_space_region pose_goal(const dual_quaternion<double>& a,
+                                          const pose_tolerance& tolerance);
 
 /// Goal for the direction of an axis of the tip, a unit vector in its frame, along a unit vector in
 /// the base frame; the position is free.
