@@ -41,8 +41,8 @@ struct hypot : detail::function<hypot, duet::rule::hypot> {
     if (style == notation::text) {
       return detail::printed_call(style, {"hypot", ""}, {x...});
     }
-    const printed two = {"2", precedence::atom, style, factor_place::number};
-    printed squares = {"0", precedence::atom, style, factor_place::number};
+    const printed two = {"2", precedence::atom, style, factor_order::number};
+    printed squares = {"0", precedence::atom, style, factor_order::number};
     ((squares = sum::print(style, squares, detail::latex_power(x, two))), ...);
     return detail::latex_root(squares);
   }

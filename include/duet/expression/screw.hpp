@@ -169,7 +169,7 @@ struct turn {
       return detail::latex_sum_of(c, 1, detail::latex_product_of(s, n));
     }
     const printed half =
-        quotient::print(style, angle, {"2", precedence::atom, style, factor_place::number});
+        quotient::print(style, angle, {"2", precedence::atom, style, factor_order::number});
     return detail::printed_operation<exp_vector>(style, product::print(style, half, n));
   }
 };

@@ -136,9 +136,9 @@ namespace detail {
              (digits[e + 1] == '-' ? "-" + digits.substr(digits.find_first_not_of("-0", e + 1))
                                    : digits.substr(exponent)) +
              "}";
-    return {digits, is_negative ? negative : precedence::product, style, factor_place::number};
+    return {digits, is_negative ? negative : precedence::product, style, factor_order::number};
   }
-  return {digits, is_negative ? negative : precedence::atom, style, factor_place::number};
+  return {digits, is_negative ? negative : precedence::atom, style, factor_order::number};
 }
 
 /// Greek letters by their names, what follows the letters as an index, columns with an
@@ -168,8 +168,8 @@ namespace detail {
   return letters + "_{" + name.substr(name[end] == '_' ? end + 1 : end) + "}";
 }
 
-[[nodiscard]] constexpr factor_place place_of(kind k) {
-  return k == kind::scalar ? factor_place::symbol : factor_place::in_order;
+[[nodiscard]] constexpr factor_order order_of_kind(kind k) {
+  return k == kind::scalar ? factor_order::symbol : factor_order::in_order;
 }
 
 /// A constant to its last digit: vectors as (x, y, z), quaternions as (w, x, y, z), dual numbers
@@ -186,11 +186,11 @@ template <class T>
   } else if constexpr (is_screw_dual<T>) {
     const std::string real = listed(value.value()), dual = listed(value.epsilon());
     if (style == notation::text) {
-      return {real + "[" + dual + "]", precedence::atom, style, factor_place::symbol};
+      return {real + "[" + dual + "]", precedence::atom, style, factor_order::symbol};
     }
     const bool is_negative = dual[0] == '-';
     return {real + (is_negative ? " - " : " + ") + dual.substr(is_negative) + " \\varepsilon",
-            precedence::sum, style, factor_place::symbol};
+            precedence::sum, style, factor_order::symbol};
   } else if constexpr (is_sized_matrix(constant_traits<T>::kind_of)) {
     std::vector<std::string> entries;
     for (Eigen::Index i = 0; i < value.rows(); ++i) {
@@ -203,7 +203,7 @@ template <class T>
     std::ostringstream digits;
     digits.precision(std::numeric_limits<T>::max_digits10);
     digits << value;
-    return {digits.str(), precedence::atom, style, factor_place::symbol};
+    return {digits.str(), precedence::atom, style, factor_order::symbol};
   } else {
     std::string text;
     if constexpr (is_quaternion<T>) {
@@ -211,7 +211,7 @@ template <class T>
     } else {
       text = listed(value[0], value[1], value[2]);
     }
-    return {"(" + text + ")", precedence::atom, style, place_of(constant_traits<T>::kind_of)};
+    return {"(" + text + ")", precedence::atom, style, order_of_kind(constant_traits<T>::kind_of)};
   }
 }
 
@@ -219,7 +219,7 @@ template <kind K, char... Letters>
 [[nodiscard]] printed print(notation style, symbol_node<K, Letters...>, const auto&) {
   const std::string name = {Letters...};
   return {style != notation::text ? latex_name(name, K) : name, precedence::atom, style,
-          place_of(K)};
+          order_of_kind(K)};
 }
 template <kind K, class Tag>
 [[nodiscard]] printed print(notation style, constant_node<K, Tag>, const auto& h) {
@@ -230,11 +230,11 @@ template <std::uint64_t Bits>
   return printed_number(style, duet::to_text(n.value));
 }
 [[nodiscard]] inline printed print(notation style, pi_node, const auto&) {
-  return {style != notation::text ? "\\pi" : "pi", precedence::atom, style, factor_place::pi};
+  return {style != notation::text ? "\\pi" : "pi", precedence::atom, style, factor_order::pi};
 }
 template <kind K>
 [[nodiscard]] printed print(notation style, zero_node<K>, const auto&) {
-  return {"0", precedence::atom, style, factor_place::number};
+  return {"0", precedence::atom, style, factor_order::number};
 }
 template <class Operation, class... Operands>
 [[nodiscard]] printed print(notation style, applied_node<Operation, Operands...>, const auto& h) {

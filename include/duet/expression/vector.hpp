@@ -54,7 +54,7 @@ template <kind K, int I, class Held>
   const std::string axis = std::to_string(I % 3 + 1);
   if (style != notation::text) {
     return {std::string(I < 3 ? "" : "\\varepsilon ") + "\\vec{e}_{" + axis + "}", precedence::atom,
-            style, factor_place::in_order};
+            style, factor_order::in_order};
   }
   return {std::string(I < 3 ? "" : "epsilon ") + "e" + axis};
 }
@@ -79,7 +79,7 @@ struct dot : bilinear_operation {
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style != notation::text ? detail::latex_bilinear(a, " \\cdot ", b, precedence::product,
-                                                            factor_place::function)
+                                                            factor_order::function)
                                    : printed{"dot(" + a.text + ", " + b.text + ")"};
   }
 };
@@ -95,7 +95,7 @@ struct cross : bilinear_operation {
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style != notation::text ? detail::latex_bilinear(a, " \\times ", b, precedence::power,
-                                                            factor_place::in_order)
+                                                            factor_order::in_order)
                                    : printed{"cross(" + a.text + ", " + b.text + ")"};
   }
 };

@@ -27,7 +27,7 @@ struct difference;
 struct product;
 struct quotient;
 template <int Rows, int Columns, int I, int J>
-struct placed;
+struct embedded_block;
 
 } // namespace op
 
@@ -78,13 +78,15 @@ template <class F, class A, class B>
 
 /// A matrix that is 0 but for a block.
 template <class T>
-inline constexpr bool is_placed = false;
+inline constexpr bool is_embedded_block = false;
 template <int Rows, int Columns, int I, int J, class X>
-inline constexpr bool is_placed<applied_node<op::placed<Rows, Columns, I, J>, X>> = true;
+inline constexpr bool is_embedded_block<applied_node<op::embedded_block<Rows, Columns, I, J>, X>> =
+    true;
 /// Another block in the same place.
 template <int Rows, int Columns, int I, int J, class X, class Y>
-[[nodiscard]] constexpr auto placed_like(applied_node<op::placed<Rows, Columns, I, J>, X>, Y y) {
-  return apply<op::placed<Rows, Columns, I, J>>(y);
+[[nodiscard]] constexpr auto embedded_like(applied_node<op::embedded_block<Rows, Columns, I, J>, X>,
+                                           Y y) {
+  return apply<op::embedded_block<Rows, Columns, I, J>>(y);
 }
 
 /// A number below zero, a product with one, or what has a minus.
@@ -168,8 +170,8 @@ struct negative : linear_operation {
       return operand<1>(a) - operand<0>(a);
     } else if constexpr (has_number<A>) {
       return -operand<0>(a) * operand<1>(a);
-    } else if constexpr (detail::is_placed<A>) {
-      return detail::placed_like(a, -operand<0>(a));
+    } else if constexpr (detail::is_embedded_block<A>) {
+      return detail::embedded_like(a, -operand<0>(a));
     }
   }
   static constexpr auto value(const auto& a) {
@@ -179,7 +181,7 @@ struct negative : linear_operation {
   static printed print(notation style, const printed& a) {
     if (style != notation::text) {
       return detail::latex_product_of(
-          {"-1", precedence::negative_number, style, factor_place::number}, a);
+          {"-1", precedence::negative_number, style, factor_order::number}, a);
     }
     return {"-" + a.inside(precedence::product), precedence::sum};
   }

@@ -67,7 +67,7 @@ struct whole_power {
   static printed print(notation style, const printed& x) {
     const std::string n = std::to_string(Exponent);
     if (style != notation::text) {
-      return detail::latex_power(x, {n, precedence::atom, style, factor_place::number});
+      return detail::latex_power(x, {n, precedence::atom, style, factor_order::number});
     }
     return {x.inside(precedence::atom) + "^" + n, precedence::power};
   }

@@ -135,8 +135,8 @@ struct product {
       return -(operand<0>(a) * b);
     } else if constexpr (is_applied<B, negative>) {
       return -(a * operand<0>(b));
-    } else if constexpr (detail::is_placed<B>) {
-      return detail::placed_like(b, a * operand<0>(b));
+    } else if constexpr (detail::is_embedded_block<B>) {
+      return detail::embedded_like(b, a * operand<0>(b));
     } else if constexpr (detail::has_exact_product<A, B>) {
       return (a * operand<0>(b)) * operand<1>(b);
     } else if constexpr (is_number<A>) {
@@ -208,8 +208,8 @@ struct quotient {
       return a;
     } else if constexpr (is_number<A> && detail::is_divided_exactly<A, B>) {
       return number_node<detail::bits_of(A::value / B::value)>{};
-    } else if constexpr (detail::is_placed<A>) {
-      return detail::placed_like(a, operand<0>(a) / b);
+    } else if constexpr (detail::is_embedded_block<A>) {
+      return detail::embedded_like(a, operand<0>(a) / b);
     } else if constexpr (detail::starts_with_minus<A>) {
       return -(-a / b);
     } else if constexpr (detail::starts_with_minus<B>) {

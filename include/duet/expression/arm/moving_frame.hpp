@@ -152,13 +152,13 @@ public:
   }
   template <bool, int I>
   DUET_ALWAYS_INLINE void append(frame_with_z_axis<I>, double d) {
-    place_ = place_ + d * axis<I>();
+    origin_ = origin_ + d * axis<I>();
   }
   template <bool>
   DUET_ALWAYS_INLINE void append(any_motion, const dual_quaternion<double>& a) {
     const auto r = rotation_matrix(rotation(a));
     const auto t = translation(a);
-    place_ = place_ + carried(t[0], t[1], t[2]);
+    origin_ = origin_ + carried(t[0], t[1], t[2]);
     const four_lanes x = carried(r(0, 0), r(1, 0), r(2, 0));
     const four_lanes y = carried(r(0, 1), r(1, 1), r(2, 1));
     z_ = carried(r(0, 2), r(1, 2), r(2, 2));
@@ -172,7 +172,7 @@ public:
   template <bool IsSet, int I>
   DUET_ALWAYS_INLINE void write(about_axis<I>, double* column, double rate) const {
     const four_lanes omega = rate * axis<I>();
-    write_twist<IsSet>(column, cross(place_, omega), omega);
+    write_twist<IsSet>(column, cross(origin_, omega), omega);
   }
   template <bool IsSet, int I>
   DUET_ALWAYS_INLINE void write(frame_with_z_axis<I>, double* column, double rate) const {
@@ -184,12 +184,12 @@ public:
                                 const dual_vector<double>& twist) const {
     const four_lanes omega = carried(twist[0].value(), twist[1].value(), twist[2].value());
     const four_lanes v = carried(twist[0].epsilon(), twist[1].epsilon(), twist[2].epsilon());
-    write_twist<IsSet>(column, v + cross(place_, omega), omega);
+    write_twist<IsSet>(column, v + cross(origin_, omega), omega);
   }
 
   [[nodiscard]] DUET_ALWAYS_INLINE dual_quaternion<double> pose() const {
     const quaternion<double> q(q_[0], q_[1], q_[2], q_[3]);
-    const quaternion<double> half(0, place_[0] / 2, place_[1] / 2, place_[2] / 2);
+    const quaternion<double> half(0, origin_[0] / 2, origin_[1] / 2, origin_[2] / 2);
     return make_dual_quaternion(q, half * q);
   }
 
@@ -221,7 +221,7 @@ private:
   }
 
   four_lanes x_ = lanes_of(1, 0, 0, 0), y_ = lanes_of(0, 1, 0, 0), z_ = lanes_of(0, 0, 1, 0);
-  four_lanes place_ = lanes_of(0, 0, 0, 0);
+  four_lanes origin_ = lanes_of(0, 0, 0, 0);
   four_lanes q_ = lanes_of(1, 0, 0, 0);
 };
 

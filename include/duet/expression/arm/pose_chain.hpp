@@ -80,7 +80,7 @@ struct moved_factor {
           mp11::mp_transform<directions_of, mp11::mp_copy_if<nodes_of<Factor>, is_symbol_node>>,
           motion_list<>>>;
   template <class Motion>
-  using moves = mp11::mp_bool<(Motions::template place<Motion> >= 0) &&
+  using moves = mp11::mp_bool<(Motions::template index<Motion> >= 0) &&
                               !is_zero<typename link_of<Factor>::template twist<Motion>>>;
   using motions = mp11::mp_copy_if<of_symbols, moves>;
   using twists = mp11::mp_transform<link_of<Factor>::template twist, motions>;
@@ -137,8 +137,8 @@ private:
   template <class... M>
   static constexpr void note(firsts& first, [[maybe_unused]] std::size_t factor,
                              motion_list<M...>) {
-    ((first[std::size_t(motions::template place<M>)] =
-          std::min(first[std::size_t(motions::template place<M>)], factor)),
+    ((first[std::size_t(motions::template index<M>)] =
+          std::min(first[std::size_t(motions::template index<M>)], factor)),
      ...);
   }
   static constexpr firsts first_moved = [] {
@@ -158,13 +158,13 @@ private:
   template <std::size_t At, class Factor, class... Values, class... M>
   struct step<At, Factor, mp11::mp_list<Values...>, motion_list<M...>> {
     template <class Motion>
-    static constexpr int column = motions::template place<Motion>;
+    static constexpr int column = motions::template index<Motion>;
     using type =
         factor_step<typename link_of<Factor>::link, At <= first_turn,
-                    std::integer_sequence<int, nodes::template place<Values>...>,
+                    std::integer_sequence<int, nodes::template index<Values>...>,
                     mp11::mp_list<column_write<
                         column<M>, first_moved[std::size_t(column<M>)] == At,
-                        nodes::template place<typename link_of<Factor>::template twist<M>>>...>>;
+                        nodes::template index<typename link_of<Factor>::template twist<M>>>...>>;
   };
 
   template <class... Steps, class Slots>

@@ -39,7 +39,7 @@ template <int I, class T>
 struct slot {
   T value;
 };
-template <class Places, class... T>
+template <class Indices, class... T>
 struct different_slots;
 template <int... I, class... T>
 struct different_slots<std::integer_sequence<int, I...>, T...> : slot<I, T>... {};
@@ -48,14 +48,14 @@ struct equal_slots {
   T values[std::size_t(Count)];
 };
 
-template <class Places, class... T>
+template <class Indices, class... T>
 struct slots {
-  using type = different_slots<Places, T...>;
+  using type = different_slots<Indices, T...>;
 };
-template <class Places, class T, class... Rest>
+template <class Indices, class T, class... Rest>
   requires std::is_same_v<mp11::mp_list<T, Rest...>, mp11::mp_list<Rest..., T>>
-struct slots<Places, T, Rest...> {
-  using type = equal_slots<T, int(Places::size())>;
+struct slots<Indices, T, Rest...> {
+  using type = equal_slots<T, int(Indices::size())>;
 };
 
 template <int I, class T>
@@ -72,8 +72,8 @@ template <class Slots, int... I>
 struct chosen_values : Slots {
   template <int K>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto& get() {
-    constexpr int places[] = {I...};
-    return value_at<places[K]>(static_cast<Slots&>(*this));
+    constexpr int indices[] = {I...};
+    return value_at<indices[K]>(static_cast<Slots&>(*this));
   }
   /// f of Count of them, from the First-th on.
   template <int First, int Count, class F>
@@ -141,14 +141,14 @@ template <class List, int Stage, class Operation, class... Operands>
   requires(stage_of<applied_node<Operation, Operands...>> == Stage)
 struct work<List, Stage, applied_node<Operation, Operands...>> {
   using operations =
-      mp11::mp_list<instruction<List::template place<applied_node<Operation, Operands...>>,
-                                Operation, List::template place<Operands>...>>;
+      mp11::mp_list<instruction<List::template index<applied_node<Operation, Operands...>>,
+                                Operation, List::template index<Operands>...>>;
   using sines = mp11::mp_list<>;
 };
 template <class List, class X>
 using sines_of = mp11::mp_list<
-    sine_instruction<List::template place<X>, List::template place<applied_node<op::sin, X>>,
-                     List::template place<applied_node<op::cos, X>>>>;
+    sine_instruction<List::template index<X>, List::template index<applied_node<op::sin, X>>,
+                     List::template index<applied_node<op::cos, X>>>>;
 template <class List, int Stage, class X>
   requires(stage_of<applied_node<op::sin, X>> == Stage)
 struct work<List, Stage, applied_node<op::sin, X>> {
@@ -159,7 +159,7 @@ template <class List, int Stage, class X>
   requires(stage_of<applied_node<op::cos, X>> == Stage)
 struct work<List, Stage, applied_node<op::cos, X>> {
   using operations = mp11::mp_list<>;
-  using sines = mp11::mp_if_c<(List::template place<applied_node<op::sin, X>> < 0),
+  using sines = mp11::mp_if_c<(List::template index<applied_node<op::sin, X>> < 0),
                               sines_of<List, X>, mp11::mp_list<>>; // else with the sine
 };
 
@@ -222,16 +222,16 @@ template <class List, class Slots, class Given, class... Symbols, class... Const
 DUET_ALWAYS_INLINE constexpr void load(Slots& s, const Given& g, node_list<Symbols...>,
                                        node_list<Constants...>, node_list<Others...>) {
   using real = typename Given::real;
-  ((value_at<List::template place<Symbols>>(s) = value_in<Symbols>(g)), ...);
-  ((value_at<List::template place<Constants>>(s) = constant_over<real>(value_in<Constants>(g))),
+  ((value_at<List::template index<Symbols>>(s) = value_in<Symbols>(g)), ...);
+  ((value_at<List::template index<Constants>>(s) = constant_over<real>(value_in<Constants>(g))),
    ...);
-  ((value_at<List::template place<Others>>(s) = leaf<Others, numbers_as<real>>::value({})), ...);
+  ((value_at<List::template index<Others>>(s) = leaf<Others, numbers_as<real>>::value({})), ...);
 }
 
 template <class... Nodes, class Given>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated(node_list<Nodes...>, const Given& g) {
   using list = node_list<Nodes...>;
-  typename slots<typename list::places, typename value_of<Nodes, Given>::type...>::type s;
+  typename slots<typename list::indices, typename value_of<Nodes, Given>::type...>::type s;
   load<list>(s, g, mp11::mp_copy_if<list, is_symbol_node>{}, mp11::mp_copy_if<list, is_constant>{},
              mp11::mp_copy_if<list, is_other_leaf>{});
   run_from<0, list, !Given::has_library_sines>(s);
@@ -243,7 +243,7 @@ template <class... Roots, class Given>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated_nodes(const Given& g) {
   using list = nodes_of<Roots...>;
   auto s = evaluated(list{}, g);
-  return chosen_values<decltype(s), list::template place<Roots>...>{s};
+  return chosen_values<decltype(s), list::template index<Roots>...>{s};
 }
 
 } // namespace detail

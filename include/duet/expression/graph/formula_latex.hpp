@@ -101,17 +101,17 @@ namespace detail {
 /// A variable, with the index of a component behind it.
 [[nodiscard]] inline printed latex_variable(const std::string& name) {
   if (name[0] == '\\') { // LaTeX already
-    return {name, precedence::power, notation::latex, factor_place::function};
+    return {name, precedence::power, notation::latex, factor_order::function};
   }
   const std::size_t bracket = name.find('[');
   const printed letters{latex_name(spelt_out(name.substr(0, bracket)), kind::scalar),
-                        precedence::atom, notation::latex, factor_place::symbol};
+                        precedence::atom, notation::latex, factor_order::symbol};
   if (bracket == std::string::npos) {
     return letters;
   }
   printed x = with_index(letters, name.substr(bracket + 1, name.size() - bracket - 2));
   x.style = notation::latex;
-  x.place = factor_place::symbol;
+  x.order = factor_order::symbol;
   return x;
 }
 
@@ -129,7 +129,7 @@ namespace detail {
   case variable:
     return latex_variable(g.variable_name(n.index));
   case negative:
-    return latex_product_of({"-1", precedence::negative_number, style, factor_place::number}, x[0]);
+    return latex_product_of({"-1", precedence::negative_number, style, factor_order::number}, x[0]);
   case sum:
     return latex_sum_of(x[0], 1, x[1]);
   case difference:
@@ -148,7 +148,7 @@ namespace detail {
     return latex_exponential(x[0]);
   case acos:
     if (g.is_number(n.operands[0], -1)) {
-      return {"\\pi", precedence::atom, style, factor_place::pi};
+      return {"\\pi", precedence::atom, style, factor_order::pi};
     }
     break;
   case hypot: {

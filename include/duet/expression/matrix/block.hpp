@@ -32,7 +32,7 @@ struct entries;
 /// Zeros but for the block X that begins at (I, J). Only derivatives by entries
 /// have it, which are not printed.
 template <int Rows, int Columns, int I, int J>
-struct placed : linear_operation {
+struct embedded_block : linear_operation {
   static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
   template <class X>
   static constexpr auto simplified(X x) {
@@ -61,15 +61,15 @@ namespace detail {
 
 /// 1 at (I, J), otherwise 0.
 template <int Rows, int Columns, int I, int J>
-using unit_matrix = decltype(apply<op::placed<Rows, Columns, I, J>>(whole<1>));
+using unit_matrix = decltype(apply<op::embedded_block<Rows, Columns, I, J>>(whole<1>));
 
-/// Whether all but a block is known to be 0, and where that is: X of `placed`.
+/// Whether all but a block is known to be 0, and where that is: X of `embedded_block`.
 template <class M>
 struct sparsity {
   static constexpr bool is_sparse = false;
 };
 template <int Rows, int Columns, int Row, int Column, class X>
-struct sparsity<applied_node<op::placed<Rows, Columns, Row, Column>, X>> {
+struct sparsity<applied_node<op::embedded_block<Rows, Columns, Row, Column>, X>> {
   static constexpr bool is_sparse = true;
   using block = X;
   static constexpr int row = Row, column = Column;
@@ -150,7 +150,7 @@ private:
     if constexpr (top >= bottom || left >= right) {
       return zero_of<matrix_kind(Rows, Columns)>();
     } else {
-      return apply<placed<Rows, Columns, top - I, left - J>>(
+      return apply<embedded_block<Rows, Columns, top - I, left - J>>(
           apply<op::block<top - S::row, left - S::column, bottom - top, right - left>>(
               typename S::block{}));
     }
@@ -174,7 +174,7 @@ struct transpose : linear_operation {
     } else if constexpr (detail::sparsity<M>::is_sparse) {
       using sparse = detail::sparsity<M>;
       return apply<
-          placed<columns_of(M::kind_of), rows_of(M::kind_of), sparse::column, sparse::row>>(
+          embedded_block<columns_of(M::kind_of), rows_of(M::kind_of), sparse::column, sparse::row>>(
           apply<transpose>(typename sparse::block{}));
     }
   }

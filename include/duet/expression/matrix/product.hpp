@@ -53,12 +53,12 @@ struct matrix_product {
       return detail::scaled_outside(b, [](auto x) { return A{} * x; });
     } else if constexpr (detail::sparsity<A>::is_sparse) {
       using s = detail::sparsity<A>;
-      return apply<placed<rows, columns, s::row, 0>>(
+      return apply<embedded_block<rows, columns, s::row, 0>>(
           typename s::block{} * apply<block<s::column, 0, s::columns, columns>>(b));
     } else if constexpr (detail::sparsity<B>::is_sparse) {
       using s = detail::sparsity<B>;
-      return apply<placed<rows, columns, 0, s::column>>(apply<block<0, s::row, rows, s::rows>>(a) *
-                                                        typename s::block{});
+      return apply<embedded_block<rows, columns, 0, s::column>>(
+          apply<block<0, s::row, rows, s::rows>>(a) * typename s::block{});
     }
   }
   template <class A, class B>
@@ -106,7 +106,7 @@ struct trace : linear_operation {
       return apply<trace>(operand<0>(m));
     } else if constexpr (is_applied<M, matrix_product>) {
       return apply<trace_of_product>(operand<0>(m), operand<1>(m));
-    } else if constexpr (detail::is_placed<M>) {
+    } else if constexpr (detail::is_embedded_block<M>) {
       return of_sparse<detail::sparsity<M>>();
     }
   }

@@ -18,15 +18,15 @@ namespace duet::expression::detail {
   if (!p.terms.empty()) {
     return p.terms;
   }
-  latex_factor f = {p.text, p.outermost, p.place, p.name_end, {}, {}, 2};
+  latex_factor f = {p.text, p.outermost, p.order, p.name_end, {}, {}, 2};
   int sign = 1;
-  if (p.place == factor_place::number && p.text[0] == '-') {
+  if (p.order == factor_order::number && p.text[0] == '-') {
     sign = -1;
     f.text.erase(0, 1);
     const bool has_power_of_ten = f.text.find('^') != std::string::npos;
     f.outermost = has_power_of_ten ? precedence::product : precedence::atom;
   }
-  const bool is_whole = p.place == factor_place::number && f.text.size() < 10 &&
+  const bool is_whole = p.order == factor_order::number && f.text.size() < 10 &&
                         f.text.find_first_not_of("0123456789") == std::string::npos;
   latex_sum sum;
   sum.push_back(is_whole ? whole_term(std::stoi(f.text)) : product_of(f));
@@ -36,10 +36,10 @@ namespace duet::expression::detail {
 
 [[nodiscard]] inline printed latex_printed(const latex_sum& sum) {
   if (sum.empty()) {
-    return {"0", precedence::atom, notation::latex, factor_place::number, 0, {}};
+    return {"0", precedence::atom, notation::latex, factor_order::number, 0, {}};
   }
   const latex_part part = latex_text(sum, fractions::slashes);
-  return {part.text, part.outermost, notation::latex, factor_place::function, 0, sum};
+  return {part.text, part.outermost, notation::latex, factor_order::function, 0, sum};
 }
 [[nodiscard]] inline printed latex_printed(const latex_term& t) {
   latex_sum sum;
@@ -70,13 +70,13 @@ namespace duet::expression::detail {
 
 /// A product of vectors, as a · b, linear in each: scalars stand before it.
 [[nodiscard]] inline printed latex_bilinear(const printed& a, const char* sign, const printed& b,
-                                            precedence beside, factor_place place) {
+                                            precedence beside, factor_order order) {
   latex_term t = as_product(latex_terms(a));
   latex_term u = as_product(latex_terms(b));
   const auto vector = [&](const latex_term& v) {
     return latex_text(1, v.in_order, fractions::slashes).inside(beside);
   };
-  const latex_factor f = {vector(t) + sign + vector(u), precedence::product, place, 0, {}, {}, 2};
+  const latex_factor f = {vector(t) + sign + vector(u), precedence::product, order, 0, {}, {}, 2};
   t.in_order.clear();
   u.in_order.clear();
   multiply(t, u);
@@ -91,7 +91,7 @@ namespace duet::expression::detail {
   if (t.above == 1 && t.below == 1 && t.factors.size() == 1 && t.factors[0].halves == 2) {
     t.factors[0].halves = 1;
   } else {
-    t = product_of({x.text, x.outermost, factor_place::function, 0, sum, {}, 1});
+    t = product_of({x.text, x.outermost, factor_order::function, 0, sum, {}, 1});
   }
   return latex_printed(t);
 }
@@ -100,7 +100,7 @@ namespace duet::expression::detail {
 [[nodiscard]] inline printed latex_exponential(const printed& x) {
   const std::string text = "e^{" + x.text + "}";
   return latex_printed(
-      product_of({text, precedence::power, factor_place::function, 0, {}, latex_terms(x), 2}));
+      product_of({text, precedence::power, factor_order::function, 0, {}, latex_terms(x), 2}));
 }
 
 /// x^p
@@ -115,7 +115,7 @@ namespace duet::expression::detail {
   return {x.inside(precedence::atom) + "^{" + p.text + "}",
           precedence::power,
           notation::latex,
-          factor_place::symbol,
+          factor_order::symbol,
           0,
           {}};
 }
@@ -125,13 +125,13 @@ namespace duet::expression::detail {
 [[nodiscard]] inline printed latex_of_kind(printed p, bool is_scalar) {
   p.style = notation::latex;
   if (p.terms.empty() && !is_scalar) {
-    p.place = factor_place::in_order;
+    p.order = factor_order::in_order;
   }
   for (latex_term& t : p.terms) {
     if (is_scalar && !t.in_order.empty()) {
       const latex_part part = latex_text(1, t.in_order, fractions::slashes);
       t.in_order.clear();
-      multiply(t, product_of({part.text, part.outermost, factor_place::function, 0, {}, {}, 2}));
+      multiply(t, product_of({part.text, part.outermost, factor_order::function, 0, {}, {}, 2}));
     }
   }
   return p;

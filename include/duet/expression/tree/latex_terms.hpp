@@ -36,7 +36,7 @@ inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
 }
 
 [[nodiscard]] inline latex_factor number_factor(const std::string& digits, int halves) {
-  return {digits, precedence::atom, factor_place::number, 0, {}, {}, halves};
+  return {digits, precedence::atom, factor_order::number, 0, {}, {}, halves};
 }
 
 [[nodiscard]] inline latex_term whole_term(std::int64_t n) {
@@ -47,7 +47,7 @@ inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
 /// A product of one factor.
 [[nodiscard]] inline latex_term product_of(const latex_factor& f) {
   latex_term t;
-  (f.place == factor_place::in_order ? t.in_order : t.factors).push_back(f);
+  (f.order == factor_order::in_order ? t.in_order : t.factors).push_back(f);
   return t;
 }
 
@@ -190,9 +190,9 @@ inline void multiply(latex_term& t, const latex_term& by) {
     return sum[0];
   }
   const latex_part part = latex_text(sum, fractions::slashes);
-  const factor_place place =
-      sum[0].in_order.empty() ? factor_place::function : factor_place::in_order;
-  return product_of({part.text, part.outermost, place, 0, sum, {}, 2});
+  const factor_order order =
+      sum[0].in_order.empty() ? factor_order::function : factor_order::in_order;
+  return product_of({part.text, part.outermost, order, 0, sum, {}, 2});
 }
 
 /// The sum that t is but for a number; otherwise null.

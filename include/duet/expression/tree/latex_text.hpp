@@ -21,7 +21,7 @@ enum class precedence { condition, sum, negative_number, product, power, atom };
 
 /// In which order the factors of a product are written in LaTeX: those that do not commute behind
 /// the others, in their own order.
-enum class factor_place { number, pi, symbol, function, in_order };
+enum class factor_order { number, pi, symbol, function, in_order };
 
 namespace detail {
 
@@ -31,7 +31,7 @@ struct latex_term;
 struct latex_factor {
   std::string text; ///< of the base, which it names; with slashes for fractions
   precedence outermost;
-  factor_place place;
+  factor_order order;
   std::size_t name_end;              ///< where the exponent of f^2(x) is; 0: behind it all
   std::vector<latex_term> terms;     ///< of a base that is a sum or a product
   std::vector<latex_term> logarithm; ///< of a base e^x
@@ -102,8 +102,8 @@ latex_text(std::int64_t number, const std::vector<latex_factor>& factors, fracti
     const latex_factor& f = factors[k];
     // a · b and x^T A x need no parentheses behind scalars, and numbers such as 2 · 10^5 nowhere.
     const bool is_last =
-        k + 1 == factors.size() && (k == 0 || factors[k - 1].place != factor_place::in_order);
-    const bool is_number = f.place == factor_place::number && f.halves == 2;
+        k + 1 == factors.size() && (k == 0 || factors[k - 1].order != factor_order::in_order);
+    const bool is_number = f.order == factor_order::number && f.halves == 2;
     const std::string piece =
         latex_text(f, style).inside(is_last || is_number ? precedence::product : precedence::power);
     const bool is_digit = piece[0] >= '0' && piece[0] <= '9';
@@ -115,11 +115,11 @@ latex_text(std::int64_t number, const std::vector<latex_factor>& factors, fracti
 /// Of |t|.
 [[nodiscard]] inline latex_part latex_text(const latex_term& t, fractions style) {
   std::vector<latex_factor> above, below;
-  for (const factor_place place :
-       {factor_place::number, factor_place::pi, factor_place::symbol, factor_place::function}) {
+  for (const factor_order order :
+       {factor_order::number, factor_order::pi, factor_order::symbol, factor_order::function}) {
     for (latex_factor f : t.factors) {
-      const bool is_behind = f.halves % 2 != 0 && f.place == factor_place::symbol; // a root
-      if ((is_behind ? factor_place::function : f.place) == place) {
+      const bool is_behind = f.halves % 2 != 0 && f.order == factor_order::symbol; // a root
+      if ((is_behind ? factor_order::function : f.order) == order) {
         const bool is_below = f.halves < 0;
         f.halves = is_below ? -f.halves : f.halves;
         (is_below ? below : above).push_back(f);

@@ -48,7 +48,7 @@ struct with_node<Nodes, Node, false> {
 };
 
 /// Where the one that is true stands among some, -1 if there is none.
-[[nodiscard]] constexpr int place_of_true(const bool* all, int count) {
+[[nodiscard]] constexpr int index_of_true(const bool* all, int count) {
   for (int i = 0; i < count; ++i) {
     if (all[i]) {
       return i;
@@ -68,10 +68,10 @@ class node_list {
   static constexpr bool is_it[] = {DUET_IS_SAME(Nodes, Node)..., false};
 
 public:
-  using places = std::make_integer_sequence<int, count>;
+  using indices = std::make_integer_sequence<int, count>;
   /// The number of a node, -1 of others.
   template <class Node>
-  static constexpr int place = place_of_true(is_it<Node>, count);
+  static constexpr int index = index_of_true(is_it<Node>, count);
 };
 
 template <class Grown, class... Nodes>

@@ -27,7 +27,7 @@ struct printed {
   std::string text;                            ///< what stands there
   precedence outermost = precedence::atom;     ///< of the operation outside all parentheses
   notation style = notation::text;             ///< how it is written
-  factor_place place = factor_place::function; ///< in LaTeX, of what has no terms
+  factor_order order = factor_order::function; ///< in LaTeX, of what has no terms
   std::size_t name_end = 0;                    ///< of f(x), where f^2(x) has its exponent; else 0
   std::vector<detail::latex_term> terms = {};  ///< in LaTeX, of what is no single factor
 
@@ -74,7 +74,7 @@ struct function_name {
   }
   const bool is_one_name = form.find('\\', 1) == std::string::npos; // unlike \log\Gamma
   return {form + (is_high ? "\\left(" : "(") + arguments + (is_high ? "\\right)" : ")"),
-          is_one_name ? precedence::atom : precedence::power, style, factor_place::function,
+          is_one_name ? precedence::atom : precedence::power, style, factor_order::function,
           is_one_name ? form.size() : 0};
 }
 
