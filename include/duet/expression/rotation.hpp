@@ -124,8 +124,8 @@ struct rotate {
     if (style == notation::text) {
       return {"rotate(" + q.text + ", " + v.text + ")"};
     }
-    const std::string turned = q.inside(precedence::product);
-    return {turned + " " + v.inside(precedence::product) + " " +
+    const std::string q_text = q.inside(precedence::product);
+    return {q_text + " " + v.inside(precedence::product) + " " +
                 detail::printed_operation<conj>(style, printed{q.text, q.outermost, style}).text,
             precedence::product};
   }

@@ -22,14 +22,14 @@ namespace duet::expression::detail {
 
 /// A rotation or pose that turns: its velocity in a frame.
 template <class Symbol, class Velocity, class Frame>
-struct turning {};
+struct rotating {};
 
 template <class Symbol, class Velocity, class... Rest>
-struct rate_of_symbol<Symbol, movement<turning<Symbol, Velocity, spatial_frame>, Rest...>> {
+struct rate_of_symbol<Symbol, movement<rotating<Symbol, Velocity, spatial_frame>, Rest...>> {
   using type = decltype(number_node<bits_of(0.5)>{} * (apply<op::pure>(Velocity{}) * Symbol{}));
 };
 template <class Symbol, class Velocity, class... Rest>
-struct rate_of_symbol<Symbol, movement<turning<Symbol, Velocity, body_frame>, Rest...>> {
+struct rate_of_symbol<Symbol, movement<rotating<Symbol, Velocity, body_frame>, Rest...>> {
   using type = decltype(number_node<bits_of(0.5)>{} * (Symbol{} * apply<op::pure>(Velocity{})));
 };
 
@@ -65,7 +65,7 @@ struct velocity_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>, Frame
   static constexpr auto make() { return velocity_by_rate<Frame>(Symbol{}, Rate{}); }
 };
 template <class Symbol, class V, class FrameOfV, class... Rest, class Frame>
-struct velocity_of_symbol<Symbol, movement<turning<Symbol, V, FrameOfV>, Rest...>, Frame> {
+struct velocity_of_symbol<Symbol, movement<rotating<Symbol, V, FrameOfV>, Rest...>, Frame> {
   static constexpr auto make() {
     if constexpr (std::is_same_v<Frame, FrameOfV>) {
       return V{};
@@ -121,7 +121,7 @@ struct velocity<applied_node<op::rotation, A>, Motion, Frame> {
 
 template <class N, class Angle, class S, class C, class Motion, class Frame>
   requires is_zero<rate_t<N, Motion>>
-struct velocity<applied_node<op::turn, N, Angle, S, C>, Motion, Frame> {
+struct velocity<applied_node<op::screw_motion, N, Angle, S, C>, Motion, Frame> {
   static constexpr auto make() { return rate_t<Angle, Motion>{} * N{}; }
 };
 
@@ -174,11 +174,12 @@ struct rate<applied_node<op::translation, A>, Motion> {
 };
 
 template <class Symbol, class Frame, kind K, int... I>
-using turning_about_axes = motion_list<movement<turning<Symbol, unit_vector_node<K, I>, Frame>>...>;
+using rotating_about_axes =
+    motion_list<movement<rotating<Symbol, unit_vector_node<K, I>, Frame>>...>;
 
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::quaternion> {
-  using type = turning_about_axes<Symbol, Frame, kind::vector, 0, 1, 2>;
+  using type = rotating_about_axes<Symbol, Frame, kind::vector, 0, 1, 2>;
 };
 template <class Symbol>
 struct directions<Symbol, hybrid_frame, kind::quaternion>
@@ -186,7 +187,7 @@ struct directions<Symbol, hybrid_frame, kind::quaternion>
 /// In the order of [v; ω].
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::pose> {
-  using type = turning_about_axes<Symbol, Frame, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
+  using type = rotating_about_axes<Symbol, Frame, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
 };
 template <class Symbol>
 struct directions<Symbol, hybrid_frame, kind::pose> {
@@ -197,9 +198,9 @@ struct directions<Symbol, hybrid_frame, kind::pose> {
     return at_point<op::difference>(e, apply<op::cross>(omega, apply<op::translation>(Symbol{})));
   }
   template <int... I>
-  using turning_at_point =
-      motion_list<movement<turning<Symbol, decltype(spatial_twist<I>()), spatial_frame>>...>;
-  using type = turning_at_point<3, 4, 5, 0, 1, 2>;
+  using rotating_at_point =
+      motion_list<movement<rotating<Symbol, decltype(spatial_twist<I>()), spatial_frame>>...>;
+  using type = rotating_at_point<3, 4, 5, 0, 1, 2>;
 };
 
 /// The components of a vector; of a twist ω + εv those of [v; ω].

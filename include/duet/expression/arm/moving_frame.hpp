@@ -118,16 +118,16 @@ DUET_ALWAYS_INLINE void write_twist(double* column, const four_lanes& v, const f
 /// A turn about the I-th coordinate axis, by sine and cosine of half the angle.
 template <int I>
 struct about_axis {
-  static constexpr bool turns = true;
+  static constexpr bool rotates = true;
 };
 /// A translation along the I-th coordinate axis.
 template <int I>
-struct frame_with_z_axis {
-  static constexpr bool turns = false;
+struct along_axis {
+  static constexpr bool rotates = false;
 };
 /// Any rigid motion, by its value and its twists.
 struct any_motion {
-  static constexpr bool turns = true;
+  static constexpr bool rotates = true;
 };
 
 class moving_frame {
@@ -144,14 +144,14 @@ public:
       b = in_plane<j, k>(-sine, cosine);
       q_ = lanes_of(c, I == 0 ? s : 0, I == 1 ? s : 0, I == 2 ? s : 0);
     } else {
-      const four_lanes turned = cosine * a + sine * b;
+      const four_lanes new_a = cosine * a + sine * b;
       b = cosine * b - sine * a;
-      a = turned;
+      a = new_a;
       q_ = c * q_ + times_unit<I>(q_, s);
     }
   }
   template <bool, int I>
-  DUET_ALWAYS_INLINE void append(frame_with_z_axis<I>, double d) {
+  DUET_ALWAYS_INLINE void append(along_axis<I>, double d) {
     origin_ = origin_ + d * axis<I>();
   }
   template <bool>
@@ -175,7 +175,7 @@ public:
     write_twist<IsSet>(column, cross(origin_, omega), omega);
   }
   template <bool IsSet, int I>
-  DUET_ALWAYS_INLINE void write(frame_with_z_axis<I>, double* column, double rate) const {
+  DUET_ALWAYS_INLINE void write(along_axis<I>, double* column, double rate) const {
     write_twist<IsSet>(column, rate * axis<I>(), lanes_of(0, 0, 0, 0));
   }
   /// Any twist ω + εv, told in the frame's own axes.

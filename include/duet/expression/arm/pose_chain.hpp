@@ -53,7 +53,8 @@ struct link_of {
 };
 template <int I, class Angle, class S, class C>
   requires(I < 3)
-struct link_of<applied_node<op::turn, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
+struct link_of<
+    applied_node<op::screw_motion, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
   using link = about_axis<I>;
   using nodes = mp11::mp_list<S, C>;
   template <class Motion>
@@ -61,7 +62,7 @@ struct link_of<applied_node<op::turn, unit_vector_node<kind::dual_vector, I>, An
 };
 template <int I, class D>
 struct link_of<applied_node<op::translation_along, unit_vector_node<kind::vector, I>, D>> {
-  using link = frame_with_z_axis<I>;
+  using link = along_axis<I>;
   using nodes = mp11::mp_list<D>;
   template <class Motion>
   using twist = rate_t<D, Motion>;
@@ -149,9 +150,9 @@ private:
   }();
 
   template <class Factor>
-  using turns = mp11::mp_bool<link_of<Factor>::link::turns>;
-  static constexpr std::size_t first_turn =
-      mp11::mp_find_if<mp11::mp_list<Factors...>, turns>::value;
+  using rotates = mp11::mp_bool<link_of<Factor>::link::rotates>;
+  static constexpr std::size_t first_rotation =
+      mp11::mp_find_if<mp11::mp_list<Factors...>, rotates>::value;
 
   template <std::size_t At, class Factor, class Values, class Moved>
   struct step;
@@ -160,7 +161,7 @@ private:
     template <class Motion>
     static constexpr int column = motions::template index<Motion>;
     using type =
-        factor_step<typename link_of<Factor>::link, At <= first_turn,
+        factor_step<typename link_of<Factor>::link, At <= first_rotation,
                     std::integer_sequence<int, nodes::template index<Values>...>,
                     mp11::mp_list<column_write<
                         column<M>, first_moved[std::size_t(column<M>)] == At,
