@@ -41,7 +41,7 @@ public:
 
   /// Coefficients d_0 … d_n of the f with given values at the angles `angle(k)`.
   [[nodiscard]] static half_of_coefficients interpolated(const values& f) {
-    static const auto turns = [] {
+    static const auto weights = [] {
       std::array<std::complex<double>, std::size_t(samples)> result;
       for (int k = 0; k < samples; ++k) {
         result[std::size_t(k)] = std::polar(1 / double(samples), -angle(k));
@@ -52,7 +52,7 @@ public:
     for (int k = 0; k <= Degree; ++k) {
       std::complex<double> sum = 0;
       for (int j = 0; j < samples; ++j) {
-        sum += f[std::size_t(j)] * turns[std::size_t(k * j % samples)];
+        sum += f[std::size_t(j)] * weights[std::size_t(k * j % samples)];
       }
       result[std::size_t(k)] = sum;
     }
