@@ -20,7 +20,9 @@ namespace op {
 
 struct sqrt : detail::function<sqrt, duet::rule::sqrt> {
   static constexpr bool slopes_take_value = true;
-  static constexpr auto written_slope(auto x) { return whole<1> / (whole<2> * apply<sqrt>(x)); }
+  static constexpr auto symbolic_derivative(auto x) {
+    return whole<1> / (whole<2> * apply<sqrt>(x));
+  }
   static printed print(notation style, const printed& x) {
     return style != notation::text ? detail::latex_root(x) : printed{"sqrt(" + x.text + ")"};
   }
@@ -28,7 +30,7 @@ struct sqrt : detail::function<sqrt, duet::rule::sqrt> {
 struct cbrt : detail::function<cbrt, duet::rule::cbrt> {
   static constexpr detail::function_name name = {"cbrt", ""};
   static constexpr bool slopes_take_value = true;
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / (whole<3> * apply<whole_power<2>>(apply<cbrt>(x)));
   }
 };
@@ -40,12 +42,14 @@ struct exp : detail::function<exp, duet::rule::exp> {
 };
 struct log : detail::function<log, duet::rule::log> {
   static constexpr detail::function_name name = {"log", "\\log"};
-  static constexpr auto written_slope(auto x) { return whole<1> / x; }
+  static constexpr auto symbolic_derivative(auto x) { return whole<1> / x; }
 };
 struct exp2 : detail::function<exp2, duet::rule::exp2> {
   static constexpr detail::function_name name = {"exp2", ""};
   static constexpr bool slopes_take_value = true;
-  static constexpr auto written_slope(auto x) { return apply<log>(whole<2>) * apply<exp2>(x); }
+  static constexpr auto symbolic_derivative(auto x) {
+    return apply<log>(whole<2>) * apply<exp2>(x);
+  }
 };
 struct expm1 : detail::function<expm1, duet::rule::expm1> {
   static constexpr detail::function_name name = {"expm1", ""};
@@ -53,15 +57,19 @@ struct expm1 : detail::function<expm1, duet::rule::expm1> {
 };
 struct log2 : detail::function<log2, duet::rule::log2> {
   static constexpr detail::function_name name = {"log2", ""};
-  static constexpr auto written_slope(auto x) { return whole<1> / (apply<log>(whole<2>) * x); }
+  static constexpr auto symbolic_derivative(auto x) {
+    return whole<1> / (apply<log>(whole<2>) * x);
+  }
 };
 struct log10 : detail::function<log10, duet::rule::log10> {
   static constexpr detail::function_name name = {"log10", ""};
-  static constexpr auto written_slope(auto x) { return whole<1> / (apply<log>(whole<10>) * x); }
+  static constexpr auto symbolic_derivative(auto x) {
+    return whole<1> / (apply<log>(whole<10>) * x);
+  }
 };
 struct log1p : detail::function<log1p, duet::rule::log1p> {
   static constexpr detail::function_name name = {"log1p", ""};
-  static constexpr auto written_slope(auto x) { return whole<1> / (whole<1> + x); }
+  static constexpr auto symbolic_derivative(auto x) { return whole<1> / (whole<1> + x); }
 };
 // A negated argument is taken as it is: one call of the C library gives both sine and cosine of
 // one argument, and where x and −x both occur, one pair serves them.
@@ -84,13 +92,13 @@ struct cos : detail::function<cos, duet::rule::cos> {
 struct tan : detail::function<tan, duet::rule::tan> {
   static constexpr detail::function_name name = {"tan", "\\tan"};
   static constexpr bool slopes_take_value = true;
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<1> + apply<whole_power<2>>(apply<tan>(x));
   }
 };
 struct asin : detail::function<asin, duet::rule::asin> {
   static constexpr detail::function_name name = {"asin", "\\arcsin"};
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / apply<sqrt>(whole<1> - apply<whole_power<2>>(x));
   }
 };
@@ -102,7 +110,7 @@ struct acos : detail::function<acos, duet::rule::acos> {
 };
 struct atan : detail::function<atan, duet::rule::atan> {
   static constexpr detail::function_name name = {"atan", "\\arctan"};
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / (whole<1> + apply<whole_power<2>>(x));
   }
 };

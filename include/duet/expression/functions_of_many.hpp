@@ -25,7 +25,7 @@ namespace op {
 struct atan2 : detail::function<atan2, duet::rule::atan2> {
   static constexpr detail::function_name name = {"atan2", ""};
   template <int I>
-  static constexpr auto written_slope(auto y, auto x) {
+  static constexpr auto symbolic_derivative(auto y, auto x) {
     const auto square = apply<whole_power<2>>(x) + apply<whole_power<2>>(y);
     if constexpr (I == 0) {
       return x / square;
@@ -47,7 +47,7 @@ struct hypot : detail::function<hypot, duet::rule::hypot> {
     return detail::latex_root(squares);
   }
   template <int I, class... X>
-  static constexpr auto written_slope(X... x) {
+  static constexpr auto symbolic_derivative(X... x) {
     return operand<I>(applied_node<hypot, X...>{}) / apply<hypot>(x...);
   }
 };

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/tree/formula.hpp>
@@ -27,11 +27,11 @@ template <class... Motions>
 struct gradient_of<motion_list<Motions...>> {
   using result = value_and_gradient<double, Eigen::VectorXd>;
 
-  template <class Node, class Given>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
+  template <class Node, class Bindings>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
     constexpr int n = int(sizeof...(Motions));
-    using S = typename Given::scalar;
-    auto values = evaluated_nodes<Node, rate_t<Node, Motions>...>(g);
+    using S = typename Bindings::scalar;
+    auto values = evaluated_nodes<Node, rate_t<Node, Motions>...>(b);
     value_and_gradient<S, Eigen::Matrix<S, n, 1>> result;
     result.value = values.template get<0>();
     int i = 0;
@@ -61,18 +61,18 @@ template <class... Motions>
 struct hessian_of<motion_list<Motions...>> {
   using result = value_gradient_and_hessian<double, Eigen::VectorXd, Eigen::MatrixXd>;
 
-  template <class Node, class Given>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
-    return with_second<Node>(g, typename upper_triangle<Node, Motions...>::type{});
+  template <class Node, class Bindings>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
+    return with_second<Node>(b, typename upper_triangle<Node, Motions...>::type{});
   }
 
 private:
-  template <class Node, class Given, class... Second>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto with_second(const Given& g,
+  template <class Node, class Bindings, class... Second>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto with_second(const Bindings& b,
                                                            boost::mp11::mp_list<Second...>) {
     constexpr int n = int(sizeof...(Motions));
-    using S = typename Given::scalar;
-    auto values = evaluated_nodes<Node, rate_t<Node, Motions>..., Second...>(g);
+    using S = typename Bindings::scalar;
+    auto values = evaluated_nodes<Node, rate_t<Node, Motions>..., Second...>(b);
     value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
     result.value = values.template get<0>();
     int i = 0;

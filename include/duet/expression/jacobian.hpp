@@ -5,7 +5,7 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/expression/arm/pose_chain.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/tree/formula.hpp>
@@ -40,13 +40,13 @@ template <class... Motions, class Frame>
 struct jacobian_of<motion_list<Motions...>, Frame> {
   using result = value_and_jacobian<Eigen::VectorXd, Eigen::MatrixXd>;
 
-  template <class Node, class Given>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
+  template <class Node, class Bindings>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
     if constexpr (is_pose_chain<Node> && std::is_same_v<Frame, spatial_frame> &&
-                  std::is_same_v<typename Given::scalar, double>) {
-      return by_factors<Node>(g);
+                  std::is_same_v<typename Bindings::scalar, double>) {
+      return by_factors<Node>(b);
     } else {
-      return by_columns<Node>(g);
+      return by_columns<Node>(b);
     }
   }
 
@@ -58,19 +58,19 @@ private:
   // alone: a block of `if constexpr` would copy them.
 
   template <class Node>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto by_factors(const auto& g) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto by_factors(const auto& b) {
     returned<double, dual_quaternion<double>, 6> result;
     using chain = pose_chain<typename factors<Node>::type, motion_list<Motions...>>;
-    result.value = chain::evaluate(result.jacobian.data(), g);
+    result.value = chain::evaluate(result.jacobian.data(), b);
     return result;
   }
 
-  template <class Node, class Given>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto by_columns(const Given& g) {
-    using S = typename Given::scalar;
+  template <class Node, class Bindings>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto by_columns(const Bindings& b) {
+    using S = typename Bindings::scalar;
     constexpr kind k = Node::kind_of;
     constexpr int rows = k == kind::pose ? 6 : is_matrix(k) ? rows_of(k) * columns_of(k) : 3;
-    auto values = evaluated_nodes<Node, decltype(column_of<Node, Motions, Frame>())...>(g);
+    auto values = evaluated_nodes<Node, decltype(column_of<Node, Motions, Frame>())...>(b);
     returned<S, std::decay_t<decltype(values.template get<0>())>, rows> result;
     result.value = values.template get<0>();
     S* column = result.jacobian.data();

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/matrix/functions.hpp>

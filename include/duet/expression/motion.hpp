@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -41,15 +41,15 @@ template <class Symbol, class Frame>
 struct motion_of {
   using result = moving_value<quaternion<double>, Eigen::VectorXd>;
 
-  template <class Node, class Given>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Given& g) {
+  template <class Node, class Bindings>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
     using by_symbol = movement_of_scalar<Symbol>;
     using velocity_node = decltype(velocity_of<Frame, Node, by_symbol>());
     using acceleration_node = rate_t<velocity_node, by_symbol>;
-    auto values = evaluated_nodes<Node, velocity_node, acceleration_node>(g);
+    auto values = evaluated_nodes<Node, velocity_node, acceleration_node>(b);
     using value = std::decay_t<decltype(values.template get<0>())>;
     constexpr int rows = Node::kind_of == kind::pose ? 6 : 3;
-    moving_value<value, Eigen::Matrix<typename Given::scalar, rows, 1>> result;
+    moving_value<value, Eigen::Matrix<typename Bindings::scalar, rows, 1>> result;
     result.value = values.template get<0>();
     write_column(result.velocity.data(), values.template get<1>());
     write_column(result.acceleration.data(), values.template get<2>());

@@ -6,7 +6,7 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -139,7 +139,7 @@ namespace op {
 
 /// exp(½θ n) of a unit vector or unit line n, with sine and cosine of the half angle as operands,
 /// so that they are shared.
-struct screw_motion {
+struct axis_exponential {
   static constexpr kind kind_of(kind n, kind, kind, kind) { return detail::quaternion_kind(n); }
   template <class N, class Angle, class S, class C>
   static auto value(const N& n, const Angle& angle, const S& s, const C& c) {
@@ -161,7 +161,7 @@ struct screw_motion {
     requires is_zero<DN>
   static constexpr auto differential(auto n, auto angle, auto s, auto c, DN, auto da, auto, auto) {
     return number_node<detail::bits_of(0.5)>{} *
-           (da * (apply<pure>(n) * apply<screw_motion>(n, angle, s, c)));
+           (da * (apply<pure>(n) * apply<axis_exponential>(n, angle, s, c)));
   }
   static printed print(notation style, const printed& n, const printed& angle, const printed& s,
                        const printed& c) {
@@ -219,9 +219,9 @@ struct translation {
 
 namespace detail {
 
-[[nodiscard]] constexpr auto screw_motion_about(const Formula auto& n, const Formula auto& angle) {
+[[nodiscard]] constexpr auto motion_about_axis(const Formula auto& n, const Formula auto& angle) {
   const auto half = angle / whole<2>;
-  return apply<op::screw_motion>(n, angle, apply<op::sin>(half), apply<op::cos>(half));
+  return apply<op::axis_exponential>(n, angle, apply<op::sin>(half), apply<op::cos>(half));
 }
 
 } // namespace detail
@@ -229,23 +229,23 @@ namespace detail {
 /// The rigid motion by the angle θ about and along a screw n + ε(m + h n): a unit direction n, the
 /// moment m = point × n and the pitch h, in units of length per radian. exp(½θ(n + …)) with sine
 /// and cosine instead of exponentials. Directions of other lengths give garbage.
-template <class L, Operands<L> Angle, class Tag = decltype([](op::screw_motion*) {})>
+template <class L, Operands<L> Angle, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto screw(const L& line, const Angle& angle) {
   static_assert(detail::kind_of_operand<L>() == kind::dual_vector,
                 "duet: screw(line, angle) takes a dual vector n + εm, made by line_through or "
                 "make_dual_vector");
-  return detail::screw_motion_about(detail::term<Tag>(line), detail::term<Tag>(angle));
+  return detail::motion_about_axis(detail::term<Tag>(line), detail::term<Tag>(angle));
 }
 /// The rotation by θ about a unit vector n; other lengths give garbage.
-template <class N, Operands<N> Angle, class Tag = decltype([](op::screw_motion*) {})>
+template <class N, Operands<N> Angle, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto rotation_about(const N& n, const Angle& angle) {
   static_assert(
       detail::kind_of_operand<N>() == kind::vector,
       "duet: rotation_about(n, angle) takes a unit vector; for lines there is screw(line, angle)");
-  return detail::screw_motion_about(detail::term<Tag>(n), detail::term<Tag>(angle));
+  return detail::motion_about_axis(detail::term<Tag>(n), detail::term<Tag>(angle));
 }
 /// The translation by d along a unit vector or line, a prismatic joint.
-template <class N, Operands<N> D, class Tag = decltype([](op::screw_motion*) {})>
+template <class N, Operands<N> D, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto translation_along(const N& n, const D& d) {
   const auto direction = apply<op::part_of_dual<false>>(detail::term<Tag>(n));
   return apply<op::translation_along>(direction, detail::term<Tag>(d));
@@ -271,7 +271,7 @@ inline constexpr coordinate<2> z{};
   return make_dual_vector(n, moment);
 }
 /// N17: the pose x ↦ q x q* + t.
-template <class Q, Operands<Q> T, class Tag = decltype([](op::screw_motion*) {})>
+template <class Q, Operands<Q> T, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto pose(const Q& q, const T& t) {
   return apply<op::make_pose>(detail::term<Tag>(q), detail::term<Tag>(t));
 }
@@ -282,12 +282,12 @@ template <class Q, Operands<Q> T, class Tag = decltype([](op::screw_motion*) {})
   return apply<op::translation>(a);
 }
 /// The point x carried along by a pose: R x + t.
-template <PoseTerm A, class X, class Tag = decltype([](op::screw_motion*) {})>
+template <PoseTerm A, class X, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto transform_point(const A& a, const X& x) {
   return rotate(rotation(a), detail::term<Tag>(x)) + translation(a);
 }
 /// N19: a (a* b)^τ of poses.
-template <class A, class B, Operands<A, B> S, class Tag = decltype([](op::screw_motion*) {})>
+template <class A, class B, Operands<A, B> S, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto sclerp(const A& a, const B& b, const S& tau) {
   return slerp<A, B, S, Tag>(a, b, tau);
 }

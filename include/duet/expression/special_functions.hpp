@@ -31,29 +31,29 @@ struct cosh : detail::function<cosh, duet::rule::cosh> {
 struct tanh : detail::function<tanh, duet::rule::tanh> {
   static constexpr detail::function_name name = {"tanh", "\\tanh"};
   static constexpr bool slopes_take_value = true;
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / apply<whole_power<2>>(apply<cosh>(x));
   }
 };
 struct asinh : detail::function<asinh, duet::rule::asinh> {
   static constexpr detail::function_name name = {"asinh", ""};
-  static constexpr auto written_slope(auto x) { return whole<1> / apply<hypot>(whole<1>, x); }
+  static constexpr auto symbolic_derivative(auto x) { return whole<1> / apply<hypot>(whole<1>, x); }
 };
 struct acosh : detail::function<acosh, duet::rule::acosh> {
   static constexpr detail::function_name name = {"acosh", ""};
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / (apply<sqrt>(x - whole<1>) * apply<sqrt>(x + whole<1>));
   }
 };
 struct atanh : detail::function<atanh, duet::rule::atanh> {
   static constexpr detail::function_name name = {"atanh", ""};
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / (whole<1> - apply<whole_power<2>>(x));
   }
 };
 struct erf : detail::function<erf, duet::rule::erf> {
   static constexpr detail::function_name name = {"erf", ""};
-  static constexpr auto written_slope(auto x) {
+  static constexpr auto symbolic_derivative(auto x) {
     return whole<2> / apply<sqrt>(pi_node{}) * apply<exp>(-apply<whole_power<2>>(x));
   }
 };

@@ -87,9 +87,9 @@ struct written_partial<Function, std::integer_sequence<int, K...>, Orders...> {
   template <class... X>
   static constexpr auto of(X... x) {
     if constexpr ((0 + ... + Orders) == 1 && sizeof...(X) == 1) {
-      return Function::written_slope(x...);
+      return Function::symbolic_derivative(x...);
     } else if constexpr ((0 + ... + Orders) == 1) {
-      return Function::template written_slope<argument>(x...);
+      return Function::template symbolic_derivative<argument>(x...);
     } else {
       using lower = written_partial<Function, std::integer_sequence<int, K...>,
                                     (Orders - int(K == argument))...>;

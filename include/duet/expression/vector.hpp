@@ -4,7 +4,7 @@
 #include <duet/dual/rules/of_many.hpp>
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/latex_text.hpp>
@@ -34,10 +34,10 @@ struct unit_vector_node {
 
 namespace detail {
 
-template <kind K, int I, class Given>
-struct leaf<unit_vector_node<K, I>, Given> {
-  static auto value(const Given&) {
-    using real = typename Given::real;
+template <kind K, int I, class Bindings>
+struct leaf<unit_vector_node<K, I>, Bindings> {
+  static auto value(const Bindings&) {
+    using real = typename Bindings::real;
     using T = std::conditional_t<K == kind::vector, real, screw_dual<real>>;
     vector3<T> axis = vector3<T>::Zero();
     if constexpr (I < 3) {

@@ -121,7 +121,7 @@ struct velocity<applied_node<op::rotation, A>, Motion, Frame> {
 
 template <class N, class Angle, class S, class C, class Motion, class Frame>
   requires is_zero<rate_t<N, Motion>>
-struct velocity<applied_node<op::screw_motion, N, Angle, S, C>, Motion, Frame> {
+struct velocity<applied_node<op::axis_exponential, N, Angle, S, C>, Motion, Frame> {
   static constexpr auto make() { return rate_t<Angle, Motion>{} * N{}; }
 };
 

@@ -129,7 +129,7 @@ struct power : detail::function<power, duet::rule::pow> {
     }
   }
   template <int I, class X, class P>
-  static constexpr auto written_slope(X x, P p) {
+  static constexpr auto symbolic_derivative(X x, P p) {
     if constexpr (I == 0) {
       return p * apply<power>(x, p - whole<1>);
     } else {

@@ -54,7 +54,7 @@ struct link_of {
 template <int I, class Angle, class S, class C>
   requires(I < 3)
 struct link_of<
-    applied_node<op::screw_motion, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
+    applied_node<op::axis_exponential, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
   using link = about_axis<I>;
   using nodes = mp11::mp_list<S, C>;
   template <class Motion>
@@ -111,8 +111,8 @@ template <class... Factors, class... Motions, std::size_t... K>
 struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index_sequence<K...>> {
   /// The pose; its Jacobian is written into 6 × n doubles, column by column.
   [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double> evaluate(double* jacobian,
-                                                                           const auto& g) {
-    auto values = evaluated(nodes{}, g);
+                                                                           const auto& b) {
+    auto values = evaluated(nodes{}, b);
     moving_frame f;
     run(f, jacobian, values,
         typename step<K, Factors, typename link_of<Factors>::nodes,

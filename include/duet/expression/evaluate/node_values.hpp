@@ -4,7 +4,7 @@
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/config.hpp>
 #include <duet/dual/rules/elementary.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/node_list.hpp>
 
@@ -217,32 +217,32 @@ template <class Node>
 using is_other_leaf =
     mp11::mp_bool<!is_symbol<Node> && !is_constant_node<Node> && !is_operation<Node>>;
 
-template <class List, class Slots, class Given, class... Symbols, class... Constants,
+template <class List, class Slots, class Bindings, class... Symbols, class... Constants,
           class... Others>
-DUET_ALWAYS_INLINE constexpr void load(Slots& s, const Given& g, node_list<Symbols...>,
+DUET_ALWAYS_INLINE constexpr void load(Slots& s, const Bindings& b, node_list<Symbols...>,
                                        node_list<Constants...>, node_list<Others...>) {
-  using real = typename Given::real;
-  ((value_at<List::template index<Symbols>>(s) = value_in<Symbols>(g)), ...);
-  ((value_at<List::template index<Constants>>(s) = constant_over<real>(value_in<Constants>(g))),
+  using real = typename Bindings::real;
+  ((value_at<List::template index<Symbols>>(s) = value_in<Symbols>(b)), ...);
+  ((value_at<List::template index<Constants>>(s) = constant_over<real>(value_in<Constants>(b))),
    ...);
   ((value_at<List::template index<Others>>(s) = leaf<Others, numbers_as<real>>::value({})), ...);
 }
 
-template <class... Nodes, class Given>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated(node_list<Nodes...>, const Given& g) {
+template <class... Nodes, class Bindings>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated(node_list<Nodes...>, const Bindings& b) {
   using list = node_list<Nodes...>;
-  typename slots<typename list::indices, typename value_of<Nodes, Given>::type...>::type s;
-  load<list>(s, g, mp11::mp_copy_if<list, is_symbol_node>{}, mp11::mp_copy_if<list, is_constant>{},
+  typename slots<typename list::indices, typename value_of<Nodes, Bindings>::type...>::type s;
+  load<list>(s, b, mp11::mp_copy_if<list, is_symbol_node>{}, mp11::mp_copy_if<list, is_constant>{},
              mp11::mp_copy_if<list, is_other_leaf>{});
-  run_from<0, list, !Given::has_library_sines>(s);
+  run_from<0, list, !Bindings::has_library_sines>(s);
   return s;
 }
 
 /// The values of some nodes.
-template <class... Roots, class Given>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated_nodes(const Given& g) {
+template <class... Roots, class Bindings>
+[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated_nodes(const Bindings& b) {
   using list = nodes_of<Roots...>;
-  auto s = evaluated(list{}, g);
+  auto s = evaluated(list{}, b);
   return chosen_values<decltype(s), list::template index<Roots>...>{s};
 }
 

@@ -7,7 +7,7 @@
 #include <duet/core/structure.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
@@ -246,7 +246,7 @@ public:
   template <class... Arguments>
     requires(sizeof...(Arguments) == sizeof...(Nodes) && Structured<Result> &&
              (detail::is_argument<Arguments> && ...) &&
-             ((detail::times_given<Nodes, Arguments...> == 1) && ...))
+             ((detail::times_bound<Nodes, Arguments...> == 1) && ...))
   [[nodiscard]] auto operator()(const Arguments&... arguments) const {
     using S = detail::common_scalar_t<detail::scalar_of_t<typename Arguments::value_type>...>;
     std::vector<S> inputs;

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -180,9 +180,9 @@ public:
   /// the formula was written with is given one, also where simplification removed it. What occurs
   /// more than once is evaluated once.
   template <class... Arguments>
-    requires(detail::slip_of_call<Held, Arguments...> == detail::slip::none)
+    requires(detail::binding_error_of_call<Held, Arguments...> == detail::binding_error::none)
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
-    using values = detail::given<Held, Arguments...>;
+    using values = detail::bindings<Held, Arguments...>;
     return detail::evaluated_nodes<NodeType>(values{held_, arguments...}).template get<0>();
   }
   using detail::refused_calls<Held, detail::value_of_kind<NodeType::kind_of>>::operator();

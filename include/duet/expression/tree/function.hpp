@@ -4,7 +4,7 @@
 #include <duet/core/constants.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/rules/elementary.hpp>
-#include <duet/expression/evaluate/given.hpp>
+#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
@@ -98,9 +98,9 @@ template <class Function, int I, int... K, class... X>
 }
 
 /// What one function of scalars and another have in common. What derives from this has `name` and,
-/// unless its derivative is written by `differential`, what that is printed as: `written_slope(x)`,
-/// of more arguments `written_slope<I>(x…)` by the I-th. Numbers come from `Rule`, the rule of the
-/// dual numbers.
+/// unless its derivative is written by `differential`, what that is printed as:
+/// `symbolic_derivative(x)`, of more arguments `symbolic_derivative<I>(x…)` by the I-th. Numbers
+/// come from `Rule`, the rule of the dual numbers.
 template <class Function, class Rule>
 struct function {
   /// Do the rule's slopes look at the value?
@@ -149,9 +149,9 @@ struct pi_node {
 
 namespace detail {
 
-template <class Given>
-struct leaf<pi_node, Given> {
-  static constexpr auto value(const Given&) { return constant::pi<typename Given::real>(); }
+template <class Bindings>
+struct leaf<pi_node, Bindings> {
+  static constexpr auto value(const Bindings&) { return constant::pi<typename Bindings::real>(); }
 };
 
 } // namespace detail

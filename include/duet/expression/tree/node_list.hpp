@@ -75,20 +75,21 @@ public:
 };
 
 template <class Grown, class... Nodes>
-struct in_order;
+struct evaluation_order;
 template <class... Nodes>
-struct in_order<no_nodes, Nodes...> {
+struct evaluation_order<no_nodes, Nodes...> {
   using type = node_list<Nodes...>;
 };
 template <class Before, class Node, class... Nodes>
-struct in_order<followed_by<Before, Node>, Nodes...> : in_order<Before, Node, Nodes...> {};
+struct evaluation_order<followed_by<Before, Node>, Nodes...>
+    : evaluation_order<Before, Node, Nodes...> {};
 template <class Before, class A, class B, class C, class D, class... Nodes>
-struct in_order<followed_by<followed_by<followed_by<followed_by<Before, A>, B>, C>, D>, Nodes...>
-    : in_order<Before, A, B, C, D, Nodes...> {};
+struct evaluation_order<followed_by<followed_by<followed_by<followed_by<Before, A>, B>, C>, D>,
+                        Nodes...> : evaluation_order<Before, A, B, C, D, Nodes...> {};
 
 /// The nodes that some need, and themselves.
 template <class... Roots>
 using nodes_of =
-    typename in_order<mp11::mp_fold<mp11::mp_list<Roots...>, no_nodes, with_node_t>>::type;
+    typename evaluation_order<mp11::mp_fold<mp11::mp_list<Roots...>, no_nodes, with_node_t>>::type;
 
 } // namespace duet::expression::detail

@@ -76,7 +76,7 @@ struct library_sines {};
 
 /// Arguments and constants of a formula.
 template <class Held, class... Arguments>
-struct given : Held, Arguments... {
+struct bindings : Held, Arguments... {
   static constexpr bool has_library_sines = std::is_base_of_v<holding<library_sines>, Held>;
   /// In which numbers of the formula meet its arguments.
   using real = common_scalar_t<real_type_t<scalar_of_t<typename Arguments::value_type>>...>;
@@ -99,19 +99,19 @@ struct numbers_as {
 };
 
 /// The value of a node that is neither an operation nor given.
-template <class Node, class Given>
+template <class Node, class Bindings>
 struct leaf;
 
-template <std::uint64_t Bits, class Given>
-struct leaf<number_node<Bits>, Given> {
-  static constexpr auto value(const Given&) {
-    return static_cast<typename Given::real>(number_node<Bits>::value);
+template <std::uint64_t Bits, class Bindings>
+struct leaf<number_node<Bits>, Bindings> {
+  static constexpr auto value(const Bindings&) {
+    return static_cast<typename Bindings::real>(number_node<Bits>::value);
   }
 };
-template <kind K, class Given>
-struct leaf<zero_node<K>, Given> {
-  static constexpr auto value(const Given&) {
-    using real = typename Given::real;
+template <kind K, class Bindings>
+struct leaf<zero_node<K>, Bindings> {
+  static constexpr auto value(const Bindings&) {
+    using real = typename Bindings::real;
     constexpr bool is_of_motion = K == kind::dual_vector || K == kind::pose;
     using T = std::conditional_t<is_of_motion, screw_dual<real>, real>;
     if constexpr (K == kind::quaternion || K == kind::pose) {
@@ -124,24 +124,24 @@ struct leaf<zero_node<K>, Given> {
 };
 
 /// In what the value of a node is held.
-template <class Node, class Given>
+template <class Node, class Bindings>
 struct value_of {
-  using type = decltype(leaf<Node, numbers_as<typename Given::real>>::value({}));
+  using type = decltype(leaf<Node, numbers_as<typename Bindings::real>>::value({}));
 };
-template <kind K, char... Letters, class Given>
-struct value_of<symbol_node<K, Letters...>, Given> {
+template <kind K, char... Letters, class Bindings>
+struct value_of<symbol_node<K, Letters...>, Bindings> {
   using type =
-      std::remove_cvref_t<decltype(value_in<symbol_node<K, Letters...>>(std::declval<Given>()))>;
+      std::remove_cvref_t<decltype(value_in<symbol_node<K, Letters...>>(std::declval<Bindings>()))>;
 };
-template <kind K, class Tag, class Given>
-struct value_of<constant_node<K, Tag>, Given> {
-  using type = decltype(constant_over<typename Given::real>(
-      value_in<constant_node<K, Tag>>(std::declval<Given>())));
+template <kind K, class Tag, class Bindings>
+struct value_of<constant_node<K, Tag>, Bindings> {
+  using type = decltype(constant_over<typename Bindings::real>(
+      value_in<constant_node<K, Tag>>(std::declval<Bindings>())));
 };
-template <class Operation, class... Operands, class Given>
-struct value_of<applied_node<Operation, Operands...>, Given> {
+template <class Operation, class... Operands, class Bindings>
+struct value_of<applied_node<Operation, Operands...>, Bindings> {
   using type = decltype(Operation::value(
-      std::declval<const typename value_of<Operands, Given>::type&>()...));
+      std::declval<const typename value_of<Operands, Bindings>::type&>()...));
 };
 
 template <class T>
@@ -150,14 +150,14 @@ template <class Symbol, class T>
 inline constexpr bool is_argument<argument<Symbol, T>> = true;
 
 template <class Symbol, class... Arguments>
-inline constexpr int times_given = (0 + ... +
+inline constexpr int times_bound = (0 + ... +
                                     int(std::is_same_v<Symbol, typename Arguments::symbol_type>));
 
 template <class Item, class... Arguments>
 inline constexpr bool has_value = true; // a constant
 template <kind K, char... Letters, class... Arguments>
 inline constexpr bool has_value<symbol_node<K, Letters...>, Arguments...> =
-    times_given<symbol_node<K, Letters...>, Arguments...> > 0;
+    times_bound<symbol_node<K, Letters...>, Arguments...> > 0;
 
 template <class... Arguments, class... Items>
 [[nodiscard]] constexpr bool has_all_values(const held<Items...>*) {
@@ -165,24 +165,24 @@ template <class... Arguments, class... Items>
 }
 
 /// What is wrong with the arguments of a call.
-enum class slip { none, no_name, unknown, doubled, missing };
+enum class binding_error { none, unnamed, unknown, repeated, missing };
 
 template <class Held, class... Arguments>
-[[nodiscard]] constexpr slip find_slip() {
+[[nodiscard]] constexpr binding_error find_binding_error() {
   if constexpr (!(is_argument<Arguments> && ...)) {
-    return slip::no_name;
+    return binding_error::unnamed;
   } else if constexpr (!(std::is_base_of_v<holding<typename Arguments::symbol_type>, Held> &&
                          ...)) {
-    return slip::unknown;
-  } else if constexpr (((times_given<typename Arguments::symbol_type, Arguments...> > 1) || ...)) {
-    return slip::doubled;
+    return binding_error::unknown;
+  } else if constexpr (((times_bound<typename Arguments::symbol_type, Arguments...> > 1) || ...)) {
+    return binding_error::repeated;
   } else {
-    return has_all_values<Arguments...>(static_cast<const Held*>(nullptr)) ? slip::none
-                                                                           : slip::missing;
+    return has_all_values<Arguments...>(static_cast<const Held*>(nullptr)) ? binding_error::none
+                                                                           : binding_error::missing;
   }
 }
 template <class Held, class... Arguments>
-inline constexpr slip slip_of_call = find_slip<Held, Arguments...>();
+inline constexpr binding_error binding_error_of_call = find_binding_error<Held, Arguments...>();
 
 /// Calls of a formula, or of what is made of it, that are none: every symbol that the formula was
 /// written with has one value, and nothing else has. (Parameters are of other types than those of
@@ -190,19 +190,23 @@ inline constexpr slip slip_of_call = find_slip<Held, Arguments...>();
 template <class Held, class Result>
 struct refused_calls {
   template <class... Arguments>
-    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::no_name)
+    requires(binding_error_of_call<Held, std::remove_cvref_t<Arguments>...> ==
+             binding_error::unnamed)
   DUET_REFUSED("formulas are called by name, as f(u = 0.3)")
   Result operator()(Arguments&&...) const;
   template <class... Arguments>
-    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::unknown)
+    requires(binding_error_of_call<Held, std::remove_cvref_t<Arguments>...> ==
+             binding_error::unknown)
   DUET_REFUSED("a value is given for a symbol that the formula does not have")
   Result operator()(Arguments&&...) const;
   template <class... Arguments>
-    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::doubled)
+    requires(binding_error_of_call<Held, std::remove_cvref_t<Arguments>...> ==
+             binding_error::repeated)
   DUET_REFUSED("two values are given for one symbol")
   Result operator()(Arguments&&...) const;
   template <class... Arguments>
-    requires(slip_of_call<Held, std::remove_cvref_t<Arguments>...> == slip::missing)
+    requires(binding_error_of_call<Held, std::remove_cvref_t<Arguments>...> ==
+             binding_error::missing)
   DUET_REFUSED("a symbol of the formula has no value; say f(u = 0.3, ...) with all of them")
   Result operator()(Arguments&&...) const;
 };
@@ -234,9 +238,9 @@ public:
   [[nodiscard]] constexpr const F& formula() const { return f_; }
 
   template <class... Arguments>
-    requires(slip_of_call<typename F::held_type, Arguments...> == slip::none)
+    requires(binding_error_of_call<typename F::held_type, Arguments...> == binding_error::none)
   [[nodiscard]] DUET_ALWAYS_INLINE auto operator()(const Arguments&... arguments) const {
-    using values = given<typename F::held_type, Arguments...>;
+    using values = bindings<typename F::held_type, Arguments...>;
     return Made::template of<typename F::node_type>(values{f_.held(), arguments...});
   }
   using refused_calls<typename F::held_type, typename Made::result>::operator();
