@@ -22,7 +22,7 @@ namespace duet::expression {
 namespace detail {
 
 /// a if the condition holds, otherwise b, by the `select` that argument-dependent lookup finds for
-/// it.
+/// the type of the condition.
 [[nodiscard]] constexpr auto chosen(const auto& condition, const auto& a, const auto& b) {
   using duet::select;
   return select(
@@ -33,7 +33,7 @@ namespace detail {
 
 namespace op {
 
-/// a < b or a ≤ b, by innermost values.
+/// a < b or a ≤ b of the innermost values, without derivatives.
 template <bool OrEqual>
 struct less {
   static constexpr kind kind_of(kind, kind) { return kind::condition; }

@@ -27,9 +27,9 @@ namespace duet::expression {
 
 namespace detail {
 
-// The derivative of an operation that says none of its own: by dual numbers, to any order.
+// Derivatives of any order of operations without a rule of their own, by dual numbers.
 
-/// x + ε ẋ, with the ε of a derivative inside that of rigid motion.
+/// x + ε ẋ. Dual vectors and poses have this ε in their real and dual parts.
 template <class Tag, class X>
 [[nodiscard]] auto with_rate(const X& x, const auto& rate) {
   return map_scalars(
@@ -48,7 +48,7 @@ template <class Tag, class X>
 
 namespace op {
 
-/// D f(x…)[ẋ…]: operands are those of f, then their rates.
+/// Directional derivative D f(x…)[ẋ…]: its operands are those of f, then their rates.
 template <class Function, class Indices>
 struct pushforward;
 
@@ -80,11 +80,11 @@ struct pushforward<Function, std::index_sequence<I...>> {
 
 namespace detail {
 
-/// How a symbol moves: its own derivative.
+/// Symbol that moves with a rate, a node.
 template <class Symbol, class Rate>
 struct moving {};
 
-/// Which symbols move, and how; the others do not.
+/// Moving symbols with their rates; all other symbols are constant.
 template <class... Moving>
 struct movement {};
 
@@ -103,6 +103,7 @@ template <class Symbol, class Other, class... Rest>
 struct rate_of_symbol<Symbol, movement<Other, Rest...>>
     : rate_of_symbol<Symbol, movement<Rest...>> {};
 
+/// Rate of a node if symbols move: 0, unless one of the specialisations applies.
 template <class Node, class Motion>
 struct rate {
   using type = decltype(zero_of<Node::kind_of>());
@@ -114,7 +115,7 @@ template <kind K, char... Letters, class Motion>
 struct rate<symbol_node<K, Letters...>, Motion>
     : rate_of_symbol<symbol_node<K, Letters...>, Motion> {};
 
-/// What the I-th operand adds by its own rate.
+/// Contribution of the I-th operand to the rate: its slope times its rate.
 template <int I, class Operation, class Rate, class... Operands>
 [[nodiscard]] constexpr auto rate_by_operand(Rate rate, Operands... x) {
   if constexpr (is_zero<Rate>) {
@@ -140,8 +141,8 @@ template <class Operation>
   return apply<Operation>(da, b) + apply<Operation>(a, db);
 }
 
-/// The rate of an operation by those of its operands: by a `differential` of its own, as it is
-/// linear or has slopes, or else by dual numbers.
+/// Rate of an operation by the rates of its operands: by its `differential`, its linearity or its
+/// slopes, otherwise by dual numbers.
 template <class Operation, class... X, class... Rates>
 [[nodiscard]] constexpr auto rate_by_operands(applied_node<Operation, X...> node, Rates... rates) {
   if constexpr (node.kind_of == kind::condition || (is_zero<Rates> && ...)) {
@@ -179,8 +180,8 @@ concept ScalarSymbol = is_symbol_formula<T> && ScalarTerm<T>;
 template <class T>
 concept Symbol = detail::is_symbol_formula<T>;
 
-/// ∂f/∂u of any formula by a scalar symbol: of a scalar, a vector or matrix componentwise,
-/// a quaternion or pose in its own algebra (N6).
+/// ∂f/∂u of any formula with respect to a scalar symbol: of a vector or matrix by component, of a
+/// quaternion or pose in its algebra (N6).
 template <Formula F, detail::ScalarSymbol U>
 [[nodiscard]] constexpr auto derivative(const F& f, const U&) {
   using motion = detail::movement_of_scalar<typename U::node_type>;
@@ -203,7 +204,7 @@ struct moved {
   Direction direction; ///< a formula of the symbol's kind
 };
 
-/// u moves in the direction of another formula of its kind.
+/// Pairs a symbol u with the direction in which it moves, a formula of its kind.
 template <Symbol U, Formula Direction>
 [[nodiscard]] constexpr auto along(const U&, const Direction& direction) {
   static_assert(U::node_type::kind_of == Direction::node_type::kind_of,
@@ -211,7 +212,7 @@ template <Symbol U, Formula Direction>
   return moved<typename U::node_type, Direction>{direction};
 }
 
-/// The derivative of f where symbols move along formulas: Σ ∂f/∂uᵢ u̇ᵢ, as
+/// Directional derivative Σ ∂f/∂uᵢ u̇ᵢ of f, whose symbols move along formulas:
 /// `directional_derivative(f, along(u, v), along(w, s))`.
 template <Formula F, class... SymbolType, class... Direction>
 [[nodiscard]] constexpr auto directional_derivative(const F& f,

@@ -71,8 +71,8 @@ struct log1p : detail::function<log1p, duet::rule::log1p> {
   static constexpr detail::function_name name = {"log1p", ""};
   static constexpr auto symbolic_derivative(auto x) { return whole<1> / (whole<1> + x); }
 };
-// A negated argument is taken as it is: one call of the C library gives both sine and cosine of
-// one argument, and where x and −x both occur, one pair serves them.
+// sin(−x) becomes −sin x, and cos(−x) becomes cos x: sine and cosine of one argument are computed
+// together, and one pair then serves both x and −x.
 struct sin : detail::function<sin, duet::rule::sin> {
   static constexpr detail::function_name name = {"sin", "\\sin"};
   template <class X>
@@ -134,8 +134,8 @@ struct atan : detail::function<atan, duet::rule::atan> {
 [[nodiscard]] constexpr auto acos(const ScalarTerm auto& x) { return apply<op::acos>(x); }
 [[nodiscard]] constexpr auto atan(const ScalarTerm auto& x) { return apply<op::atan>(x); }
 
-/// f with the sines and cosines of the C library, bit for bit. Otherwise those of several doubles
-/// are taken at once, four times as fast and within one unit of the last place too.
+/// f with the sines and cosines of the C library, bit for bit. By default, those of several doubles
+/// are computed together, four times as fast and also within one unit in the last place.
 template <Formula F>
 [[nodiscard]] constexpr auto with_std_sincos(const F& f) {
   return make_formula(typename F::node_type{}, merged(f.held(), held<detail::library_sines>{}));

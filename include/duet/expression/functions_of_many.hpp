@@ -16,7 +16,7 @@
 #include <utility>
 
 /// \file
-/// Functions of two scalars and more.
+/// Functions of two or more scalars.
 
 namespace duet::expression {
 

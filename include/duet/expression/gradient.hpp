@@ -14,7 +14,7 @@
 #include <boost/mp11/list.hpp>
 
 /// \file
-/// Gradients and Hessians of scalar formulas. Which derivatives are zero is known to the compiler.
+/// Gradients and Hessians of scalar formulas, whose structural zeros are known at compile time.
 
 namespace duet::expression {
 
@@ -41,7 +41,7 @@ struct gradient_of<motion_list<Motions...>> {
   }
 };
 
-/// The second derivatives of a node by motions i ≤ j, row by row.
+/// Second derivatives of a node with respect to motions i ≤ j, row by row.
 template <class Node, class... Motions>
 struct upper_triangle {
   using type = boost::mp11::mp_list<>;
@@ -54,7 +54,7 @@ struct upper_triangle<Node, Motion, Rest...> {
       typename upper_triangle<Node, Rest...>::type>;
 };
 
-/// The value, the gradient and the Hessian, its upper triangle evaluated.
+/// The value, the gradient and the Hessian, of which the upper triangle is evaluated.
 template <class Motions>
 struct hessian_of;
 template <class... Motions>
@@ -92,7 +92,7 @@ private:
 
 } // namespace detail
 
-/// f and its gradient by the variables in their order, a function to be called by name:
+/// Value and gradient of f with respect to the variables, a function to be called by name:
 /// `auto [y, g] = gradient(f, wrt(u, w))(u = 0.3, w = w0)`.
 template <Formula F, class... Symbols>
   requires ScalarTerm<F>
@@ -101,7 +101,7 @@ template <Formula F, class... Symbols>
   return detail::called_by_name<gradient, F>(f);
 }
 
-/// f, its gradient and its symmetric Hessian, to be called likewise.
+/// Value, gradient and Hessian of f with respect to the variables, a function to be called by name.
 template <Formula F, class... Symbols>
   requires ScalarTerm<F>
 [[nodiscard]] constexpr auto hessian(const F& f, variables<Symbols...>) {

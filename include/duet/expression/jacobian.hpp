@@ -23,7 +23,7 @@ namespace duet::expression {
 
 namespace detail {
 
-/// What a column of the Jacobian is: a velocity, or the rate of a vector or matrix.
+/// Node of a column of the Jacobian: rate of a vector or matrix, velocity of a rotation or pose.
 template <class Node, class Motion, class Frame>
 [[nodiscard]] constexpr auto column_of() {
   if constexpr (is_matrix(Node::kind_of)) {
@@ -54,8 +54,8 @@ private:
   template <class S, class Value, int Rows>
   using returned = value_and_jacobian<Value, Eigen::Matrix<S, Rows, int(sizeof...(Motions))>>;
 
-  // The results are made in the caller's memory, which g++ does of variables of a whole function
-  // alone: a block of `if constexpr` would copy them.
+  // Two functions, since g++ constructs a result in the memory of the caller only if its scope is
+  // the whole function; it would copy one from a block of `if constexpr`.
 
   template <class Node>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto by_factors(const auto& b) {
@@ -95,22 +95,22 @@ template <class F, class Variables, class Frame>
 
 } // namespace detail
 
-/// f and the matrix ∂f/∂(u, w …), a function to be called by name:
+/// Value of f and Jacobian ∂f/∂(u, w …), a function to be called by name:
 /// `auto [x, J] = jacobian(f, wrt(u, w), frame::spatial)(u = 0.3, w = w0)`.
 ///
-/// Columns are of the variables in their order: a scalar has one, a vector three, a matrix one for
-/// each entry, column by column, a dual vector n + εm six in the order [m; n], a rotation three and
-/// a pose six, in which it moves along its tangent coordinates. Rows: the components of a vector;
-/// the entries of a matrix, column by column as Eigen stores them; the angular velocity of a
-/// rotation (N7); the twist [v; ω] of a pose (N18). Rotations and poses, on both sides, are taken
-/// as unit, and in `frame::spatial`, `frame::body` or `frame::hybrid`, which is that of
-/// [ṗ; ω] in fixed axes.
+/// Columns: one for a scalar, three for a vector, one for each entry of a matrix, column by column,
+/// six for a dual vector n + εm in the order [m; n], three for a rotation and six for a pose, in
+/// tangent coordinates. Rows: the components of a vector; the entries of a matrix, column by column
+/// as Eigen stores them; the angular velocity of a rotation (N7); the twist [v; ω] of a pose (N18).
+/// Rotations and poses, as f and as variables, are assumed to have unit norm. Their velocities are
+/// in `frame::spatial`, `frame::body` or `frame::hybrid`, that of [ṗ; ω] in fixed axes.
 template <Formula F, class... Symbols, FrameConstant Frame>
 [[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>, Frame) {
   return detail::make_jacobian<F, variables<Symbols...>, Frame>(f);
 }
 
-/// The Jacobian of a vector or matrix by scalars, vectors and matrices, where no frame matters.
+/// Jacobian of a vector or matrix with respect to scalars, vectors and matrices, which needs no
+/// frame.
 template <Formula F, class... Symbols>
 [[nodiscard]] constexpr auto jacobian(const F& f, variables<Symbols...>) {
   static_assert(F::node_type::kind_of != kind::quaternion && F::node_type::kind_of != kind::pose &&

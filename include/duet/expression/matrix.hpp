@@ -18,13 +18,13 @@
 #include <utility>
 
 /// \file
-/// Matrices as variables of formulas, and put together from scalars.
+/// Matrix symbols, and matrices of scalar formulas.
 
 namespace duet::expression {
 
 namespace op {
 
-/// The matrix of scalars, row by row.
+/// Matrix of scalars, which are given row by row.
 template <int Rows, int Columns>
 struct entries : linear_operation {
   static constexpr kind kind_of(auto...) { return matrix_kind(Rows, Columns); }
@@ -71,7 +71,7 @@ struct matrix_symbol_of {
   using type = symbol_of_kind<matrix_kind(Rows, Columns), Name>;
 };
 
-/// Each entry by itself, column by column.
+/// Motions of one entry each, column by column.
 template <class Symbol, class Frame, kind K>
   requires(is_sized_matrix(K))
 struct directions<Symbol, Frame, K> {

@@ -59,10 +59,11 @@ struct motion_of {
 
 } // namespace detail
 
-/// The motion of a rotation or pose with a scalar symbol, a function to be called by name:
-/// `auto [q, omega, alpha] = motion(f, u, frame::body)(u = 0.3)`. ω and its derivative by u of a
-/// rotation (N7), the twist [v; ω] and its derivative of a pose (N18), per unit of u, in
-/// `frame::spatial`, `frame::body` or `frame::hybrid`, which is that of [ṗ; ω] in fixed axes.
+/// Value, velocity and acceleration of a rotation or pose with respect to a scalar symbol u, a
+/// function to be called by name: `auto [q, omega, alpha] = motion(f, u, frame::body)(u = 0.3)`.
+/// The velocity is ω of a rotation (N7) or the twist [v; ω] of a pose (N18), the acceleration its
+/// derivative, per unit of u, in `frame::spatial`, `frame::body` or `frame::hybrid`, that of [ṗ; ω]
+/// in fixed axes.
 template <Formula F, Symbol U, FrameConstant Frame>
 [[nodiscard]] constexpr auto motion(const F& f, const U&, Frame) {
   constexpr kind k = F::node_type::kind_of;
@@ -72,7 +73,7 @@ template <Formula F, Symbol U, FrameConstant Frame>
   return detail::called_by_name<motion, F>(f);
 }
 
-/// Without a frame it is not clear which is meant.
+/// Rejected, as the frame is missing.
 template <Formula F, Symbol U>
 DUET_REFUSED("the frame is missing: motion(f, u, frame::spatial) or frame::body")
 detail::called_by_name<detail::motion_of<typename U::node_type, body_frame>, F> motion(const F&,

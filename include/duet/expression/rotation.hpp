@@ -15,8 +15,8 @@
 #include <utility>
 
 /// \file
-/// Formulas of rotations, by unit quaternions, and of rigid motions, by unit dual quaternions: the
-/// same operations (N1–N5, N9, N19), on vectors and on dual vectors.
+/// Formulas of rotations, as unit quaternions, and of rigid motions, as unit dual quaternions: the
+/// same operations (N1–N5, N9, N19) on vectors and on dual vectors.
 
 namespace duet::expression {
 
@@ -65,12 +65,12 @@ struct vec : linear_operation {
   static auto value(const auto& q) { return q.vec(); }
 };
 
-/// exp(v), v half a rotation vector.
+/// exp(v) of half a rotation vector v.
 struct exp_vector {
   static constexpr detail::function_name name = {"exp", "e^{#}"};
   static constexpr kind kind_of(kind v) { return detail::quaternion_kind(v); }
   static auto value(const auto& v) { return duet::exp(v); }
-  /// Where the axis stands still.
+  /// Derivative for a constant axis.
   template <class V, class DV>
     requires(!is_zero<detail::rate_along<V, DV>>)
   static constexpr auto differential(V v, DV) {
@@ -107,7 +107,7 @@ struct slerp {
   }
 };
 
-/// q v q*; its derivative is told by velocities, see velocity.hpp.
+/// q v q*, whose derivative follows from the velocity of q, see velocity.hpp.
 struct rotate {
   static constexpr kind kind_of(kind, kind v) { return v; }
   template <class Q, class V>
@@ -142,7 +142,7 @@ concept AnyVector = VectorTerm<T> || DualVectorTerm<T>;
 
 } // namespace detail
 
-/// N2: q*, the inverse of a unit; of poses the first conjugate.
+/// N2: q*, the inverse of a unit quaternion; of a pose the first conjugate.
 [[nodiscard]] constexpr auto conj(const detail::QuaternionOrPose auto& q) {
   return apply<op::conj>(q);
 }
@@ -163,7 +163,8 @@ template <class P, class Q, class Tag = decltype([](op::rotate*) {})>
 }
 /// The quaternion 0 + v.
 [[nodiscard]] constexpr auto pure(const detail::AnyVector auto& v) { return apply<op::pure>(v); }
-/// N4: exp(v), the rotation by 2|v| about v; of a dual vector, the rigid motion along that screw.
+/// N4: exp(v), the rotation by 2|v| about v; of a dual vector, the rigid motion about and along
+/// that screw.
 [[nodiscard]] constexpr auto exp(const detail::AnyVector auto& v) {
   return apply<op::exp_vector>(v);
 }
@@ -177,12 +178,12 @@ template <detail::QuaternionOrPose Q, class S, class Tag = decltype([](op::rotat
 [[nodiscard]] constexpr auto pow(const Q& q, const S& exponent) {
   return apply<op::power_of_quaternion>(q, detail::term<Tag>(exponent));
 }
-/// N9: a (a* b)^τ the shorter way round.
+/// N9: a (a* b)^τ along the shorter arc.
 template <class A, class B, Operands<A, B> S, class Tag = decltype([](op::rotate*) {})>
 [[nodiscard]] constexpr auto slerp(const A& a, const B& b, const S& tau) {
   return detail::apply_to<op::slerp, Tag>(std::index_sequence_for<A, B, S>{}, a, b, tau);
 }
-/// q v q*, v turned by the rotation; a line, screw or twist carried along by a rigid motion.
+/// q v q*: v rotated by q, or a line, screw or twist displaced by a rigid motion.
 template <class Q, Operands<Q> V, class Tag = decltype([](op::rotate*) {})>
 [[nodiscard]] constexpr auto rotate(const Q& q, const V& v) {
   return apply<op::rotate>(detail::term<Tag>(q), detail::term<Tag>(v));

@@ -17,7 +17,7 @@ namespace duet::expression {
 
 namespace op {
 
-/// [v]×, of which [v]× w = v × w.
+/// [v]×, with [v]× w = v × w.
 struct skew : linear_operation {
   static printed print(notation style, const printed& v) {
     if (style == notation::notes) {
@@ -35,7 +35,7 @@ struct skew : linear_operation {
   }
 };
 
-/// The matrix of q; its derivative is told by velocities.
+/// The rotation matrix of q, whose derivative follows from the velocity of q.
 struct rotation_matrix {
   static constexpr detail::function_name name = {"rotation_matrix", "R"};
   static constexpr kind kind_of(kind) { return matrix_kind(3, 3); }

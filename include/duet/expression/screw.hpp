@@ -25,7 +25,7 @@ namespace duet::expression {
 
 namespace op {
 
-/// a or b of a + εb; what is made of dual numbers becomes what is made of real ones.
+/// a or b of a + εb, over real instead of dual numbers.
 template <bool Dual>
 struct part_of_dual : linear_operation {
   static constexpr detail::function_name name = {
@@ -73,7 +73,7 @@ struct dual_vector_of : linear_operation {
   }
 };
 
-/// p of a rigid motion p + εq, whose velocity is known from that of the motion.
+/// p of a rigid motion p + εq, whose velocity follows from that of the motion.
 struct rotation : linear_operation {
   static printed print(notation style, const printed& a) {
     const char* name = style == notation::notes ? "real" : "rotation";
@@ -103,7 +103,7 @@ struct dual_conj : linear_operation {
 
 } // namespace op
 
-/// a of a + εb: of a dual number, such as the product of two lines, of a dual vector, and of a dual
+/// a of a + εb: of a dual number, such as the product of two lines, of a dual vector or of a dual
 /// quaternion, of which it is the rotation if it is unit.
 template <Term X>
   requires(!VectorTerm<X> && !QuaternionTerm<X>)
@@ -122,7 +122,7 @@ template <Term X>
 template <Term X>
   requires(ScalarTerm<X> || PoseTerm<X>)
 [[nodiscard]] constexpr auto dual_conj(const X& x) { return apply<op::dual_conj>(x); }
-/// N15: the third conjugate p* − εq* of p + εq, which carries points: A (1 + εx) A^(3).
+/// N15: the third conjugate p* − εq* of p + εq, which transforms points: A (1 + εx) A^(3).
 [[nodiscard]] constexpr auto point_conj(const PoseTerm auto& a) { return dual_conj(conj(a)); }
 
 namespace detail {
@@ -137,8 +137,8 @@ namespace detail {
 
 namespace op {
 
-/// exp(½θ n) of a unit vector or unit line n, with sine and cosine of the half angle as operands,
-/// so that they are shared.
+/// exp(½θ n) of a unit vector, unit line or screw n. Sine and cosine of the half angle are
+/// operands, so that several nodes share them.
 struct axis_exponential {
   static constexpr kind kind_of(kind n, kind, kind, kind) { return detail::quaternion_kind(n); }
   template <class N, class Angle, class S, class C>
@@ -190,7 +190,7 @@ struct translation_along {
   }
 };
 
-/// The pose of a rotation, then a translation (N17).
+/// The pose of a rotation followed by a translation (N17).
 struct make_pose {
   static constexpr kind kind_of(kind, kind) { return kind::pose; }
   static auto value(const auto& q, const auto& t) { return duet::pose(q, t); }
@@ -226,9 +226,9 @@ namespace detail {
 
 } // namespace detail
 
-/// The rigid motion by the angle θ about and along a screw n + ε(m + h n): a unit direction n, the
-/// moment m = point × n and the pitch h, in units of length per radian. exp(½θ(n + …)) with sine
-/// and cosine instead of exponentials. Directions of other lengths give garbage.
+/// The rigid motion by the angle θ, in radians, about and along a screw n + ε(m + h n) with a unit
+/// direction n, the moment m = point × n and the pitch h, in units of length per radian. It is
+/// exp(½θ(n + …)), with sine and cosine instead of an exponential. That |n| = 1 is not checked.
 template <class L, Operands<L> Angle, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto screw(const L& line, const Angle& angle) {
   static_assert(detail::kind_of_operand<L>() == kind::dual_vector,
@@ -236,7 +236,7 @@ template <class L, Operands<L> Angle, class Tag = decltype([](op::axis_exponenti
                 "make_dual_vector");
   return detail::motion_about_axis(detail::term<Tag>(line), detail::term<Tag>(angle));
 }
-/// The rotation by θ about a unit vector n; other lengths give garbage.
+/// The rotation by θ, in radians, about a unit vector n, whose length is not checked.
 template <class N, Operands<N> Angle, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto rotation_about(const N& n, const Angle& angle) {
   static_assert(
@@ -281,7 +281,7 @@ template <class Q, Operands<Q> T, class Tag = decltype([](op::axis_exponential*)
 [[nodiscard]] constexpr auto translation(const PoseTerm auto& a) {
   return apply<op::translation>(a);
 }
-/// The point x carried along by a pose: R x + t.
+/// The point x transformed by a pose: R x + t.
 template <PoseTerm A, class X, class Tag = decltype([](op::axis_exponential*) {})>
 [[nodiscard]] constexpr auto transform_point(const A& a, const X& x) {
   return rotate(rotation(a), detail::term<Tag>(x)) + translation(a);

@@ -9,7 +9,8 @@
 #include <utility>
 
 /// \file
-/// Variables of formulas, by name: `symbol<"u"> u;`. Symbols of one name and kind are one.
+/// Variables of formulas, by name: `symbol<"u"> u;`. Symbols of equal name and kind are the same
+/// variable.
 
 namespace duet::expression {
 

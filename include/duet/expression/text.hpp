@@ -31,8 +31,8 @@
 
 namespace duet::expression::detail {
 
-// Formulas as they are written: with derivatives of functions, which are evaluated by rules, put
-// together from other functions.
+// Formulas as they are printed: derivatives of functions, which rules of dual numbers evaluate, are
+// replaced by formulas of other functions.
 
 template <class Node>
 inline constexpr bool has_partial = false;
@@ -43,11 +43,12 @@ inline constexpr bool has_partial<applied_node<op::partial<Function, Orders...>,
 template <class A, class B>
 inline constexpr bool has_partial<applied_node<op::slope_product, A, B>> = true;
 
-/// What stands for the K-th argument of a function while its derivative is derived.
+/// Symbol that stands for the K-th argument of a function while its derivatives are formed; numbers
+/// stand for themselves.
 template <int K, class X>
 using stand_in = std::conditional_t<is_number<X>, X, symbol_node<kind::scalar, '\0', char(K)>>;
 
-/// A node with the arguments of a list in place of what stands for them.
+/// A node in which each stand-in is replaced by the argument from a list.
 template <class Node, class Arguments>
 struct substituted {
   using type = Node;
@@ -77,7 +78,7 @@ struct written<applied_node<op::slope_product, A, B>, true> {
   using type = decltype(written_t<A>{} * written_t<B>{});
 };
 
-/// Of a function's derivative.
+/// Derivative of a function as a formula of its arguments.
 template <class Function, class Numbers, int... Orders>
 struct written_partial;
 template <class Function, int... K, int... Orders>
@@ -141,8 +142,8 @@ namespace detail {
   return {digits, is_negative ? negative : precedence::atom, style, factor_order::number};
 }
 
-/// Greek letters by their names, what follows the letters as an index, columns with an
-/// arrow.
+/// A name in LaTeX: Greek letters by their names, digits and what follows _ as a subscript, columns
+/// with an arrow.
 [[nodiscard]] inline std::string latex_name(const std::string& name, kind k) {
   static constexpr std::array greek = {
       "alpha",   "beta",   "gamma", "delta", "epsilon", "zeta",  "eta",   "theta", "iota",
@@ -172,8 +173,8 @@ namespace detail {
   return k == kind::scalar ? factor_order::symbol : factor_order::in_order;
 }
 
-/// A constant to its last digit: vectors as (x, y, z), quaternions as (w, x, y, z), dual numbers
-/// a + εb as a[b], in LaTeX as they are.
+/// A constant with all its digits: vectors as (x, y, z), quaternions as (w, x, y, z), dual numbers
+/// as a[b], in LaTeX as a + b ε.
 template <class T>
 [[nodiscard]] printed printed_constant(notation style, const T& value) {
   const auto listed = [&](const auto&... x) {
@@ -243,7 +244,7 @@ template <class Operation, class... Operands>
   return style != notation::text ? latex_of_kind(std::move(result), k == kind::scalar) : result;
 }
 
-/// The symbols of a formula, as they look in LaTeX.
+/// Symbols of a formula, to find those that look alike in LaTeX.
 class latex_symbols {
 public:
   template <kind K, char... Letters>
@@ -264,7 +265,7 @@ private:
     kind of;
   };
 
-  /// \throws invalid_input where it looks like another one
+  /// \throws invalid_input if another symbol looks like it
   void add(look now) {
     for (const look& other : seen_) {
       if (other.latex == now.latex) {
@@ -282,7 +283,7 @@ private:
 
 } // namespace detail
 
-/// The formula as one writes it in a program: `2 * x * cos(x^2)`.
+/// The formula as in a program: `2 * x * cos(x^2)`.
 template <Formula F>
 [[nodiscard]] std::string to_text(const F& f) {
   return detail::print(notation::text, detail::written_t<typename F::node_type>{}, f.held()).text;
@@ -299,16 +300,16 @@ template <class Node>
 
 } // namespace detail
 
-/// The formula for a paper, to stand in mathematics mode: `2 x \cos\left(x^{2}\right)`. It equals
+/// The formula in LaTeX, for mathematics mode: `2 x \cos\left(x^{2}\right)`. It equals
 /// the formula wherever that has a value: equal factors are joined to powers and cancelled, equal
-/// terms are collected, and no fraction stands in another, in an exponent or in an argument.
+/// terms are collected, and no fraction is inside of another one, of an exponent or of an argument.
 /// Symbols with the names of Greek letters are those letters; digits, and what follows _, are an
 /// index.
 ///
 /// \param style  `notation::notes` writes rotations and poses as the lecture notes do: cos ½θ + n
 /// sin ½θ (N4), q + ½ε t q (N17)
 /// \throws invalid_input for two symbols that would look alike, as theta1 and theta_1 do, and
-/// a symbol pi beside the number
+/// a symbol pi in addition to the number
 template <Formula F>
 [[nodiscard]] std::string to_latex(const F& f, notation style = notation::latex) {
   detail::latex_symbols().visit(typename F::node_type{});

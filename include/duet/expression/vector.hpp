@@ -25,8 +25,8 @@
 
 namespace duet::expression {
 
-/// The unit vector along the I-th axis; of rigid motion, the line through the origin, or for I = 3,
-/// 4, 5 the translation along an axis. For those who extend duet.
+/// The unit vector along the I-th axis. As a dual vector: the I-th axis as a line, or for I = 3, 4,
+/// 5 the translation along axis I − 3. For those who extend duet.
 template <kind K, int I>
 struct unit_vector_node {
   static constexpr kind kind_of = K;
@@ -103,7 +103,7 @@ struct cross : bilinear_operation {
 /// |v|, of vectors and quaternions
 struct norm;
 
-/// v/|v|, the slopes of the norm, by the rule of the dual numbers.
+/// v/|v|, the gradient of |v|, by the rule of dual numbers.
 struct direction {
   static constexpr kind kind_of(kind v) { return v; }
   template <class V>
@@ -112,7 +112,7 @@ struct direction {
     const auto u = duet::rule::hypot{}.slopes(T(0), T(v[0]), T(v[1]), T(v[2]));
     return vector3<T>(u[0], u[1], u[2]);
   }
-  /// (u × dv) × u/|v|: in dv − u (u · dv) what differs from dv by little would cancel.
+  /// (u × dv) × u/|v|, without the cancellation in dv − u (u · dv).
   static constexpr auto differential(auto v, auto dv) {
     const auto u = apply<direction>(v);
     return apply<cross>(apply<cross>(u, dv) / apply<norm>(v), u);

@@ -20,7 +20,7 @@
 
 namespace duet::expression::detail {
 
-/// A rotation or pose that turns: its velocity in a frame.
+/// Rotation or pose that moves with a velocity, given in a frame.
 template <class Symbol, class Velocity, class Frame>
 struct rotating {};
 
@@ -33,7 +33,8 @@ struct rate_of_symbol<Symbol, movement<rotating<Symbol, Velocity, body_frame>, R
   using type = decltype(number_node<bits_of(0.5)>{} * (Symbol{} * apply<op::pure>(Velocity{})));
 };
 
-/// The vector or dual vector ω of q̇ = ½ ω q or ½ q ω.
+/// Velocity of a rotation or pose: the vector or dual vector ω of q̇ = ½ ω q (spatial) or ½ q ω
+/// (body).
 template <class Frame, class Q, class Motion>
 [[nodiscard]] constexpr auto velocity_of();
 
@@ -46,7 +47,7 @@ template <class Frame, class Q, class Rate>
   }
 }
 
-/// ω + ε(v ± x) of a twist ω + εv: its velocity at another point.
+/// ω + ε(v ± x) of a twist ω + εv: the twist with the velocity of another point.
 template <class Operation>
 [[nodiscard]] constexpr auto at_point(auto twist, auto x) {
   return apply<op::dual_vector_of>(apply<op::part_of_dual<false>>(twist),
@@ -184,7 +185,7 @@ struct directions<Symbol, Frame, kind::quaternion> {
 template <class Symbol>
 struct directions<Symbol, hybrid_frame, kind::quaternion>
     : directions<Symbol, spatial_frame, kind::quaternion> {};
-/// In the order of [v; ω].
+/// Unit twists in the order [v; ω].
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::pose> {
   using type = rotating_about_axes<Symbol, Frame, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
@@ -203,7 +204,7 @@ struct directions<Symbol, hybrid_frame, kind::pose> {
   using type = rotating_at_point<3, 4, 5, 0, 1, 2>;
 };
 
-/// The components of a vector; of a twist ω + εv those of [v; ω].
+/// Writes the components of a vector; of a twist ω + εv those of [v; ω].
 template <class T, class V>
 DUET_ALWAYS_INLINE void write_column(T* column, const V& v) {
   if constexpr (is_screw_dual<typename V::Scalar>) {

@@ -14,8 +14,8 @@
 #include <type_traits>
 
 /// \file
-/// Sums, products and quotients, with what is always right for finite numbers: 0, 1, signs, and
-/// exact arithmetic of numbers that the compiler knows.
+/// Sums, products and quotients. Simplifications hold for all finite numbers: those of 0, 1 and
+/// signs, and exact arithmetic of numbers known at compile time.
 
 namespace duet::expression {
 
@@ -33,10 +33,10 @@ struct embedded_block;
 
 namespace detail {
 
-// Results are held in numbers and vectors of their own, no expression templates. Of vectors this is
-// done by component: Eigen would put three together in packets, which are slower to take apart.
+// Values are numbers and matrices, not expression templates of Eigen. Vectors of three are computed
+// by component: Eigen would use packets, which are slower to take apart.
 
-/// A matrix of Eigen, among the values of formulas.
+/// Eigen matrix, as distinguished from other values of formulas.
 template <class T>
 concept EigenMatrix = requires {
   T::SizeAtCompileTime;
@@ -51,7 +51,7 @@ template <class T>
   }
 }
 
-/// f(a, b), by component of vectors and matrices.
+/// f(a, b), by component if a or b is a vector or matrix.
 template <class F, class A, class B>
 [[nodiscard]] constexpr auto componentwise(const F& f, const A& a, const B& b) {
   if constexpr (ThreeComponents<A> || ThreeComponents<B>) {
@@ -76,20 +76,20 @@ template <class F, class A, class B>
   }
 }
 
-/// A matrix that is 0 but for a block.
+/// True if T is a matrix of zeros with a block X.
 template <class T>
 inline constexpr bool is_embedded_block = false;
 template <int Rows, int Columns, int I, int J, class X>
 inline constexpr bool is_embedded_block<applied_node<op::embedded_block<Rows, Columns, I, J>, X>> =
     true;
-/// Another block in the same place.
+/// The matrix of zeros with a block y at the position of X.
 template <int Rows, int Columns, int I, int J, class X, class Y>
 [[nodiscard]] constexpr auto embedded_like(applied_node<op::embedded_block<Rows, Columns, I, J>, X>,
                                            Y y) {
   return apply<op::embedded_block<Rows, Columns, I, J>>(y);
 }
 
-/// A number below zero, a product with one, or what has a minus.
+/// True for a negative number, a product with one, and a negated term.
 template <class T>
 inline constexpr bool starts_with_minus = is_applied<T, op::negative>;
 template <std::uint64_t Bits>
@@ -98,14 +98,14 @@ template <class A, class B>
 inline constexpr bool starts_with_minus<applied_node<op::product, A, B>> =
     is_number<A>&& starts_with_minus<A>;
 
-/// Two numbers whose sum is one without rounding.
+/// True for two numbers whose sum is exact in double precision.
 template <class A, class B>
 inline constexpr bool has_exact_sum = false;
 template <std::uint64_t A, std::uint64_t B>
 inline constexpr bool has_exact_sum<number_node<A>, number_node<B>> =
     is_sum_exact(number_node<A>::value, number_node<B>::value);
 
-/// Is T the operation applied to a number or constant and U, as 2 − u?
+/// True if T is the operation applied to a number or constant and U, such as 2 − u.
 template <class T, class Operation, class U>
 inline constexpr bool is_of_number_and = false;
 template <class Operation, std::uint64_t Bits, class U>
@@ -150,7 +150,7 @@ template <class A, TermAndConstant<A> B, class Tag = decltype([] {})>
   return apply<op::quotient>(detail::term<Tag>(a), detail::term<Tag>(b));
 }
 
-/// Whether a product has the number a as its first factor. For those who extend duet.
+/// True for a product whose first factor is a number. For those who extend duet.
 template <class T>
 inline constexpr bool has_number = false;
 template <class A, class B>

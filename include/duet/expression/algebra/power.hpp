@@ -27,8 +27,8 @@ namespace op {
 
 struct log;
 
-/// x^n for whole n that the compiler knows: by products from −4 to 5, which are within 4 units of
-/// the last place, beyond by `pow`.
+/// x^n for an integer n known at compile time: by products from −4 to 5, with an error of at most 4
+/// units in the last place, otherwise by `pow`.
 template <int Exponent>
 struct whole_power {
   static_assert(Exponent >= 2 || Exponent <= -1);
@@ -117,7 +117,7 @@ struct power : detail::function<power, duet::rule::pow> {
     using std::pow;
     return static_cast<promote_t<X, P>>(pow(x, p));
   }
-  /// A constant exponent or base has no slope of its own.
+  /// The slope with respect to x is that for constant p, and vice versa.
   template <int I, class Y, class X, class P>
   static Y slope_at(const Y& y, const X& x, const P& p) {
     if constexpr (I == 0 && std::is_same_v<X, Y>) {
@@ -146,7 +146,7 @@ struct power : detail::function<power, duet::rule::pow> {
 
 } // namespace op
 
-/// x^p of scalars. Exponents that the compiler knows, as `c<2>`, are simplified.
+/// x^p of scalars. Integer exponents known at compile time, such as `c<2>`, are simplified.
 template <class X, class P, class Tag = decltype([](op::power*) {})>
   requires Operands<X, P> &&(!QuaternionTerm<X> && !PoseTerm<X>)
       [[nodiscard]] constexpr auto pow(const X& x, const P& p) {

@@ -15,7 +15,7 @@
 #include <type_traits>
 
 /// \file
-/// Products of scalars, quaternions and poses, scaling, and quotients. (Those of matrices are in
+/// Products of scalars, quaternions and poses, scaling, and quotients. (Products of matrices are in
 /// matrix/product.hpp.)
 
 namespace duet::expression {
@@ -30,7 +30,7 @@ struct matrix_product;
 
 namespace detail {
 
-/// The whole exponent of a power of X, 1 for X itself, 0 for what is none.
+/// Integer exponent of T as a power of X; 0 if it is not a power of X.
 template <class T, class X>
 inline constexpr int exponent_of = 0;
 template <class X>
@@ -38,7 +38,7 @@ inline constexpr int exponent_of<X, X> = 1;
 template <int N, class X>
 inline constexpr int exponent_of<applied_node<op::whole_power<N>, X>, X> = N;
 
-/// X of x^n, and x itself of what is no power.
+/// Base X of a power X^n; T itself if it is not a power.
 template <class T>
 struct base {
   using type = T;
@@ -53,19 +53,19 @@ inline constexpr bool is_inverse = false;
 template <class X>
 inline constexpr bool is_inverse<applied_node<op::quotient, number_node<bits_of(1)>, X>> = true;
 
-/// Two numbers whose product is one without rounding.
+/// True for two numbers whose product is exact in double precision.
 template <class A, class B>
 inline constexpr bool has_exact_product = false;
 template <std::uint64_t A, std::uint64_t B>
 inline constexpr bool has_exact_product<number_node<A>, number_node<B>> =
     is_product_exact(number_node<A>::value, number_node<B>::value);
-/// A number and what a product begins with.
+/// True for a number and a product n x if the product of the numbers is exact.
 template <std::uint64_t A, class B, class X>
 inline constexpr bool has_exact_product<number_node<A>, applied_node<op::product, B, X>> =
     has_exact_product<number_node<A>, B>;
 
-/// A product of a number and something else that may take further factors before the number: of a
-/// whole number from 1 to 16, so that nothing overflows that did not.
+/// True for a product n x with an integer n from 1 to 16. Only such an n is moved in front of other
+/// factors, as a larger one could make a product overflow.
 template <class T>
 inline constexpr bool has_small_number = false;
 template <std::uint64_t Bits, class X>
@@ -73,14 +73,14 @@ inline constexpr bool has_small_number<applied_node<op::product, number_node<Bit
     number_node<Bits>::value >= 1 && number_node<Bits>::value <= 16 &&
     number_node<Bits>::value == int(number_node<Bits>::value);
 
-/// a/b is a double without rounding.
+/// True if a/b is exact in double precision.
 [[nodiscard]] constexpr bool is_quotient_exact(double a, double b) {
   const double ratio = b == 0 ? 0 : a / b;
   return b != 0 && ratio * b == a && is_product_exact(ratio, b);
 }
 
-/// A number, a product with one, or a sum of such, all of whose numbers are divided by Divisor
-/// without rounding.
+/// True for a number, a product with one, or a sum of such, whose numbers have exact quotients by
+/// Divisor.
 template <class T, class Divisor>
 inline constexpr bool is_divided_exactly = false;
 template <std::uint64_t A, std::uint64_t B>
@@ -169,8 +169,8 @@ struct product {
   }
 };
 
-/// The slope of a function times the rate of its argument; 0 where the rate is exactly 0, also if
-/// the slope is infinite, as dual numbers have it: of √(x²) at 0.
+/// Slope of a function times the rate of its argument; 0 if the rate is exactly 0, even if the
+/// slope is infinite, as for √(x²) at 0. Dual numbers follow the same rule.
 struct slope_product : bilinear_operation {
   static constexpr kind kind_of(kind, kind) { return kind::scalar; }
   template <class A, class B>
@@ -217,7 +217,7 @@ struct quotient {
     } else if constexpr (!detail::is_divided_exactly<A, B>) {
       return;
     } else if constexpr (is_applied<A, sum>) {
-      // The polynomials of a derivative lose the divisor of what was differentiated.
+      // (4 x + 2)/2 becomes 2 x + 1, as in derivatives of polynomials with a divisor.
       return operand<0>(a) / b + operand<1>(a) / b;
     } else if constexpr (is_applied<A, difference>) {
       return operand<0>(a) / b - operand<1>(a) / b;
@@ -245,11 +245,11 @@ struct quotient {
 
 namespace duet::expression::detail {
 
-/// −M, s M or M/s of what is no scalar.
+/// True for −M, s M and M/s.
 template <class T>
 inline constexpr bool is_scaled =
     is_applied<T, op::negative> || is_applied<T, op::product> || is_applied<T, op::quotient>;
-/// f(−M) = −f(M), and so on, of a linear f.
+/// f of a scaled M for a linear f, with the scale outside: f(−M) = −f(M), f(s M) = s f(M).
 template <class M>
 [[nodiscard]] constexpr auto scaled_outside(applied_node<op::negative, M>, auto f) {
   return -f(M{});
@@ -263,7 +263,7 @@ template <class M, class S>
   return f(M{}) / S{};
 }
 
-/// a of V = a W where a scalar a can be seen, and otherwise 0.
+/// The scalar a if V has the form a W, otherwise 0.
 template <class V, class W>
 [[nodiscard]] constexpr auto factor_of(V v, W) {
   if constexpr (std::is_same_v<V, W>) {
@@ -274,7 +274,7 @@ template <class V, class W>
     return whole<0>;
   }
 }
-/// W of V = a W.
+/// The vector W of a scaled vector V = a W.
 template <class V>
 struct direction {
   using type = V;
@@ -289,7 +289,7 @@ struct direction<applied_node<op::negative, A>> : direction<A> {};
 template <class V>
 using direction_t = typename direction<V>::type;
 
-/// The scalar rate at which V moves along itself by dV; 0 where none can be seen.
+/// The rate ȧ if V = a W moves by dV = ȧ W, otherwise 0.
 template <class V, class DV>
 using rate_along = decltype(factor_of(DV{}, direction_t<V>{}));
 

@@ -12,17 +12,17 @@
 #include <cstring>
 
 /// \file
-/// Rigid motions in doubles while factors are appended: the columns of the rotation, which are the
-/// axes of the joints, the origin, and the quaternion.
+/// Frame in doubles that a product of rigid motions moves factor by factor: its axes, which are the
+/// columns of the rotation matrix, its origin, and its quaternion.
 
-// Separate from duet::detail::displacement, by which chains are followed: seven joints and their
-// Jacobian take 1054 instructions in lanes, 1161 by displacements (g++ -O2; clang -O2: 974 and
-// 1066; twenty joints: 2839 and 3063, 2710 and 2991).
+// Faster here than duet::detail::displacement of kinematic chains: pose and Jacobian of seven
+// joints take 1054 instructions instead of 1161 (g++ -O2; clang -O2: 974 and 1066), of twenty
+// joints 2839 instead of 3063 (2710 and 2991).
 
 namespace duet::expression::detail {
 
-// Vectors of three doubles, the last lane 0, and quaternions for kernels: in one vector where the
-// target has vectors of four, in two of two where it has not.
+// Four doubles, a quaternion or a vector of three with last lane 0: one SIMD vector if the target
+// has vectors of four doubles, otherwise two of two.
 
 #if DUET_VECTOR_BYTES >= 32
 
@@ -32,7 +32,7 @@ using four_lanes = duet::detail::vector_of<double, 4>;
   return four_lanes{a, b, c, d};
 }
 
-/// Some lanes of a, which are 0 to 3, and of b, 4 to 7.
+/// Four lanes of a and b by their numbers: 0 to 3 are lanes of a, 4 to 7 those of b.
 template <int I, int J, int K, int L>
 [[nodiscard]] DUET_ALWAYS_INLINE four_lanes shuffled(const four_lanes& a, const four_lanes& b) {
   return duet::detail::lanes_taken<I, J, K, L>(a, b);
@@ -69,7 +69,7 @@ template <int I>
                                                             const four_lanes& b) {
   return I < 2 ? a.lower : I < 4 ? a.upper : I < 6 ? b.lower : b.upper;
 }
-/// Some lanes of a, which are 0 to 3, and of b, 4 to 7.
+/// Four lanes of a and b by their numbers: 0 to 3 are lanes of a, 4 to 7 those of b.
 template <int I, int J, int K, int L>
 [[nodiscard]] DUET_ALWAYS_INLINE four_lanes shuffled(const four_lanes& a, const four_lanes& b) {
   using duet::detail::lanes_taken;
@@ -85,7 +85,7 @@ template <int I, int J, int K, int L>
   return shuffled<1, 2, 0, 3>(c, c);
 }
 
-/// A quaternion, scalar first, times s times the I-th unit vector.
+/// Product q (s e_I) of a quaternion, scalar first, and the scaled I-th unit vector.
 template <int I>
 [[nodiscard]] DUET_ALWAYS_INLINE four_lanes times_unit(const four_lanes& q, double s) {
   if constexpr (I == 0) {
@@ -97,7 +97,7 @@ template <int I>
   }
 }
 
-/// A column [v; ω] of a Jacobian, set or added to.
+/// Sets a column of a Jacobian to [v; ω], or adds that to it.
 template <bool IsSet>
 DUET_ALWAYS_INLINE void write_twist(double* column, const four_lanes& v, const four_lanes& omega) {
   four_lanes upper = shuffled<0, 1, 2, 4>(v, omega);
@@ -115,24 +115,26 @@ DUET_ALWAYS_INLINE void write_twist(double* column, const four_lanes& v, const f
   }
 }
 
-/// A turn about the I-th coordinate axis, by sine and cosine of half the angle.
+/// Rotation about the I-th coordinate axis, by sine and cosine of half the angle.
 template <int I>
 struct about_axis {
   static constexpr bool rotates = true;
 };
-/// A translation along the I-th coordinate axis.
+/// Translation along the I-th coordinate axis.
 template <int I>
 struct along_axis {
   static constexpr bool rotates = false;
 };
-/// Any rigid motion, by its value and its twists.
+/// Any rigid motion, by its pose and its twists.
 struct any_motion {
   static constexpr bool rotates = true;
 };
 
 class moving_frame {
 public:
-  /// Moved along with its own axes. IsFirst: these still are the fixed ones.
+  /// Appends a motion relative to the axes of the frame.
+  ///
+  /// \tparam IsFirst  true if these still are the fixed axes
   template <bool IsFirst, int I>
   DUET_ALWAYS_INLINE void append(about_axis<I>, double s, double c) {
     constexpr int j = (I + 1) % 3, k = (I + 2) % 3;
@@ -168,7 +170,7 @@ public:
     q_ = lanes_of(q.w(), q.x(), q.y(), q.z());
   }
 
-  /// The twist in fixed axes, of a turn or translation at some rate.
+  /// Writes the spatial twist of a rotation or translation with a rate.
   template <bool IsSet, int I>
   DUET_ALWAYS_INLINE void write(about_axis<I>, double* column, double rate) const {
     const four_lanes omega = rate * axis<I>();
@@ -178,7 +180,7 @@ public:
   DUET_ALWAYS_INLINE void write(along_axis<I>, double* column, double rate) const {
     write_twist<IsSet>(column, rate * axis<I>(), lanes_of(0, 0, 0, 0));
   }
-  /// Any twist ω + εv, told in the frame's own axes.
+  /// Writes the spatial twist of a twist ω + εv given in the axes of the frame.
   template <bool IsSet>
   DUET_ALWAYS_INLINE void write(any_motion, double* column,
                                 const dual_vector<double>& twist) const {
@@ -202,7 +204,7 @@ private:
   [[nodiscard]] DUET_ALWAYS_INLINE const four_lanes& axis() const {
     return I == 0 ? x_ : I == 1 ? y_ : z_;
   }
-  /// p along the J-th axis and q along the K-th.
+  /// Vector p e_J + q e_K.
   template <int J, int K>
   [[nodiscard]] DUET_ALWAYS_INLINE static four_lanes in_plane(double p, double q) {
     return lanes_of(J == 0   ? p
@@ -216,6 +218,7 @@ private:
                              : 0,
                     0);
   }
+  /// Vector in fixed axes with the components x, y and z along the axes of the frame.
   [[nodiscard]] DUET_ALWAYS_INLINE four_lanes carried(double x, double y, double z) const {
     return x * x_ + y * y_ + z * z_;
   }

@@ -21,8 +21,8 @@
 #include <utility>
 
 /// \file
-/// Products of rigid motions in doubles and their spatial Jacobians, factor by factor: a joint
-/// contributes its axis, displaced by the factors before it.
+/// Products of rigid motions and their spatial Jacobians in doubles, factor by factor: the column
+/// of a joint is its axis, displaced by the factors before it.
 
 namespace duet::expression::detail {
 
@@ -37,13 +37,14 @@ struct factors<applied_node<op::product, A, B>> {
   using type = mp11::mp_append<typename factors<A>::type, typename factors<B>::type>;
 };
 
-/// A product of at least two rigid motions.
+/// True for a product of at least two rigid motions.
 template <class Node>
 inline constexpr bool is_pose_chain = false;
 template <class A, class B>
 inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> = A::kind_of == kind::pose;
 
-/// How a factor is appended, and the nodes that this and its twists need.
+/// Class of a factor for `moving_frame`, the nodes whose values it is appended with, and the node
+/// of its twist if symbols move.
 template <class Factor>
 struct link_of {
   using link = any_motion;
@@ -68,9 +69,8 @@ struct link_of<applied_node<op::translation_along, unit_vector_node<kind::vector
   using twist = rate_t<D, Motion>;
 };
 
-/// A factor, and those of the motions that move it: the ones of its symbols, a short list as a
-/// rule. What a compiler spends on a chain grows with these, not with the product of factors and
-/// motions.
+/// The motions that move a factor, with its twists. They are found by the symbols of the factor, so
+/// that compile time does not grow with the number of all pairs of factors and motions.
 template <class Factor, class Motions>
 struct moved_factor {
   template <class Symbol>
@@ -88,7 +88,8 @@ struct moved_factor {
   using roots = mp11::mp_append<typename link_of<Factor>::nodes, twists>;
 };
 
-/// What a factor does, by the places of values and the numbers of columns.
+/// Evaluation step of a factor: it writes its columns of the Jacobian and is appended to the frame.
+/// Values are given by index.
 template <class Link, bool IsFirst, class Values, class Writes>
 struct factor_step;
 template <int Column, bool IsSet, int Twist>
@@ -109,7 +110,7 @@ template <class Factors, class Motions,
 struct pose_chain;
 template <class... Factors, class... Motions, std::size_t... K>
 struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index_sequence<K...>> {
-  /// The pose; its Jacobian is written into 6 × n doubles, column by column.
+  /// Returns the pose and writes its Jacobian into 6 × n doubles, column by column.
   [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double> evaluate(double* jacobian,
                                                                            const auto& b) {
     auto values = evaluated(nodes{}, b);
@@ -133,7 +134,7 @@ private:
       mp11::mp_apply<nodes_of, mp11::mp_append<typename moved_factor<Factors, motions>::roots...>>;
   static constexpr std::size_t count = sizeof...(Factors);
 
-  /// Of each motion the first factor that it moves.
+  /// Index of the first factor that a motion moves, for each motion.
   using firsts = std::array<std::size_t, sizeof...(Motions)>;
   template <class... M>
   static constexpr void note(firsts& first, [[maybe_unused]] std::size_t factor,

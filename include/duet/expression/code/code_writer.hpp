@@ -254,7 +254,9 @@ concept HasSinePairs = requires(const L& language) {
 };
 
 /// Writes each node as one statement, or, where it is used once and the line has room, into that
-/// which uses it. \param inputs  how the i-th input number is written
+/// which uses it.
+///
+/// \param inputs  how the i-th input number is written
 template <CodeLanguage Language>
 [[nodiscard]] code_body write_body(const formula_graph& f, const std::vector<std::string>& inputs,
                                    const std::string& prefix, const Language& language) {
@@ -345,7 +347,9 @@ template <CodeLanguage Language>
   return x.kind == shape::matrix && is_row_major ? k % x.rows * x.columns + k / x.rows : k;
 }
 
-/// A sentence on a value, for comments. \param order  of matrices, behind a comma
+/// A sentence on a value, for comments.
+///
+/// \param order  of matrices, behind a comma
 [[nodiscard]] inline std::string described(const named_value& x, const std::string& order) {
   switch (x.kind) {
   case shape::scalar:
@@ -412,7 +416,9 @@ struct code_names {
                      [&](int node) { return needed[std::size_t(node)]; });
 }
 
-/// The texts of all numbers of the inputs. \param at  (value, name, row, column) of a number
+/// The texts of all numbers of the inputs.
+///
+/// \param at  (value, name, row, column) of a number
 template <class F>
 [[nodiscard]] std::vector<std::string> input_texts(const formula_graph& f, const code_names& names,
                                                    const F& at) {

@@ -17,11 +17,12 @@
 #include <utility>
 
 /// \file
-/// Arguments of an evaluation, by name, and errors for missing, unknown and repeated ones.
+/// Values bound to the symbols of a formula, and compile-time errors for missing, unknown and
+/// repeated ones.
 
 namespace duet::expression::detail {
 
-/// The value of a symbol.
+/// Value bound to a symbol.
 template <class Symbol, class T>
 struct argument {
   using symbol_type = Symbol;
@@ -34,7 +35,7 @@ inline constexpr bool is_screw_dual = false;
 template <class T>
 inline constexpr bool is_screw_dual<screw_dual<T>> = true;
 
-/// What an argument is made of; of rigid motion, real and dual part apart.
+/// Scalar type of an argument; of dual vectors and poses, that of the real and dual parts.
 template <class T>
 struct scalar_of {
   using type = T;
@@ -46,7 +47,7 @@ struct scalar_of<screw_dual<T>> {
 template <class T>
 using scalar_of_t = typename scalar_of<typename structure<T>::scalar>::type;
 
-/// The scalar that holds some; of none a double.
+/// Common type of some scalars; double if there are none.
 template <class... T>
 struct common_scalar : std::common_type<T...> {};
 template <>
@@ -56,7 +57,7 @@ struct common_scalar<> {
 template <class... T>
 using common_scalar_t = typename common_scalar<T...>::type;
 
-/// A constant as arguments of some precision meet it.
+/// Constant converted to the precision of the arguments.
 template <class Real, class T>
 [[nodiscard]] constexpr auto constant_over(const T& x) {
   const auto of_part = [](const auto& part) { return constant_over<Real>(part); };
@@ -71,14 +72,14 @@ template <class Real, class T>
   }
 }
 
-/// In what a formula holds: it wants the sines of the C library.
+/// Item of a formula that requires the sines and cosines of the C library.
 struct library_sines {};
 
-/// Arguments and constants of a formula.
+/// Values bound to the symbols of a formula, and its constants.
 template <class Held, class... Arguments>
 struct bindings : Held, Arguments... {
   static constexpr bool has_library_sines = std::is_base_of_v<holding<library_sines>, Held>;
-  /// In which numbers of the formula meet its arguments.
+  /// Floating-point type of the numbers in the formula, by that of the arguments.
   using real = common_scalar_t<real_type_t<scalar_of_t<typename Arguments::value_type>>...>;
   using scalar = common_scalar_t<real, scalar_of_t<typename Arguments::value_type>...>;
 };
@@ -92,13 +93,13 @@ template <class Node, class T>
   return x.value;
 }
 
-/// What numbers in a formula are made of.
+/// Bindings of which only the type of numbers is needed.
 template <class Real>
 struct numbers_as {
   using real = Real;
 };
 
-/// The value of a node that is neither an operation nor given.
+/// Value of a node that is neither an operation nor bound, such as a number.
 template <class Node, class Bindings>
 struct leaf;
 
@@ -123,7 +124,7 @@ struct leaf<zero_node<K>, Bindings> {
   }
 };
 
-/// In what the value of a node is held.
+/// Type of the value of a node.
 template <class Node, class Bindings>
 struct value_of {
   using type = decltype(leaf<Node, numbers_as<typename Bindings::real>>::value({}));
@@ -164,7 +165,7 @@ template <class... Arguments, class... Items>
   return (has_value<Items, Arguments...> && ...);
 }
 
-/// What is wrong with the arguments of a call.
+/// Error in the arguments of a call.
 enum class binding_error { none, unnamed, unknown, repeated, missing };
 
 template <class Held, class... Arguments>
@@ -184,9 +185,10 @@ template <class Held, class... Arguments>
 template <class Held, class... Arguments>
 inline constexpr binding_error binding_error_of_call = find_binding_error<Held, Arguments...>();
 
-/// Calls of a formula, or of what is made of it, that are none: every symbol that the formula was
-/// written with has one value, and nothing else has. (Parameters are of other types than those of
-/// the right calls: clang 14 does not tell by what they require what a `using` brings along.)
+/// Rejected calls of a formula or of a function made from it. A valid call binds one value to each
+/// symbol that the formula was written with, and none to others. (The parameters differ in type
+/// from those of valid calls: clang 14 does not distinguish functions from a `using` declaration by
+/// constraints.)
 template <class Held, class Result>
 struct refused_calls {
   template <class... Arguments>
@@ -211,7 +213,7 @@ struct refused_calls {
   Result operator()(Arguments&&...) const;
 };
 
-/// What an ordinary value of a kind is.
+/// Type of an ordinary value of a kind, over double.
 template <kind K>
 struct kind_value {
   using type = decltype(leaf<zero_node<K>, numbers_as<double>>::value({}));
@@ -227,8 +229,8 @@ struct kind_value<kind::condition> {
 template <kind K>
 using value_of_kind = typename kind_value<K>::type;
 
-/// What is made of a formula and called by name as the formula is: `Made::of` of its node where
-/// `given` holds values that are complete; `Made::result` has the members of what that returns.
+/// Function made from a formula and called as the formula is, such as a gradient: it returns
+/// `Made::of<Node>(bindings)`. `Made::result` has the members of the result.
 template <class Made, class F>
 class called_by_name : refused_calls<typename F::held_type, typename Made::result> {
 public:

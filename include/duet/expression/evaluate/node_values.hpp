@@ -17,11 +17,11 @@
 #include <utility>
 
 /// \file
-/// Evaluation of formulas: all different nodes in one list, operands first, each evaluated once. It
-/// proceeds in stages: all sines that are ready are computed together.
+/// Evaluation of formulas: all different nodes in one list, operands first, each evaluated once.
+/// Each stage first computes all sines and cosines whose arguments are known, together.
 ///
-/// Nodes are identified by their numbers in the list, as functions whose names contain long lists
-/// of long types would take most of the compile time.
+/// Nodes are identified by their indices in the list: functions whose names contain long lists of
+/// types would take most of the compile time.
 
 namespace duet::expression {
 
@@ -34,7 +34,7 @@ struct cos;
 
 namespace detail {
 
-/// The values of nodes by their numbers: of one type in an array, of different ones each in a base.
+/// Values of nodes by index: in an array if they have one type, otherwise each in a base class.
 template <int I, class T>
 struct slot {
   T value;
@@ -67,7 +67,7 @@ template <int I, class T, int Count>
   return s.values[I];
 }
 
-/// Some of the values, in an order.
+/// Values of all nodes, of which those with the indices I … are accessible.
 template <class Slots, int... I>
 struct chosen_values : Slots {
   template <int K>
@@ -75,7 +75,7 @@ struct chosen_values : Slots {
     constexpr int indices[] = {I...};
     return value_at<indices[K]>(static_cast<Slots&>(*this));
   }
-  /// f of Count of them, from the First-th on.
+  /// Calls f for Count of the accessible values, from the First-th on.
   template <int First, int Count, class F>
   DUET_ALWAYS_INLINE constexpr void each(const F& f) {
     [&]<int... K>(std::integer_sequence<int, K...>) DUET_INLINE_LAMBDA {
@@ -85,7 +85,7 @@ struct chosen_values : Slots {
   }
 };
 
-/// How many sines or cosines must have been taken before a node can be evaluated.
+/// Stage in which a node is evaluated: the depth to which sines and cosines are nested in it.
 template <class Node>
 inline constexpr int stage_of = 0;
 template <class Operation, class... Operands>
@@ -96,7 +96,7 @@ inline constexpr int stage_of<applied_node<op::sin, X>> = stage_of<X> + 1;
 template <class X>
 inline constexpr int stage_of<applied_node<op::cos, X>> = stage_of<X> + 1;
 
-/// The I-th value is that of an operation on the others.
+/// Sets the I-th value to that of an operation on other values.
 template <int I, class Operation, int... Operands>
 struct instruction {
   template <class Slots>
@@ -105,7 +105,7 @@ struct instruction {
   }
 };
 
-/// The sine or cosine of the I-th value is asked for, or both, the others being −1.
+/// Computes sine, cosine or both of the I-th value. The index of a result that is not needed is −1.
 template <int I, int Sine, int Cosine>
 struct sine_instruction {
   template <class Slots>
@@ -131,7 +131,7 @@ struct sine_instruction {
   }
 };
 
-/// What is done for a node in a stage.
+/// Instructions for a node in a stage.
 template <class List, int Stage, class Node>
 struct work {
   using operations = mp11::mp_list<>;
@@ -165,7 +165,7 @@ struct work<List, Stage, applied_node<op::cos, X>> {
 
 template <class Slots, class... Instructions>
 DUET_ALWAYS_INLINE constexpr void run(Slots& s, mp11::mp_list<Instructions...>) {
-  // No fold: clang lets them nest 256 deep.
+  // An array, as clang limits fold expressions to 256 operands.
   [[maybe_unused]] const bool done[] = {true, (Instructions::run(s), true)...};
 }
 template <bool AtOnce, class Slots, int... I, int... Sine, int... Cosine>
@@ -194,7 +194,7 @@ struct stage<Stage, node_list<Nodes...>> {
   static constexpr bool is_last = Stage >= std::max({0, stage_of<Nodes>...});
 };
 
-/// A stage begins with its sines, whose arguments are there.
+/// Runs the stages from `Stage` on: first the sines and cosines of each, then its operations.
 template <int Stage, class List, bool AtOnce, class Slots>
 DUET_ALWAYS_INLINE constexpr void run_from(Slots& s) {
   using now = stage<Stage, List>;
@@ -238,7 +238,7 @@ template <class... Nodes, class Bindings>
   return s;
 }
 
-/// The values of some nodes.
+/// Evaluates some nodes.
 template <class... Roots, class Bindings>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated_nodes(const Bindings& b) {
   using list = nodes_of<Roots...>;

@@ -36,7 +36,7 @@ template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::vector> {
   using type = moving_along_axes<Symbol, kind::vector, 0, 1, 2>;
 };
-/// In the order of [m; n], that of twists.
+/// Components of n + εm in the order [m; n], that of twists.
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::dual_vector> {
   using type = moving_along_axes<Symbol, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
@@ -47,10 +47,10 @@ inline constexpr bool is_variables = false;
 
 } // namespace detail
 
-/// Variables in an order; made by `wrt`.
+/// Ordered variables of differentiation; made by `wrt`.
 template <class... Symbols>
 struct variables {
-  /// How they move, where rotations and poses move in a frame.
+  /// Motions of the variables, one for each column; rotations and poses move in a frame.
   template <class Frame>
   using motions_in = boost::mp11::mp_append<detail::motion_list<>,
                                             typename detail::directions<Symbols, Frame>::type...>;
@@ -62,15 +62,15 @@ namespace detail {
 template <class... Symbols>
 inline constexpr bool is_variables<variables<Symbols...>> = true;
 
-/// What is called as `wrt` says is.
+/// Arguments that do not begin with `variables`.
 template <class... X>
 concept NoVariables = sizeof...(X) == 0 || !is_variables<std::tuple_element_t<0, std::tuple<X...>>>;
 
 } // namespace detail
 
-/// With respect to u, w …: the columns of a Jacobian in this order. They are one for a scalar,
-/// three for a vector or a rotation, six for a dual vector n + εm, in the order [m; n], or a pose,
-/// one for each entry of a matrix, column by column.
+/// Variables of differentiation u, w …, whose order is that of the columns of a Jacobian. A scalar
+/// has one column, a vector or a rotation three, a dual vector n + εm, in the order [m; n], or a
+/// pose six, a matrix one for each entry, column by column.
 template <Symbol... U>
   requires(sizeof...(U) > 0)
 [[nodiscard]] constexpr variables<typename U::node_type...> wrt(const U&...) { return {}; }

@@ -144,7 +144,7 @@ inline constexpr std::array signatures{
     signature{"quaternion", "ssss"},
 };
 
-/// The function of scalars that has the name; `number` if there is none.
+/// The function of scalars that has the name, or `number`.
 [[nodiscard]] constexpr operation scalar_function(std::string_view name) {
   if (name == "ln" || name == "fabs") {
     return name == "ln" ? operation::log : operation::abs;

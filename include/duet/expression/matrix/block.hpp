@@ -18,8 +18,8 @@
 #include <type_traits>
 
 /// \file
-/// Blocks of matrices, transposed matrices, and a block among zeros, which is how derivatives by
-/// entries begin.
+/// Blocks of matrices, transposed matrices, and matrices of zeros with a block, which derivatives
+/// with respect to entries contain.
 
 namespace duet::expression {
 
@@ -29,8 +29,8 @@ struct transpose;
 template <int Rows, int Columns>
 struct entries;
 
-/// Zeros but for the block X that begins at (I, J). Only derivatives by entries
-/// have it, which are not printed.
+/// Matrix of zeros with a block X that begins at (I, J). It is never printed, as only derivatives
+/// with respect to entries contain it.
 template <int Rows, int Columns, int I, int J>
 struct embedded_block : linear_operation {
   static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
@@ -59,11 +59,11 @@ struct embedded_block : linear_operation {
 
 namespace detail {
 
-/// 1 at (I, J), otherwise 0.
+/// Matrix with 1 at (I, J) and 0 elsewhere.
 template <int Rows, int Columns, int I, int J>
 using unit_matrix = decltype(apply<op::embedded_block<Rows, Columns, I, J>>(whole<1>));
 
-/// Whether all but a block is known to be 0, and where that is: X of `embedded_block`.
+/// Block of a matrix outside of which all entries are known to be 0, such as X of `embedded_block`.
 template <class M>
 struct sparsity {
   static constexpr bool is_sparse = false;
@@ -91,7 +91,7 @@ struct sparsity<unit_vector_node<kind::vector, I>> {
 
 namespace op {
 
-/// The Rows x Columns entries that begin at (I, J).
+/// Block of Rows x Columns entries that begins at (I, J).
 template <int I, int J, int Rows, int Columns>
 struct block : linear_operation {
   static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
@@ -141,7 +141,7 @@ private:
   static constexpr auto of(applied_node<entries<R, C>, X...>) {
     return std::tuple_element_t<std::size_t(I * C + J), std::tuple<X...>>{};
   }
-  /// What of the block that is not 0 is in this one.
+  /// Intersection of this block with the one outside of which the matrix is 0.
   template <class S>
   static constexpr auto of_sparse() {
     constexpr int top = std::max(I, S::row), bottom = std::min(I + Rows, S::row + S::rows);
@@ -199,7 +199,7 @@ template <int I, int J, int Rows, int Columns, MatrixTerm M>
                 "duet: an entry or a block that is not in the matrix");
   return apply<op::block<I, J, Rows, Columns>>(m);
 }
-/// A_IJ, counted from 0; of a column J may be left out.
+/// The entry A_IJ, counted from 0; J may be omitted for a column.
 template <int I, int J = 0, MatrixTerm M>
 [[nodiscard]] constexpr auto entry(const M& m) {
   return block<I, J, 1, 1>(m);

@@ -38,8 +38,8 @@ template <class M>
   return result;
 }
 
-/// By products and sums alone: elimination would divide by pivots, and so have no derivative where
-/// A is singular.
+/// Determinant by cofactors, which is differentiable everywhere. Elimination would divide by pivots
+/// and have no derivative where A is singular.
 template <class M>
 [[nodiscard]] auto determinant_of(const M& m) {
   using T = typename M::Scalar;
@@ -59,7 +59,7 @@ template <class M>
 
 namespace op {
 
-/// adj A, of which A adj A = det A.
+/// adj A, with A adj A = det A times the identity.
 struct adjugate {
   static constexpr detail::function_name name = {"adjugate", "\\operatorname{adj}"};
   static constexpr kind kind_of(kind m) { return m; }
@@ -84,7 +84,7 @@ struct adjugate {
     }
     return result;
   }
-  /// Of two rows, where it is linear in its entries.
+  /// Derivative for 2 x 2, where adj A is linear in the entries.
   template <class M>
     requires(rows_of(M::kind_of) == 2)
   static constexpr auto differential(M, auto dm) { return apply<adjugate>(dm); }
@@ -177,7 +177,7 @@ template <class Operation, class M>
 
 } // namespace detail
 
-/// Σ A_ij B_ij of two matrices of one size: xᵀ y of columns, tr(Aᵀ B) of others.
+/// Σ A_ij B_ij of two matrices of equal size: xᵀ y of columns, tr(Aᵀ B) of others.
 template <class A, detail::SizedOperands<A> B, class Tag = decltype([](op::inverse*) {})>
 [[nodiscard]] constexpr auto dot(const A& a, const B& b) {
   static_assert(detail::kind_of_operand<A>() == detail::kind_of_operand<B>(),
@@ -194,12 +194,12 @@ template <Term M>
 [[nodiscard]] constexpr auto trace(const detail::ScalarOrMatrix auto& m) {
   return detail::apply_to_square<op::trace>(m);
 }
-/// det A of a square matrix, a polynomial of its entries with the derivative tr(adj(A) dA), of
-/// every matrix, singular ones included.
+/// det A of a square matrix, with the derivative tr(adj(A) dA), even if A is singular.
 [[nodiscard]] constexpr auto determinant(const detail::ScalarOrMatrix auto& m) {
   return detail::apply_to_square<op::determinant>(m);
 }
-/// adj A, the transposed cofactors of a square matrix: A adj A = det A, of every matrix.
+/// adj A, the transposed cofactors of a square matrix: A adj A is det A times the identity, even if
+/// A is singular.
 [[nodiscard]] constexpr auto adjugate(const detail::ScalarOrMatrix auto& m) {
   return detail::apply_to_square<op::adjugate>(m);
 }

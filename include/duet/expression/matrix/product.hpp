@@ -16,14 +16,14 @@
 #include <algorithm>
 
 /// \file
-/// Products of matrices and their traces. A factor that is 0 but for a block takes out of the other
-/// one what it needs.
+/// Products of matrices and their traces. If a factor is 0 outside of a block, only those rows or
+/// columns of the other one that meet the block are multiplied.
 
 namespace duet::expression {
 
 namespace detail {
 
-/// A factor over S; what Eigen can multiply as it is, as it is.
+/// A factor, converted to S if that is a field: products of dual numbers and their parts need none.
 template <class S, class M>
 [[nodiscard]] decltype(auto) factor_over(const M& m) {
   if constexpr (Field<S>) {
@@ -79,7 +79,7 @@ struct matrix_product {
   }
 };
 
-/// tr(A B), without the product.
+/// tr(A B), without computing A B.
 struct trace_of_product : bilinear_operation {
   static constexpr kind kind_of(kind, kind) { return kind::scalar; }
   template <class A, class B>
@@ -116,7 +116,7 @@ struct trace : linear_operation {
   }
 
 private:
-  /// Of what is not 0, where the diagonal meets it.
+  /// Trace of a matrix that is 0 outside of a block: that of the part of the block on the diagonal.
   template <class S>
   static constexpr auto of_sparse() {
     constexpr int begin = std::max(S::row, S::column);

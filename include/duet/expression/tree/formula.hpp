@@ -17,7 +17,8 @@
 #include <utility>
 
 /// \file
-/// A formula: a node and the constants in it, and how operations are applied.
+/// Formulas, which are a tree of operations and the constants in it, and the application of
+/// operations.
 
 namespace duet::expression {
 
@@ -29,7 +30,7 @@ namespace duet::expression {
 template <Node NodeType, class Held>
 class formula;
 
-/// Is T a `formula`?
+/// True if T is a `formula`.
 template <class T>
 inline constexpr bool is_formula = false;
 template <class NodeType, class Held>
@@ -46,7 +47,7 @@ namespace duet::expression {
 template <class T>
 concept Formula = is_formula<std::remove_cv_t<T>>;
 
-/// A node by itself, as in the rules of derivatives, or a formula.
+/// A formula, or a node alone, as in rules of differentiation.
 template <class T>
 concept Term = Node<T> || Formula<T>;
 
@@ -79,7 +80,7 @@ concept ScalarTerm = Term<T> && detail::kind_of_term<T>()
 template <class T>
 concept VectorTerm = Term<T> && detail::kind_of_term<T>()
 == kind::vector;
-/// A matrix that is no scalar; a vector is one of 3 x 1.
+/// A formula or node of a vector of three or any other matrix that is not a scalar.
 template <class T>
 concept MatrixTerm = Term<T> && is_matrix(detail::kind_of_term<T>());
 template <class T>
@@ -94,12 +95,12 @@ concept PoseTerm = Term<T> && detail::kind_of_term<T>()
 
 namespace detail {
 
-/// A column of three, of Eigen.
+/// Eigen column vector of three components.
 template <class T>
 concept ThreeComponents = std::derived_from<T, Eigen::MatrixBase<T>> && T::RowsAtCompileTime == 3 &&
                           T::ColsAtCompileTime == 1;
 
-/// Which kind of constant an ordinary value is, and what it is held in.
+/// Kind of an ordinary value, and the type that holds it in a formula.
 template <class T>
 struct constant_traits {};
 template <class T>
@@ -135,7 +136,7 @@ concept Constant = !std::is_array_v<T> && requires {
   detail::constant_traits<T>::kind_of;
 };
 
-/// What an operation takes: at least one formula, the others formulas or constants.
+/// Operands of an operation: at least one term, the others terms or constants.
 template <class... T>
 concept Operands = (Term<T> || ...) && ((Term<T> || Constant<T>)&&...);
 
@@ -145,7 +146,7 @@ concept TermAndConstant = Operands<A, B> && !(Term<A> && Term<B>);
 
 namespace detail {
 
-/// Of a term or a constant.
+/// Kind of a term or a constant.
 template <class T>
 [[nodiscard]] constexpr kind kind_of_operand() {
   if constexpr (Term<T>) {
@@ -154,16 +155,16 @@ template <class T>
     return constant_traits<T>::kind_of;
   }
 }
-/// An ordinary value of that kind.
+/// Ordinary value of kind K.
 template <class T, kind K>
 concept ConstantOf = Constant<T> && constant_traits<T>::kind_of == K;
-/// Operands of which one at least is a matrix that is neither scalar nor vector.
+/// Operands of which at least one is a matrix that is neither a scalar nor a vector of three.
 template <class... T>
 concept SizedOperands = Operands<T...> &&(is_sized_matrix(kind_of_operand<T>()) || ...);
 
 } // namespace detail
 
-/// A formula: its type is the tree of its operations, its members are its constants alone.
+/// A formula: its type is the tree of its operations, its only data are its constants.
 template <Node NodeType, class Held>
 class formula : detail::refused_calls<Held, detail::value_of_kind<NodeType::kind_of>> {
 public:
@@ -176,9 +177,9 @@ public:
   /// The constants.
   [[nodiscard]] constexpr const Held& held() const { return held_; }
 
-  /// The value where symbols have values: `f(u = 0.3, w = w0)`, over any scalars. Every symbol that
-  /// the formula was written with is given one, also where simplification removed it. What occurs
-  /// more than once is evaluated once.
+  /// Evaluates the formula for values of its symbols, `f(u = 0.3, w = w0)`, over any scalars. Every
+  /// symbol that the formula was written with takes one value, even if simplification removed it.
+  /// Equal subexpressions are evaluated once.
   template <class... Arguments>
     requires(detail::binding_error_of_call<Held, Arguments...> == detail::binding_error::none)
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
@@ -187,7 +188,7 @@ public:
   }
   using detail::refused_calls<Held, detail::value_of_kind<NodeType::kind_of>>::operator();
 
-  /// A value for a symbol, to be handed to a formula.
+  /// Binds a value to a symbol, as an argument of a formula.
   template <class T>
     requires(is_symbol<NodeType>&& detail::ConstantOf<T, NodeType::kind_of>)
   [[nodiscard]] constexpr auto operator=(const T& value) const {
@@ -211,7 +212,7 @@ private:
   DUET_NO_UNIQUE_ADDRESS Held held_;
 };
 
-/// A formula of what is already a node.
+/// Formula of a node.
 template <class NodeType, class Held>
 [[nodiscard]] constexpr formula<NodeType, Held> make_formula(NodeType, const Held& held) {
   return formula<NodeType, Held>(held);
@@ -219,9 +220,10 @@ template <class NodeType, class Held>
 
 namespace detail {
 
-// What tells constants apart is the type of a closure, another one wherever a function is called.
-// Each header's closures take a parameter of their own: clang 14 counts closures by namespace
-// block, but names them by namespace, so those of two headers would be taken for one.
+// Constants are distinguished by the type of a closure in a default template argument: each call in
+// the source code has a new one. The closures of each header have a separate type of parameter:
+// clang 14 numbers closures per namespace block but mangles them per namespace, so that closures of
+// two headers would be one type.
 
 template <class Tag, Term T>
 [[nodiscard]] constexpr const T& term(const T& x) {
@@ -238,8 +240,8 @@ template <class Tag, Constant T>
 [[nodiscard]] constexpr held<> held_of(const Node auto&) { return {}; }
 [[nodiscard]] constexpr const auto& held_of(const Formula auto& x) { return x.held(); }
 
-/// An operation says by `simplified` what is simpler; where that fits nothing or returns nothing,
-/// the operation stays.
+/// Node of an operation, simplified: the result of `Operation::simplified`, or the operation itself
+/// if that does not accept the operands or returns void.
 template <class Operation, Node... N>
 [[nodiscard]] constexpr auto simplified() {
   if constexpr ((std::derived_from<Operation, linear_operation> && (is_zero<N> && ...)) ||
@@ -254,7 +256,7 @@ template <class Operation, Node... N>
 
 } // namespace detail
 
-/// The operation applied to terms, simplified. Nodes give a node, formulas a formula.
+/// Applies an operation to terms and simplifies the result: a node of nodes, a formula of formulas.
 template <class Operation, Node... N>
 [[nodiscard]] constexpr auto apply(N...) {
   return decltype(detail::simplified<Operation, N...>()){};
@@ -272,7 +274,7 @@ namespace detail {
 template <class Tag, std::size_t I>
 struct numbered_tag {};
 
-/// The operation applied to terms and constants of one place in the code.
+/// Applies an operation to terms and constants of one call, whose constants share a tag.
 template <class Operation, class Tag, std::size_t... I, class... X>
 [[nodiscard]] constexpr auto apply_to(std::index_sequence<I...>, const X&... x) {
   return apply<Operation>(term<numbered_tag<Tag, I>>(x)...);

@@ -23,16 +23,16 @@ namespace duet::expression {
 
 namespace op {
 
-/// The derivative of a function, of order `Orders` by each of its arguments, by the rule of the
-/// dual numbers. Its operands are the arguments, behind the value, or 0 where the rule does not
-/// look at that.
+/// Partial derivative of a function, of order `Orders` with respect to each argument, by the rule
+/// of dual numbers. Its operands are the value of the function, or 0 if the rule does not use it,
+/// and the arguments.
 template <class Function, int... Orders>
 struct partial {
   static constexpr kind kind_of(auto...) { return kind::scalar; }
   template <int I, class... X>
   static constexpr auto slope_by(X... x) {
     if constexpr (I == 0) {
-      return whole<0>; // the value moves as the arguments do
+      return whole<0>; // the slopes by arguments include the change of the value
     } else {
       return [&]<int... K>(std::integer_sequence<int, K...>) {
         return apply<partial<Function, (Orders + int(K == I - 1))...>>(x...);
@@ -71,7 +71,7 @@ struct partial {
     }
   }
 
-  /// The last argument by which it is a derivative.
+  /// Index of the last argument of differentiation.
   static constexpr int last_argument = [] {
     const int orders[] = {Orders...};
     int i = int(sizeof...(Orders)) - 1;
@@ -86,7 +86,7 @@ struct partial {
 
 namespace detail {
 
-/// The derivative by the I-th argument.
+/// Partial derivative with respect to the I-th argument.
 template <class Function, int I, int... K, class... X>
 [[nodiscard]] constexpr auto partial_by(std::integer_sequence<int, K...>, X... x) {
   using operation = op::partial<Function, int(K == I)...>;
@@ -97,13 +97,12 @@ template <class Function, int I, int... K, class... X>
   }
 }
 
-/// What one function of scalars and another have in common. What derives from this has `name` and,
-/// unless its derivative is written by `differential`, what that is printed as:
-/// `symbolic_derivative(x)`, of more arguments `symbolic_derivative<I>(x…)` by the I-th. Numbers
-/// come from `Rule`, the rule of the dual numbers.
+/// Base of functions of scalars; `Rule`, the rule of dual numbers, computes values and slopes. A
+/// derived class has a `name` and either `differential` or the derivative as it is printed,
+/// `symbolic_derivative(x)`, or `symbolic_derivative<I>(x…)` with respect to the I-th argument.
 template <class Function, class Rule>
 struct function {
-  /// Do the rule's slopes look at the value?
+  /// True if the slopes of the rule use the value.
   static constexpr bool slopes_take_value = false;
 
   static constexpr kind kind_of(auto...) { return kind::scalar; }
@@ -111,7 +110,7 @@ struct function {
   static common_scalar_t<X...> value(const X&... x) {
     return Rule{}.value(common_scalar_t<X...>(x)...);
   }
-  /// The derivative by the I-th argument where the value is y.
+  /// Derivative with respect to the I-th argument; y is the value.
   template <int I, class Y, class... X>
   static Y slope_at(const Y& y, const X&... x) {
     if constexpr (sizeof...(X) == 1) {

@@ -18,13 +18,13 @@
 
 namespace duet::expression {
 
-/// A constant of a place in the code, and what its value is held in.
+/// A constant, and the type of its value.
 template <class ConstantNode, class T>
 struct held_constant {};
 
 namespace detail {
 
-/// A symbol: nothing to hold.
+/// Storage for an item of a formula: the value of a constant, nothing for a symbol.
 template <class Item>
 struct holding {};
 template <class ConstantNode, class T>
@@ -56,7 +56,7 @@ void refuse(const T& a, const T& b) {
                                     ", which would be taken for one; make what changes a symbol"));
 }
 
-/// Refuses another value of a constant that both hold.
+/// Raises `invalid_input` if a constant has different values in a and b.
 template <class Item, class A, class B>
 constexpr void require_same_value(const A& a, const B& b) {
   if constexpr (!std::is_empty_v<holding<Item>> && std::is_base_of_v<holding<Item>, A>) {
@@ -68,7 +68,7 @@ constexpr void require_same_value(const A& a, const B& b) {
   }
 }
 
-/// Items if they are not held already.
+/// List of an item, empty if A holds it already.
 template <class A, class Item>
 using if_new = boost::mp11::mp_if_c<std::is_base_of_v<holding<Item>, A>, boost::mp11::mp_list<>,
                                     boost::mp11::mp_list<Item>>;
@@ -82,8 +82,10 @@ merged_with(const held<InA...>& a, const held<InB...>& b, boost::mp11::mp_list<N
 
 } // namespace detail
 
-/// What either holds. \throws invalid_input where one place in the code, as in a function that was
-/// called twice, made constants of different values
+/// Constants and symbols that a or b holds.
+///
+/// \throws invalid_input if one constant has two values, as in formulas of a function that was
+/// called with different numbers
 template <class... InA, class... InB>
 [[nodiscard]] constexpr auto merged(const held<InA...>& a, const held<InB...>& b) {
   using added =

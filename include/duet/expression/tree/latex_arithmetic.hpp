@@ -68,7 +68,7 @@ namespace duet::expression::detail {
   return latex_printed(t);
 }
 
-/// A product of vectors, as a · b, linear in each: scalars stand before it.
+/// Bilinear product of vectors, such as a · b, with their scalar factors in front.
 [[nodiscard]] inline printed latex_bilinear(const printed& a, const char* sign, const printed& b,
                                             precedence beside, factor_order order) {
   latex_term t = as_product(latex_terms(a));
@@ -120,8 +120,8 @@ namespace duet::expression::detail {
           {}};
 }
 
-/// What an operation has printed, as a part of others: a scalar is a factor that commutes, also
-/// where it is put together from what does not, as x^T A x.
+/// Result of an operation as an operand of others. A scalar is a factor that commutes, even if it
+/// is composed of factors that do not, such as x^T A x.
 [[nodiscard]] inline printed latex_of_kind(printed p, bool is_scalar) {
   p.style = notation::latex;
   if (p.terms.empty() && !is_scalar) {

@@ -11,8 +11,8 @@
 #include <utility>
 
 /// \file
-/// Sums brought over their common denominators, so that no fraction stands in another. For those
-/// who extend duet.
+/// Sums of fractions over a common denominator, so that no fraction contains another. For those who
+/// extend duet.
 
 namespace duet::expression::detail {
 
@@ -23,7 +23,7 @@ namespace duet::expression::detail {
   }
   return result;
 }
-/// Is there a fraction in the sum, or in a sum in it that is no root's?
+/// True if the sum, or a sum among its factors that is not under a root, has a fraction.
 [[nodiscard]] inline bool has_fraction(const latex_sum& sum) {
   bool result = false;
   for (const latex_term& t : sum) {
@@ -35,7 +35,7 @@ namespace duet::expression::detail {
   return result;
 }
 
-/// Do all terms have one factor below the line?
+/// True if all terms have a common factor in the denominator.
 [[nodiscard]] inline bool has_common_denominator(const latex_sum& sum) {
   bool result = false;
   for (const latex_factor& f : sum[0].factors) {
@@ -48,7 +48,7 @@ namespace duet::expression::detail {
   return result;
 }
 
-/// What all terms of a sum without fractions have as a factor, numbers included.
+/// Greatest common factor of the terms of a sum without fractions, numbers included.
 [[nodiscard]] inline latex_term common_factor(const latex_sum& sum) {
   latex_term common = whole_term(0);
   if (sum.empty()) {
@@ -70,7 +70,7 @@ namespace duet::expression::detail {
 
 [[nodiscard]] inline latex_term without_inner_fractions(const latex_term& t, bool is_inner);
 
-/// A sum of scalars as one fraction, with what its terms have in common before it.
+/// A sum of scalars as one fraction, with the common factor of its numerator in front.
 [[nodiscard]] inline latex_term over_common_denominator(const latex_sum& sum) {
   latex_sum terms;
   latex_term below;
@@ -82,7 +82,7 @@ namespace duet::expression::detail {
       return as_product(sum);
     }
     for (latex_factor f : fraction.factors) {
-      f.halves = -f.halves - halves_of(f, below); // what it lacks
+      f.halves = -f.halves - halves_of(f, below); // power of f that the common denominator lacks
       if (f.halves > 0) {
         multiply(below, f);
       }
@@ -117,8 +117,8 @@ namespace duet::expression::detail {
   return result;
 }
 
-/// t, in which sums with fractions are brought over their common denominators if t is a fraction
-/// itself, or stands in one, or if all their terms have that denominator.
+/// t with each factor that is a sum of fractions brought over a common denominator, if t is a
+/// fraction or inside of one, or if all terms of the sum share a denominator.
 [[nodiscard]] inline latex_term without_inner_fractions(const latex_term& t, bool is_inner) {
   is_inner = is_inner || is_fraction(t);
   latex_term result = t;

@@ -12,17 +12,20 @@
 #include <vector>
 
 /// \file
-/// Sums of products put together as one does on paper: equal factors become powers, equal terms are
+/// Arithmetic of sums of products: equal factors become powers, terms with equal factors are
 /// collected. For those who extend duet.
 
 namespace duet::expression::detail {
 
 using latex_sum = std::vector<latex_term>;
 
-/// Larger whole numbers are factors like others: two products of such numbers have a sum.
+/// Largest numerator and denominator of a term: a sum of two products of such numbers does not
+/// overflow. Larger integers become factors.
 inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
 
-/// t becomes t above/below, or stays, and false, where that is a fraction of too large numbers.
+/// Multiplies t by above/below, below > 0.
+///
+/// \return false, with t unchanged, if numerator or denominator would exceed `largest_whole`
 [[nodiscard]] inline bool scale_if_small(latex_term& t, std::int64_t above, std::int64_t below) {
   above *= t.above;
   below *= t.below;
@@ -44,7 +47,7 @@ inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
   t.above = n;
   return t;
 }
-/// A product of one factor.
+/// Product of one factor.
 [[nodiscard]] inline latex_term product_of(const latex_factor& f) {
   latex_term t;
   (f.order == factor_order::in_order ? t.in_order : t.factors).push_back(f);
@@ -53,7 +56,7 @@ inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
 
 [[nodiscard]] inline int sign_of_ratio(const latex_factor& f, const latex_factor& g);
 
-/// The exponent, doubled, of the base of f in t.
+/// Twice the exponent that the base of f has in t; 0 if it does not occur.
 [[nodiscard]] inline int halves_of(const latex_factor& f, const latex_term& t) {
   for (const latex_factor& g : t.factors) {
     const int sign = sign_of_ratio(f, g);
@@ -64,7 +67,7 @@ inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
   return 0;
 }
 
-/// Are they equal but for their numbers?
+/// True if the terms are equal except for their numbers.
 [[nodiscard]] inline bool has_same_factors(const latex_term& a, const latex_term& b) {
   bool same = a.factors.size() == b.factors.size() && a.in_order.size() == b.in_order.size();
   for (const latex_factor& f : a.factors) {
@@ -76,7 +79,7 @@ inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
   return same;
 }
 
-/// s of bases f = s g, for s = 1 or -1, where one can be seen; otherwise 0.
+/// The sign s if the bases are found to satisfy f = s g with s = ±1; otherwise 0.
 [[nodiscard]] inline int sign_of_ratio(const latex_factor& f, const latex_factor& g) {
   if (f.text == g.text) {
     return 1;
@@ -101,7 +104,7 @@ inline constexpr std::int64_t largest_whole = std::int64_t(1) << 30;
 [[nodiscard]] inline latex_term power(const latex_term& t, int n);
 inline void multiply(latex_term& t, const latex_term& by);
 
-/// t becomes t f.
+/// Multiplies t by f.
 inline void multiply(latex_term& t, const latex_factor& f) {
   if (f.text == "1") {
     return;
@@ -121,7 +124,7 @@ inline void multiply(latex_term& t, const latex_factor& f) {
     t.above *= sign < 0 && f.halves % 4 != 0 ? -1 : 1;
   }
   const latex_factor joined = t.factors[k];
-  const bool is_product = joined.terms.size() == 1 && joined.halves % 2 == 0; // a root no longer
+  const bool is_product = joined.terms.size() == 1 && joined.halves % 2 == 0; // as √(x y)² = x y
   if (is_product || joined.halves == 0) {
     t.factors.erase(t.factors.begin() + std::ptrdiff_t(k));
   }
@@ -130,7 +133,7 @@ inline void multiply(latex_term& t, const latex_factor& f) {
   }
 }
 
-/// t becomes t (above/below)^n.
+/// Multiplies t by (above/below)^n.
 inline void multiply(latex_term& t, std::int64_t above, std::int64_t below, int n = 1) {
   latex_term result;
   result.above = t.above;
@@ -149,7 +152,7 @@ inline void multiply(latex_term& t, std::int64_t above, std::int64_t below, int 
   multiply(t, number_factor(std::to_string(below), -2 * n));
 }
 
-/// t becomes t `by`.
+/// Multiplies t by another term.
 inline void multiply(latex_term& t, const latex_term& by) {
   multiply(t, by.above, by.below);
   if (t.above == 0) {
@@ -165,7 +168,7 @@ inline void multiply(latex_term& t, const latex_term& by) {
   }
 }
 
-/// t^n of a t that commutes; 1/0 stays a fraction.
+/// t^n of a t whose factors commute; 1/0 remains a fraction.
 [[nodiscard]] inline latex_term power(const latex_term& t, int n) {
   if (t.above == 0 && n < 0) {
     return product_of(number_factor("0", 2 * n));
@@ -184,7 +187,7 @@ inline void multiply(latex_term& t, const latex_term& by) {
   return result;
 }
 
-/// A sum as one product, of one factor if it has several terms.
+/// A sum as a product: its term if it has one, otherwise the sum as a single factor.
 [[nodiscard]] inline latex_term as_product(const latex_sum& sum) {
   if (sum.size() == 1) {
     return sum[0];
@@ -195,15 +198,15 @@ inline void multiply(latex_term& t, const latex_term& by) {
   return product_of({part.text, part.outermost, order, 0, sum, {}, 2});
 }
 
-/// The sum that t is but for a number; otherwise null.
+/// The sum s if t is s times a number; otherwise null.
 [[nodiscard]] inline const latex_sum* only_sum(const latex_term& t) {
   const bool is_one = t.below == 1 && t.factors.size() + t.in_order.size() == 1;
   const latex_factor* f = !is_one ? nullptr : &(t.factors.empty() ? t.in_order : t.factors)[0];
   return f != nullptr && f->terms.size() > 1 && f->halves == 2 ? &f->terms : nullptr;
 }
 
-/// The sum becomes sum + t with terms of the same factors collected; of no terms, it is 0. A sum
-/// in t loses its parentheses, and with `numbers` also the number before them.
+/// Adds t to a sum, which is 0 if empty, and collects terms with equal factors. If t is s or −s of
+/// a sum s, the terms of s are added; with `numbers`, also if t is another multiple of s.
 inline void add(latex_sum& sum, const latex_term& t, bool numbers = false) {
   const latex_sum* inner = only_sum(t);
   if (inner != nullptr && (numbers || t.above == 1 || t.above == -1)) {

@@ -10,43 +10,42 @@
 #include <vector>
 
 /// \file
-/// Sums of products with their powers and lines of fractions, and how they are written in LaTeX.
-/// For those who extend duet.
+/// Sums of products of powers, and their LaTeX. For those who extend duet.
 
 namespace duet::expression {
 
-/// How strongly a formula holds together. In LaTeX a fraction with a slash is as weak as a number
-/// with a minus: beside another factor both take parentheses.
+/// Precedence of the outermost operation of a formula, lowest first. In LaTeX a fraction with a
+/// slash ranks as `negative_number`: as factors, both take parentheses.
 enum class precedence { condition, sum, negative_number, product, power, atom };
 
-/// In which order the factors of a product are written in LaTeX: those that do not commute behind
-/// the others, in their own order.
+/// Order of the factors of a product in LaTeX. Those that do not commute, `in_order`, come last and
+/// keep their order.
 enum class factor_order { number, pi, symbol, function, in_order };
 
 namespace detail {
 
 struct latex_term;
 
-/// base^(halves/2), a factor of a product.
+/// Factor base^(halves/2) of a product.
 struct latex_factor {
-  std::string text; ///< of the base, which it names; with slashes for fractions
+  std::string text; ///< text of the base, with slashes; equal texts mean equal bases
   precedence outermost;
   factor_order order;
-  std::size_t name_end;              ///< where the exponent of f^2(x) is; 0: behind it all
-  std::vector<latex_term> terms;     ///< of a base that is a sum or a product
-  std::vector<latex_term> logarithm; ///< of a base e^x
+  std::size_t name_end;              ///< length of f in f(x), where f^2(x) has its exponent; else 0
+  std::vector<latex_term> terms;     ///< terms of a base that is a sum or a product
+  std::vector<latex_term> logarithm; ///< terms of x of a base e^x
   int halves;
 };
 
-/// A product with `above` and `below`, below > 0, as its number; factors of negative powers are
-/// below the line, too.
+/// Product of the number above/below, below > 0, and factors. Those with negative exponents are
+/// written in the denominator.
 struct latex_term {
   std::int64_t above = 1, below = 1;
-  std::vector<latex_factor> factors = {};  ///< that commute, in order of appearance
-  std::vector<latex_factor> in_order = {}; ///< those that do not
+  std::vector<latex_factor> factors = {};  ///< factors that commute, in order of appearance
+  std::vector<latex_factor> in_order = {}; ///< factors that do not commute
 };
 
-/// The text of a part, and what it is outside all parentheses.
+/// Text and its precedence outside all parentheses.
 struct latex_part {
   std::string text;
   precedence outermost;
@@ -56,7 +55,7 @@ struct latex_part {
   }
 };
 
-/// Fractions with lines, or with slashes: in exponents, arguments and other fractions.
+/// Style of fractions: lines, or slashes in exponents, arguments and other fractions.
 enum class fractions { lines, slashes };
 
 [[nodiscard]] inline latex_part latex_text(const std::vector<latex_term>& sum, fractions style);
@@ -88,7 +87,7 @@ enum class fractions { lines, slashes };
   return {base.inside(precedence::atom) + exponent, precedence::power};
 }
 
-/// A number and factors behind it, of positive powers.
+/// Text of a number times factors with positive exponents.
 [[nodiscard]] inline latex_part
 latex_text(std::int64_t number, const std::vector<latex_factor>& factors, fractions style) {
   if (factors.empty()) {
@@ -100,7 +99,7 @@ latex_text(std::int64_t number, const std::vector<latex_factor>& factors, fracti
   std::string text = number == 1 ? "" : std::to_string(number);
   for (std::size_t k = 0; k < factors.size(); ++k) {
     const latex_factor& f = factors[k];
-    // a · b and x^T A x need no parentheses behind scalars, and numbers such as 2 · 10^5 nowhere.
+    // As the last factor, a · b and x^T A x need no parentheses; numbers such as 2 · 10^5 never do.
     const bool is_last =
         k + 1 == factors.size() && (k == 0 || factors[k - 1].order != factor_order::in_order);
     const bool is_number = f.order == factor_order::number && f.halves == 2;
@@ -112,13 +111,14 @@ latex_text(std::int64_t number, const std::vector<latex_factor>& factors, fracti
   return {text, precedence::product};
 }
 
-/// Of |t|.
+/// Text of |t|.
 [[nodiscard]] inline latex_part latex_text(const latex_term& t, fractions style) {
   std::vector<latex_factor> above, below;
   for (const factor_order order :
        {factor_order::number, factor_order::pi, factor_order::symbol, factor_order::function}) {
     for (latex_factor f : t.factors) {
-      const bool is_behind = f.halves % 2 != 0 && f.order == factor_order::symbol; // a root
+      // Roots of symbols are written among functions.
+      const bool is_behind = f.halves % 2 != 0 && f.order == factor_order::symbol;
       if ((is_behind ? factor_order::function : f.order) == order) {
         const bool is_below = f.halves < 0;
         f.halves = is_below ? -f.halves : f.halves;

@@ -11,7 +11,7 @@
 #include <utility>
 
 /// \file
-/// All different nodes of some formulas in one list, operands first, and their places in it.
+/// List of all different nodes of some formulas, operands first, and the indices of nodes in it.
 
 namespace duet::expression::detail {
 
@@ -20,8 +20,8 @@ namespace mp11 = boost::mp11;
 template <class Node>
 struct listed {};
 
-// While the list grows, every node is a base: whether one is there, the compiler knows without
-// looking through a list of types.
+// While the list grows, each node is a base class: std::is_base_of finds one faster than a search
+// in a list of types.
 struct no_nodes {};
 template <class Before, class Node>
 struct followed_by : Before, listed<Node> {};
@@ -33,7 +33,7 @@ struct with_node {
 template <class Nodes, class Node>
 using with_node_t = typename with_node<Nodes, Node>::type;
 
-/// With what a node needs.
+/// Nodes with the operands of a node appended.
 template <class Nodes, class Node>
 struct with_operands {
   using type = Nodes;
@@ -47,7 +47,7 @@ struct with_node<Nodes, Node, false> {
   using type = followed_by<typename with_operands<Nodes, Node>::type, Node>;
 };
 
-/// Where the one that is true stands among some, -1 if there is none.
+/// Index of the first value that is true, or -1.
 [[nodiscard]] constexpr int index_of_true(const bool* all, int count) {
   for (int i = 0; i < count; ++i) {
     if (all[i]) {
@@ -57,19 +57,19 @@ struct with_node<Nodes, Node, false> {
   return -1;
 }
 
-/// Nodes in an order.
+/// Ordered list of nodes.
 template <class... Nodes>
 class node_list {
   static constexpr int count = int(sizeof...(Nodes));
-  // By the compilers' own comparison: it costs them less than to deduce a base, and, unlike that of
-  // addresses, is a constant under sanitizers too. With one more at the end, as there are no arrays
-  // of none.
+  // The comparison of types is built into compilers: it is faster than deducing a base class and,
+  // unlike a comparison of addresses, constant under sanitizers, too. The last entry avoids an
+  // empty array.
   template <class Node>
   static constexpr bool is_it[] = {DUET_IS_SAME(Nodes, Node)..., false};
 
 public:
   using indices = std::make_integer_sequence<int, count>;
-  /// The number of a node, -1 of others.
+  /// Index of a node, or -1 if it is not in the list.
   template <class Node>
   static constexpr int index = index_of_true(is_it<Node>, count);
 };
@@ -87,7 +87,7 @@ template <class Before, class A, class B, class C, class D, class... Nodes>
 struct evaluation_order<followed_by<followed_by<followed_by<followed_by<Before, A>, B>, C>, D>,
                         Nodes...> : evaluation_order<Before, A, B, C, D, Nodes...> {};
 
-/// The nodes that some need, and themselves.
+/// The list of some nodes and all their operands, operands first.
 template <class... Roots>
 using nodes_of =
     typename evaluation_order<mp11::mp_fold<mp11::mp_list<Roots...>, no_nodes, with_node_t>>::type;

@@ -8,21 +8,21 @@
 #include <cstdint>
 
 /// \file
-/// Numbers that the compiler knows: `c<2>`, `0.5_c`. Unlike numbers written as 2 or 0.5 they are
-/// part of a formula's type: they are simplified, and equal ones are one.
+/// Numbers known at compile time: `c<2>`, `0.5_c`. Unlike 2 or 0.5, they are part of the type of a
+/// formula: they are simplified, and equal ones are the same node.
 
 namespace duet::expression {
 
 namespace detail {
 
-/// a + b is a double without rounding.
+/// True if a + b is exact in double precision (two-sum, Knuth).
 [[nodiscard]] constexpr bool is_sum_exact(double a, double b) {
   const double sum = a + b;
   const double b_rounded = sum - a;
   return (a - (sum - b_rounded)) + (b - b_rounded) == 0;
 }
 
-/// a b is a double without rounding.
+/// True if a b is exact in double precision (Veltkamp–Dekker product).
 [[nodiscard]] constexpr bool is_product_exact(double a, double b) {
   const auto upper = [](double x) {
     const double scaled = x * 0x8000001p0;
@@ -39,17 +39,17 @@ namespace detail {
 
 } // namespace detail
 
-/// N as a node.
+/// The integer N as a node.
 template <int N>
 inline constexpr number_node<detail::bits_of(N)> whole{};
 
-/// The whole number N as a formula.
+/// The integer N as a formula.
 template <int N>
 inline constexpr formula<number_node<detail::bits_of(N)>, held<>> c{};
 
 namespace detail {
 
-/// The value of decimal digits with a point and an exponent.
+/// Value of a decimal literal; -1 if it has too many digits or too large an exponent.
 template <char... Letters>
 [[nodiscard]] constexpr double number_spelt() {
   constexpr char text[] = {Letters..., '\0'};
@@ -80,7 +80,7 @@ template <char... Letters>
   for (int k = 0; k < (exponent < 0 ? -exponent : exponent); ++k) {
     scale *= 10;
   }
-  // Correctly rounded as long as both are exact, as the compiler reads such numbers too.
+  // Correctly rounded if both are exact, hence equal to the compiler's value of the literal.
   return digits <= 0x1p53 && scale <= 1e22 ? (exponent < 0 ? digits / scale : digits * scale) : -1;
 }
 
@@ -88,8 +88,7 @@ template <char... Letters>
 
 inline namespace literals {
 
-/// `0.5_c`: the number that the compiler reads, of at most 15 digits and with a decimal exponent of
-/// at most 22.
+/// `0.5_c`: the decimal literal, of at most 15 digits and with a decimal exponent of at most 22.
 template <char... Letters>
 [[nodiscard]] constexpr auto operator""_c() {
   constexpr double value = detail::number_spelt<Letters...>();

@@ -10,32 +10,33 @@
 #include <vector>
 
 /// \file
-/// Formulas as text while they are put together. For those who extend duet.
+/// Texts of formulas while they are composed from those of their operands. For those who extend
+/// duet.
 
 namespace duet::expression {
 
-/// How a formula is written.
+/// Notation of a formula.
 enum class notation {
   text,  ///< as in a program, with ^ for powers
   latex, ///< LaTeX for mathematics mode
   notes  ///< LaTeX as "Quaternion Differentiation and Interpolation", lecture notes, writes it
 };
 
-/// The text of a formula, and what it is outside all parentheses. In LaTeX the text is that inside
-/// of other formulas, with slashes for fractions; the terms tell how else it may be written.
+/// Text of a formula, with properties that enclosing formulas need. In LaTeX the text has slashes
+/// for fractions, as inside of other formulas; `terms` allow for other forms.
 struct printed {
-  std::string text;                            ///< what stands there
-  precedence outermost = precedence::atom;     ///< of the operation outside all parentheses
-  notation style = notation::text;             ///< how it is written
-  factor_order order = factor_order::function; ///< in LaTeX, of what has no terms
-  std::size_t name_end = 0;                    ///< of f(x), where f^2(x) has its exponent; else 0
-  std::vector<detail::latex_term> terms = {};  ///< in LaTeX, of what is no single factor
+  std::string text;                        ///< text of the formula
+  precedence outermost = precedence::atom; ///< precedence of the operation outside all parentheses
+  notation style = notation::text;         ///< notation of the text
+  factor_order order = factor_order::function; ///< of a formula without terms, as a factor in LaTeX
+  std::size_t name_end = 0; ///< length of f in f(x), where f^2(x) has its exponent; else 0
+  std::vector<detail::latex_term> terms = {}; ///< in LaTeX, unless it is a single factor
 
-  /// In parentheses if it would fall apart beside an operator of that precedence.
+  /// The text as an operand of an operator of that precedence, in parentheses if its own is lower.
   [[nodiscard]] std::string inside(precedence beside) const {
     return outermost < beside ? in_parentheses() : text;
   }
-  /// In parentheses.
+  /// The text in parentheses.
   [[nodiscard]] std::string in_parentheses() const {
     return style != notation::text ? "\\left(" + text + "\\right)" : "(" + text + ")";
   }
@@ -43,15 +44,15 @@ struct printed {
 
 namespace detail {
 
-/// How an operation with a name is written.
+/// Names of an operation in text and in LaTeX.
 struct function_name {
   const char* text;
-  /// A command, or what is written with the argument for #, in parentheses if # comes first and it
-  /// would fall apart; if empty, the name.
+  /// A command, or a form with # for the arguments. A form that begins with # takes an argument in
+  /// parentheses unless that is atomic. If empty, `text` is the name of an operator.
   const char* latex;
 };
 
-/// The operation of that name and its operands.
+/// Call f(x, …) of an operation that has a name.
 [[nodiscard]] inline printed printed_call(notation style, const function_name& name,
                                           std::initializer_list<printed> operands) {
   std::string arguments;
@@ -78,7 +79,7 @@ struct function_name {
           is_one_name ? form.size() : 0};
 }
 
-/// An operation as it prints itself, or by its name.
+/// Text of an operation: a call if it has a `name`, otherwise by its `print`.
 template <class Operation, class... P>
 [[nodiscard]] printed printed_operation(notation style, const P&... operands) {
   if constexpr (requires { Operation::name; }) {
@@ -88,14 +89,14 @@ template <class Operation, class... P>
   }
 }
 
-/// With an index, in braces behind another one: LaTeX takes no two.
+/// x with a subscript. An x that has one already is put in braces, as LaTeX forbids two in a row.
 [[nodiscard]] inline printed with_index(const printed& x, const std::string& index) {
   const std::string base = x.inside(precedence::atom);
   const bool has_index = base.find('_') != std::string::npos;
   return {(has_index ? "{" + base + "}" : base) + "_{" + index + "}"};
 }
 
-/// The entries of a matrix, row by row.
+/// Text of a matrix, whose entries are listed row by row.
 [[nodiscard]] inline printed printed_matrix(notation style, std::size_t columns,
                                             const std::vector<std::string>& entries) {
   const bool is_latex = style != notation::text;
