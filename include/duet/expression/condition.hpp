@@ -15,7 +15,7 @@
 #include <utility>
 
 /// \file
-/// Choices by value: comparisons, `select`, |x|.
+/// Comparisons of formulas, `select`, `min`, `max` and |x|.
 
 namespace duet::expression {
 
@@ -46,7 +46,7 @@ struct less {
   }
 };
 
-/// a where the condition holds, else b.
+/// a if the condition holds, otherwise b.
 struct select {
   static constexpr kind kind_of(kind, kind a, kind) { return a; }
   template <class C, class A, class B>
@@ -85,7 +85,7 @@ struct sign {
   static constexpr auto differential(auto, auto) { return whole<0>; }
 };
 
-/// |x|; at 0 the derivative from the side of the sign bit.
+/// |x|, with the derivative ±1 at ±0.
 struct abs {
   static constexpr detail::function_name name = {"abs", "\\left|#\\right|"};
   static constexpr kind kind_of(kind a) { return a; }
@@ -116,14 +116,14 @@ template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>
   return apply<op::less<true>>(detail::term<Tag>(b), detail::term<Tag>(a));
 }
 
-/// a where the condition holds, else b, of one kind. Both are evaluated, so both must be safe to
-/// evaluate anywhere; the derivative is that of the one chosen.
+/// a if the condition holds, otherwise b, of one kind. Both are evaluated, and must be safe to
+/// evaluate for all arguments; the derivative is that of the selected one.
 template <Term C, class A, class B, class Tag = decltype([](op::less<true>*) {})>
 [[nodiscard]] constexpr auto select(const C& condition, const A& a, const B& b) {
   return detail::apply_to<op::select, Tag>(std::index_sequence_for<C, A, B>{}, condition, a, b);
 }
 
-/// |x|; its derivative at ±0 is ±1, the side of the sign bit.
+/// |x|, with the derivative ±1 at ±0.
 [[nodiscard]] constexpr auto abs(const ScalarTerm auto& x) { return apply<op::abs>(x); }
 /// The larger of two scalars, with its derivatives; of equal ones the first.
 template <class A, Operands<A> B, class Tag = decltype([](op::less<true>*) {})>

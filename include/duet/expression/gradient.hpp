@@ -20,7 +20,7 @@ namespace duet::expression {
 
 namespace detail {
 
-/// The value and the gradient.
+/// Evaluates a formula and its gradient.
 template <class Motions>
 struct gradient_of;
 template <class... Motions>
@@ -54,7 +54,7 @@ struct upper_triangle<Node, Motion, Rest...> {
       typename upper_triangle<Node, Rest...>::type>;
 };
 
-/// The value, the gradient and the Hessian, of which the upper triangle is evaluated.
+/// Evaluates a formula, its gradient and the upper triangle of its Hessian.
 template <class Motions>
 struct hessian_of;
 template <class... Motions>

@@ -33,7 +33,7 @@ template <class Node, class Motion, class Frame>
   }
 }
 
-/// The value and the Jacobian.
+/// Evaluates a formula and its Jacobian.
 template <class Motions, class Frame>
 struct jacobian_of;
 template <class... Motions, class Frame>

@@ -36,7 +36,7 @@ struct moving_value {
 
 namespace detail {
 
-/// The value, the velocity and the acceleration.
+/// Evaluates a formula, its velocity and its acceleration.
 template <class Symbol, class Frame>
 struct motion_of {
   using result = moving_value<quaternion<double>, Eigen::VectorXd>;

@@ -146,8 +146,8 @@ concept AnyVector = VectorTerm<T> || DualVectorTerm<T>;
 [[nodiscard]] constexpr auto conj(const detail::QuaternionOrPose auto& q) {
   return apply<op::conj>(q);
 }
-/// p · q, the product of quaternions as vectors of four components; of dual quaternions, as of
-/// lines, a dual number.
+/// p · q, the dot product of quaternions as vectors of four components; of dual quaternions a dual
+/// number.
 template <class P, class Q, class Tag = decltype([](op::rotate*) {})>
   requires(Operands<P, Q> && (detail::QuaternionOrPose<P> || detail::QuaternionOrPose<Q>))
 [[nodiscard]] constexpr auto dot(const P& p, const Q& q) {
@@ -168,7 +168,7 @@ template <class P, class Q, class Tag = decltype([](op::rotate*) {})>
 [[nodiscard]] constexpr auto exp(const detail::AnyVector auto& v) {
   return apply<op::exp_vector>(v);
 }
-/// N4: log q, in half angles.
+/// N4: log q, half the rotation vector as a quaternion.
 [[nodiscard]] constexpr auto log(const detail::QuaternionOrPose auto& q) {
   return apply<op::log_quaternion>(q);
 }

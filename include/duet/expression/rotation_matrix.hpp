@@ -60,8 +60,8 @@ struct rate<applied_node<op::rotation_matrix, Q>, Motion> {
 
 /// [v]×, the matrix of the cross product: [v]× w = v × w.
 [[nodiscard]] constexpr auto skew(const VectorTerm auto& v) { return apply<op::skew>(v); }
-/// The 3 x 3 matrix R of a rotation, R v = q v q*, with the derivative [ω]× R (N7). q is taken as
-/// unit.
+/// The 3 x 3 matrix R of a rotation, R v = q v q*, with the derivative [ω]× R (N7). q is assumed to
+/// have unit norm.
 [[nodiscard]] constexpr auto rotation_matrix(const QuaternionTerm auto& q) {
   return apply<op::rotation_matrix>(q);
 }

@@ -256,7 +256,7 @@ namespace axis {
 template <int I>
 using coordinate = formula<unit_vector_node<kind::dual_vector, I>, held<>>;
 
-/// The coordinate axes, lines through the origin, known to the compiler: `screw(axis::z, theta)`,
+/// The coordinate axes, lines through the origin, known at compile time: `screw(axis::z, theta)`,
 /// `translation_along(axis::x, 0.3)`.
 inline constexpr coordinate<0> x{};
 inline constexpr coordinate<1> y{};

@@ -62,6 +62,7 @@ struct substituted<applied_node<Operation, X...>, Arguments> {
   using type = decltype(apply<Operation>(typename substituted<X, Arguments>::type{}...));
 };
 
+/// A node as it is printed.
 template <class Node, bool HasPartial = has_partial<Node>>
 struct written {
   using type = Node;
@@ -303,8 +304,7 @@ template <class Node>
 /// The formula in LaTeX, for mathematics mode: `2 x \cos\left(x^{2}\right)`. It equals
 /// the formula wherever that has a value: equal factors are joined to powers and cancelled, equal
 /// terms are collected, and no fraction is inside of another one, of an exponent or of an argument.
-/// Symbols with the names of Greek letters are those letters; digits, and what follows _, are an
-/// index.
+/// Names of Greek letters become these letters; digits, and what follows _, become a subscript.
 ///
 /// \param style  `notation::notes` writes rotations and poses as the lecture notes do: cos ½θ + n
 /// sin ½θ (N4), q + ½ε t q (N17)

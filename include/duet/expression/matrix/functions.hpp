@@ -184,8 +184,8 @@ template <class A, detail::SizedOperands<A> B, class Tag = decltype([](op::inver
                 "duet: dot(A, B) takes two vectors or matrices of one size");
   return apply<op::trace>(apply<op::transpose>(detail::term<Tag>(a)) * detail::term<Tag>(b));
 }
-/// √(Σ A_ij²), the Euclidean norm of a column and the Frobenius norm of a matrix, whose squares
-/// must not overflow. Not differentiable at 0.
+/// √(Σ A_ij²), the Euclidean norm of a column and the Frobenius norm of a matrix. The squares must
+/// not overflow. Not differentiable at 0.
 template <Term M>
   requires(is_sized_matrix(detail::kind_of_term<M>()))
 [[nodiscard]] constexpr auto norm(const M& m) { return sqrt(dot(m, m)); }
@@ -204,12 +204,12 @@ template <Term M>
   return detail::apply_to_square<op::adjugate>(m);
 }
 /// A⁻¹ of a square matrix, with the derivative −A⁻¹ dA A⁻¹. Its evaluation throws `invalid_input`
-/// where A is singular or not finite, as `duet::solve` does.
+/// if A is singular or not finite, as `duet::solve` does.
 [[nodiscard]] constexpr auto inverse(const detail::ScalarOrMatrix auto& m) {
   return detail::apply_to_square<op::inverse>(m);
 }
-/// The x with A x = b, of a square matrix and a vector or matrix b of as many rows, with the
-/// derivative A⁻¹(db − dA x). Its evaluation throws `invalid_input` where A is singular or not
+/// The solution x of A x = b for a square matrix A and a vector or matrix b with as many rows. Its
+/// derivative is A⁻¹(db − dA x). Its evaluation throws `invalid_input` if A is singular or not
 /// finite, as `duet::solve` does.
 template <class A, Operands<A> B, class Tag = decltype([](op::inverse*) {})>
 [[nodiscard]] constexpr auto solve(const A& a, const B& b) {

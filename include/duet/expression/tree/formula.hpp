@@ -22,10 +22,10 @@
 
 namespace duet::expression {
 
-/// A formula over symbols, a plain value: it refers to nothing, so `auto`, returning it from
-/// functions and `constexpr` variables are safe.
+/// A formula of symbols: a value without references, safe to store by `auto` and in `constexpr`
+/// variables and to return from functions.
 ///
-/// \tparam NodeType  the formula as a type
+/// \tparam NodeType  the tree of operations
 /// \tparam Held      the constants in it, and the symbols it was written with
 template <Node NodeType, class Held>
 class formula;
@@ -77,12 +77,14 @@ template <class T>
 template <class T>
 concept ScalarTerm = Term<T> && detail::kind_of_term<T>()
 == kind::scalar;
+/// A formula or node of a vector of three.
 template <class T>
 concept VectorTerm = Term<T> && detail::kind_of_term<T>()
 == kind::vector;
 /// A formula or node of a vector of three or any other matrix that is not a scalar.
 template <class T>
 concept MatrixTerm = Term<T> && is_matrix(detail::kind_of_term<T>());
+/// A formula or node of a quaternion, dual vector or dual quaternion.
 template <class T>
 concept QuaternionTerm = Term<T> && detail::kind_of_term<T>()
 == kind::quaternion;

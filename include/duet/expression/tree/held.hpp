@@ -13,12 +13,12 @@
 #include <type_traits>
 
 /// \file
-/// Constants and symbols of a formula: the values of its constants, and as types all symbols that
-/// it was written with, also those that simplification removed. For those who extend duet.
+/// Constants of a formula with their values, and, as types, all symbols it was written with, even
+/// those that simplification removed. For those who extend duet.
 
 namespace duet::expression {
 
-/// A constant, and the type of its value.
+/// A constant as an item of `held`, and the type of its value.
 template <class ConstantNode, class T>
 struct held_constant {};
 

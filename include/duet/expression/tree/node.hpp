@@ -33,7 +33,7 @@ enum class kind {
 [[nodiscard]] constexpr bool is_sized_matrix(kind k) { return k > kind::pose; }
 /// True for a vector of three and any other matrix that is not a scalar.
 [[nodiscard]] constexpr bool is_matrix(kind k) { return is_sized_matrix(k) || k == kind::vector; }
-/// Number of rows of a scalar or a matrix.
+/// Number of rows, or of columns, of a scalar or a matrix.
 [[nodiscard]] constexpr int rows_of(kind k) {
   return is_sized_matrix(k) ? static_cast<int>(k) / 8 : k == kind::vector ? 3 : 1;
 }

@@ -26,6 +26,7 @@ struct no_nodes {};
 template <class Before, class Node>
 struct followed_by : Before, listed<Node> {};
 
+/// Nodes with a node and its operands appended, unless it is there already.
 template <class Nodes, class Node, bool IsThere = std::is_base_of_v<listed<Node>, Nodes>>
 struct with_node {
   using type = Nodes;
@@ -74,6 +75,7 @@ public:
   static constexpr int index = index_of_true(is_it<Node>, count);
 };
 
+/// A grown list as a `node_list`, four nodes in a step.
 template <class Grown, class... Nodes>
 struct evaluation_order;
 template <class... Nodes>
