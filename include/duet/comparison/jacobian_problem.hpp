@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -166,6 +167,60 @@ struct jacobian_sample {
 
 [[nodiscard]] inline double largest_entry(const Eigen::MatrixXd& m) {
   return m.size() > 0 ? m.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() : 0;
+}
+
+/// The X of least norm that minimises |A X − B|, by the singular values of A (one-sided Jacobi
+/// method); singular values below 1e-13 of the largest count as zero. One function for all systems,
+/// as decompositions of Eigen take seconds to compile.
+[[nodiscard]] inline Eigen::MatrixXd least_norm_solution(Eigen::MatrixXd a,
+                                                         const Eigen::MatrixXd& b) {
+  const double scale = largest_entry(a) > 0 ? largest_entry(a) : 1;
+  a *= 1 / scale;
+  const double total = a.squaredNorm();
+  const Eigen::Index n = a.cols();
+  Eigen::MatrixXd v = Eigen::MatrixXd::Identity(n, n); // A = a vᵀ
+  const auto rotate_columns = [](Eigen::MatrixXd& m, Eigen::Index i, Eigen::Index k, double c,
+                                 double s) {
+    for (Eigen::Index row = 0; row < m.rows(); ++row) {
+      const double x = m(row, i), y = m(row, k);
+      m(row, i) = c * x - s * y;
+      m(row, k) = s * x + c * y;
+    }
+  };
+  bool is_orthogonal = false;
+  for (int sweep = 0; sweep < 30 && !is_orthogonal; ++sweep) {
+    is_orthogonal = true;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index k = i + 1; k < n; ++k) {
+        const double x = a.col(i).squaredNorm(), y = a.col(k).squaredNorm();
+        const double product = a.col(i).dot(a.col(k));
+        if (std::abs(product) > 1e-15 * std::sqrt(x * y) && std::abs(product) > 1e-30 * total) {
+          const double cotangent = (y - x) / (2 * product); // of twice the angle
+          const double t =
+              (cotangent < 0 ? -1 : 1) / (std::abs(cotangent) + std::hypot(1., cotangent));
+          const double c = 1 / std::hypot(1., t);
+          rotate_columns(a, i, k, c, c * t);
+          rotate_columns(v, i, k, c, c * t);
+          is_orthogonal = false;
+        }
+      }
+    }
+  }
+  const Eigen::VectorXd squares = a.colwise().squaredNorm().transpose();
+  const double least = 1e-26 * largest_entry(squares);
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(n, b.cols());
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (!(squares[i] <= least)) {
+      for (Eigen::Index k = 0; k < b.cols(); ++k) {
+        result.col(k) += a.col(i).dot(b.col(k)) / (scale * squares[i]) * v.col(i);
+      }
+    }
+  }
+  return result;
+}
+/// The X of least norm that minimises |X by − m|.
+[[nodiscard]] inline Eigen::MatrixXd divided(const Eigen::MatrixXd& m, const Eigen::MatrixXd& by) {
+  return least_norm_solution(by.transpose(), m.transpose()).transpose();
 }
 
 DUET_ABI_END

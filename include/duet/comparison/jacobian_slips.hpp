@@ -7,7 +7,6 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -355,8 +354,7 @@ private:
                 columns.middleCols(a.first, a.dimension).setZero();
               }
             }
-            const Eigen::LDLT<matrix> normal(factor * factor.transpose());
-            const matrix outer = normal.solve(factor * columns.transpose()).transpose();
+            const matrix outer = divided(columns, factor);
             const auto [rotated, before] = z.rotated(x);
             return std::pair(z.arguments[0],
                              vector(2 * outer * (rotated - (from_vector ? 1. : 0.) * before)));
@@ -382,8 +380,7 @@ private:
       for (const jacobian_part& a : problem_.arguments) {
         const matrix chart = chart_derivative(a, x, problem_.side, quaternion_order::wxyz);
         result.middleCols(part.arguments[next].first, a.state_size()) =
-            tangent.middleCols(a.first, a.dimension) * (chart.transpose() * chart).inverse() *
-            chart.transpose();
+            divided(tangent.middleCols(a.first, a.dimension), chart);
         next += a.type == kind::pose ? 2 : 1;
       }
       if (change) {
@@ -465,10 +462,6 @@ private:
             used.col(k).setZero();
           }
         }
-        const auto divided = [](const matrix& m, const matrix& by) {
-          const Eigen::LDLT<matrix> normal(by * by.transpose());
-          return matrix(normal.solve(by * m.transpose()).transpose());
-        };
         const matrix a = divided(exact, factor);
         matrix b = divided(written, used);
         is_chain = is_chain &&
@@ -516,9 +509,7 @@ private:
               exact.col(k).setZero();
             }
           }
-          const Eigen::LDLT<matrix> normal(factor * factor.transpose());
-          there.jacobian =
-              normal.solve(factor * exact.transpose()).transpose().template cast<long double>();
+          there.jacobian = divided(exact, factor).template cast<long double>();
           return there;
         };
         part.arguments = {z.part};

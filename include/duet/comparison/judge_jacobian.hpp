@@ -22,6 +22,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iomanip>
 #include <limits>
 #include <optional>
@@ -529,14 +530,18 @@ private:
   return value;
 }
 
+/// A sampler of any arguments, in functions of its coordinates.
+struct jacobian_inputs {
+  std::function<std::string(const coordinates&)> describe{};
+  std::function<bool(const coordinates&)> contains{};
+  std::function<Eigen::VectorXd(const coordinates&)> state{};
+};
+
 /// Inputs at which f is nearly zero, where small rotations between arguments and constants lead to
 /// branches of logarithms: found by Newton's method from some points, where f is smooth.
-///
-/// \param contains  (coordinates): whether it is an input
-template <class Contains, class StateOf>
-[[nodiscard]] std::vector<coordinates>
+[[nodiscard]] inline std::vector<coordinates>
 points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates>& points,
-                  const Contains& contains, const StateOf& state_of) {
+                  const jacobian_inputs& inputs) {
   std::vector<coordinates> found;
   const auto moved = [](coordinates point, double factor, const Eigen::VectorXd& step) {
     for (std::size_t i = 0; i < point.size(); ++i) {
@@ -545,10 +550,10 @@ points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates
     return point;
   };
   const auto deviation = [&](const coordinates& point) {
-    return deviation_of(problem, problem.truth(state_of(point)).value);
+    return deviation_of(problem, problem.truth(inputs.state(point)).value);
   };
   const auto jacobian = [&](const coordinates& point) {
-    return Eigen::MatrixXd(problem.truth(state_of(point)).jacobian.template cast<double>());
+    return Eigen::MatrixXd(problem.truth(inputs.state(point)).jacobian.template cast<double>());
   };
   const std::size_t starts = 3, first = points.size() / 2; // random ones
   const auto search = [&](const coordinates& start) {
@@ -560,10 +565,10 @@ points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates
       for (Eigen::Index i = 0; i < size; ++i) {
         slope.col(i) = (deviation(moved(point, 1e-6, Eigen::VectorXd::Unit(size, i))) - f) / 1e-6;
       }
-      const Eigen::VectorXd change = slope.completeOrthogonalDecomposition().solve(f);
+      const Eigen::VectorXd change = least_norm_solution(slope, f);
       point = moved(std::move(point), -1 / std::max(1., change.norm()), change);
       away += change / std::max(1., change.norm());
-      if (!change.allFinite() || !contains(point)) {
+      if (!change.allFinite() || !inputs.contains(point)) {
         return;
       }
       f = deviation(point);
@@ -574,7 +579,7 @@ points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates
         largest_entry(jacobian(moved(point, 1e-6, away)) - here) < 1e-3 * largest_entry(here)) {
       for (const double distance : {0., 1e-9, 1e-6, 1e-4, 1e-3, 8e-3}) {
         const coordinates next = moved(point, distance, away);
-        if (contains(next)) {
+        if (inputs.contains(next)) {
           found.push_back(next);
         }
       }
@@ -587,15 +592,13 @@ points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates
   return found;
 }
 
-/// \param inputs  with `describe` and `contains` of coordinates, which `state_of` makes a state
-template <class Inputs, class StateOf>
-[[nodiscard]] jacobian_judgement
-judged_jacobian(const std::string& label, const jacobian_problem& problem,
-                std::vector<coordinates> points, const Inputs& inputs, const StateOf& state_of,
-                const jacobian_options& options) {
+[[nodiscard]] inline jacobian_judgement judged_jacobian(const std::string& label,
+                                                        const jacobian_problem& problem,
+                                                        std::vector<coordinates> points,
+                                                        const jacobian_inputs& inputs,
+                                                        const jacobian_options& options) {
   const jacobian_judge judge(problem, options);
-  const auto contains = [&](const coordinates& point) { return inputs.contains(point); };
-  const std::vector<coordinates> more = points_near_zeros(problem, points, contains, state_of);
+  const std::vector<coordinates> more = points_near_zeros(problem, points, inputs);
   points.insert(points.begin(), more.begin(), more.end());
   jacobian_judgement result;
   result.label = label;
@@ -604,7 +607,7 @@ judged_jacobian(const std::string& label, const jacobian_problem& problem,
   std::vector<verdict> verdicts;
   std::vector<std::size_t> wrong; // the largest error first
   for (std::size_t n = 0; n < points.size(); ++n) {
-    samples.push_back(judge.sample_at(state_of(points[n])));
+    samples.push_back(judge.sample_at(inputs.state(points[n])));
     verdicts.push_back(judge.judged(samples.back()));
     if (verdicts.back() == verdict::disagrees) {
       wrong.push_back(n);
@@ -660,16 +663,17 @@ judged_jacobian(const std::string& label, const jacobian_problem& problem,
             ? wrong[first_slip]
             : std::size_t(std::find(verdicts.begin(), verdicts.end(), result.outcome) -
                           verdicts.begin());
-    const coordinates simplest = simplified(points[worst], contains, [&](const coordinates& point) {
-      jacobian_sample s = judge.sample_at(state_of(point));
-      const verdict v = judge.judged(s);
-      const bool is_disagreement =
-          result.outcome == verdict::disagrees || result.outcome == verdict::loses_precision;
-      return is_disagreement ? v == verdict::disagrees &&
-                                   judge.error_of(s) > 1e-6 * judge.error_of(samples[worst])
-                             : v == result.outcome;
-    });
-    const jacobian_sample s = judge.sample_at(state_of(simplest));
+    const coordinates simplest =
+        simplified(points[worst], inputs.contains, [&](const coordinates& point) {
+          jacobian_sample s = judge.sample_at(inputs.state(point));
+          const verdict v = judge.judged(s);
+          const bool is_disagreement =
+              result.outcome == verdict::disagrees || result.outcome == verdict::loses_precision;
+          return is_disagreement ? v == verdict::disagrees &&
+                                       judge.error_of(s) > 1e-6 * judge.error_of(samples[worst])
+                                 : v == result.outcome;
+        });
+    const jacobian_sample s = judge.sample_at(inputs.state(simplest));
     const auto [row, column] = judge.position_of(s);
     result.simplest =
         jacobian_counterexample{inputs.describe(simplest), row, column, s.exact, s.written};
@@ -707,12 +711,13 @@ judged_jacobian(const std::string& label, const F& f, const J& jacobian,
             std::apply(jacobian, jacobian_argument<arguments>::template load<double>(state, next))),
         tangent_size(problem.results));
   };
-  return judged_jacobian(
-      label, problem, inputs.points(options.samples, options.seed), inputs,
-      [&](const coordinates& point) {
-        return saved(inputs.template make<double>(point), problem.arguments);
-      },
-      options);
+  return judged_jacobian(label, problem, inputs.points(options.samples, options.seed),
+                         {[&](const coordinates& point) { return inputs.describe(point); },
+                          [&](const coordinates& point) { return inputs.contains(point); },
+                          [&](const coordinates& point) {
+                            return saved(inputs.template make<double>(point), problem.arguments);
+                          }},
+                         options);
 }
 
 DUET_ABI_END

@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -312,9 +311,8 @@ protected:
       if (m.rows() != m.cols() || m.rows() == 1) {
         return false;
       }
-      const Eigen::FullPivLU<matrix> lu(m);
-      out = lu.inverse();
-      return lu.isInvertible();
+      out = inverse_of(m);
+      return largest_entry(out * m - matrix::Identity(m.rows(), m.rows())) < 1e-6;
     });
     attempt_change("column-major data in a row-major array", [](const matrix& m, matrix& out) {
       out.resize(m.rows(), m.cols());
@@ -504,8 +502,11 @@ protected:
     return true;
   }
 
+  [[nodiscard]] static matrix inverse_of(const matrix& m) {
+    return divided(matrix::Identity(m.rows(), m.cols()), m);
+  }
   [[nodiscard]] static matrix power_of(const matrix& m, int power) {
-    const matrix base = power < 0 ? matrix(m.inverse()) : m;
+    const matrix base = power < 0 ? inverse_of(m) : m;
     return std::abs(power) == 2 ? matrix(base * base) : base;
   }
 
@@ -575,7 +576,7 @@ protected:
                   largest_entry(exact * exact.transpose() - matrix::Identity(3, 3)) > 1e-9) {
                 return false;
               }
-              out *= exact.determinant();
+              out *= Eigen::Matrix3d(exact).determinant();
               return true;
             });
       }
@@ -833,7 +834,7 @@ protected:
       normal += columns.transpose() * columns;
       right += columns.transpose() * error.reshaped();
     }
-    const Eigen::Vector3d c = normal.completeOrthogonalDecomposition().solve(right);
+    const Eigen::Vector3d c = least_norm_solution(normal, right);
     if (!c.allFinite() || c.norm() < 1e-9 ||
         !std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
           return fits(s, at, of(s.exact, at) + term(s, c), 1e-8);
