@@ -116,6 +116,7 @@ public:
     options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
     options.function_tolerance = 1e-12;
     options.gradient_tolerance = options.parameter_tolerance = 1e-14;
+    options.initial_trust_region_radius = 1e10; // nearly Gauss-Newton steps: 6 iterations, not 14
     options.num_threads = 2;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &problem, &summary);
