@@ -75,15 +75,21 @@ private:
   rotation_manifold exact_{quaternion_order::wxyz};
 };
 
-template <class... Manifold>
-jacobian_judgement judged(slip s, const Manifold*... manifold) {
+/// Parameter blocks of 4 and 2 numbers.
+struct plane_point : ceres::SizedCostFunction<2, 4, 2> {
+  bool Evaluate(const double* const*, double*, double**) const override { return false; }
+};
+
+jacobian_judgement judged(const ceres::CostFunction& f, const ceres::Manifold* manifold = nullptr) {
   const auto inputs =
       sampler(rotations{}, vectors<3>{1})
           .named("q", "p")
           .where([](const auto& q, const Vector3d& p) { return q.x() != 0 && p[0] != 0; });
   const std::tuple blocks{rotation_block{quaternion_order::wxyz}, vector_block<3>{}};
-  return judge_jacobian("rotated point", rotated_point(s), inputs, blocks, {manifold..., nullptr},
-                        {.samples = 20});
+  return judge_jacobian("rotated point", f, inputs, blocks, {manifold, nullptr}, {.samples = 20});
+}
+jacobian_judgement judged(slip s, const ceres::Manifold* manifold = nullptr) {
+  return judged(rotated_point(s), manifold);
 }
 
 TEST_CASE("Jacobians of cost functions are judged, and slips named") {
@@ -121,10 +127,8 @@ TEST_CASE("a PlusJacobian that is not the derivative of Plus is noted") {
 }
 
 TEST_CASE("blocks of other sizes are refused") {
-  const auto inputs = sampler(rotations{}, vectors<2>{1}).named("q", "p");
-  const std::tuple blocks{rotation_block{quaternion_order::wxyz}, vector_block<2>{}};
-  CHECK_THROWS_WITH_AS((void)judge_jacobian("sizes", rotated_point(slip::none), inputs, blocks),
-                       "duet: judge_jacobian: parameter block 1 has 3 numbers (expected 2)",
+  CHECK_THROWS_WITH_AS((void)judged(plane_point()),
+                       "duet: judge_jacobian: parameter block 1 has 2 numbers (expected 3)",
                        invalid_input);
 }
 
