@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/instantiated.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
 
