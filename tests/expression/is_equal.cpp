@@ -85,6 +85,28 @@ TEST_CASE("is_equal proves no equality that does not hold everywhere") {
   DUET_VERDICT(unknown, (x * x - 1) / (x - 1), x + 1);
   DUET_VERDICT(unknown, 1 / (1 / x), x);
   DUET_VERDICT(refuted, x - y, y - x);
+  DUET_VERDICT(unknown, exp(log(x)), x);
+  DUET_VERDICT(proved, exp(log(x)), x, .positive = {"x"});
+  DUET_VERDICT(unknown, exp(log(x) / 2), sqrt(x)); // at 0
+  DUET_VERDICT(unknown, exp(-log(x)), 1 / x);
+  DUET_VERDICT(unknown, exp((1 + 1e-12) * log(x)), x, .positive = {"x"});
+  DUET_VERDICT(proved, sqrt(4 * x * x * y), 2 * x * sqrt(y), .positive = {"x", "y"});
+  DUET_VERDICT(refuted, sqrt(4 * x * x * (1 + y * y)), 2 * x * sqrt(1 + y * y));
+  DUET_VERDICT(unknown, sqrt(x / y), sqrt(x) / sqrt(y));
+  DUET_VERDICT(proved, duet::stumpff<0>(x * x), cos(x));
+  DUET_VERDICT(unknown, duet::stumpff<1>(x * x), sin(x) / x);
+  DUET_VERDICT(proved, duet::stumpff<1>(x * x), sin(x) / x, .nonzero = {"x"});
+  DUET_VERDICT(proved, x * duet::stumpff<3>(x), 1 - duet::stumpff<1>(x));
+  DUET_VERDICT(unknown, 1 / duet::stumpff<2>(x), x / (1 - duet::stumpff<0>(x)));
+  DUET_VERDICT(unknown, duet::stumpff<2>(x) * (1 + 1e-12), duet::stumpff<2>(x));
+  DUET_VERDICT(proved,
+               duet::stumpff<1>(x * duet::arc_ratio(x, y) * duet::arc_ratio(x, y)) *
+                   duet::arc_ratio(x, y) * sqrt(x + y * y),
+               1 + 0 * sqrt(x + y * y) * duet::arc_ratio(x, y), .positive = {"x"});
+  DUET_VERDICT(proved, x / x, 1 + 0 * x, .where_both_have_values = true);
+  DUET_VERDICT(proved, sqrt(x) * sqrt(x), x, .where_both_have_values = true);
+  DUET_VERDICT(refuted, sqrt(x * x), x, .where_both_have_values = true);
+  DUET_VERDICT(unknown, log(x * y), log(x) + log(y), .where_both_have_values = true);
   DUET_VERDICT(unknown, 0.1 * x + 0.2 * x, 0.3 * x); // as numbers they differ
 }
 
@@ -101,6 +123,12 @@ TEST_CASE("is_equal: choices whose branches are equal where they are taken") {
                duet::select(
                    x * x > 4, [&] { return x / x; }, [&] { return 1 + 0 * x; }),
                1 + 0 * x);
+  // of branches whose divisor is a factor of 0
+  DUET_VERDICT(
+      refuted,
+      duet::select(
+          abs(x) - x == 0, [&] { return abs(x) + x; }, [&] { return 0 * x / (abs(x) - x); }),
+      0 * x);
   // so are the two forms of the derivative of a Stumpff function
   DUET_VERDICT(proved,
                duet::derivative([](auto t) { return duet::stumpff<1>(t * t); }, x).derivative,

@@ -6,6 +6,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -100,6 +101,63 @@ public:
   /// True if a product exceeded the bound.
   [[nodiscard]] bool is_too_large() const { return is_too_large_; }
 
+  /// True if surely no other polynomial times p is 0, so that identities of continuous functions
+  /// hold where p vanishes as well: its norm over atoms without relations is not 0 at one point.
+  [[nodiscard]] bool is_regular(const polynomial& p) const {
+    polynomial norm = at_point(p);
+    for (int i = int(atoms_.size()) - 1; i >= 0; --i) { // relations are of earlier atoms
+      const atom& x = (*this)[i];
+      polynomial rest, factor; // of norm = rest + factor x
+      for (const auto& [m, c] : norm) {
+        const auto found =
+            std::find_if(m.begin(), m.end(), [i](const auto& y) { return y.first == i; });
+        if (found != m.end() && found->second != 1) {
+          return false;
+        }
+        add_term(found == m.end() ? rest : factor,
+                 found == m.end() ? m : product_of(m, {{i, -found->second}}), c);
+      }
+      if (factor.empty()) {
+        continue;
+      }
+      if (x.degree != 2) {
+        return false;
+      }
+      polynomial square, product;
+      add_product(square, factor, factor, 1);
+      add_product(product, rest, rest, 1);
+      add_product(product, square, x.relation, -1);
+      norm = at_point(product);
+    }
+    return !norm.empty();
+  }
+  /// a/b if b divides a without remainder and without the relations of atoms.
+  [[nodiscard]] std::optional<polynomial> quotient(polynomial a, const polynomial& b) const {
+    polynomial result;
+    const auto leading = largest(b);
+    const std::size_t max_size = 4 * a.size() + 64;
+    while (!a.empty()) {
+      if (a.size() > max_size) {
+        return std::nullopt;
+      }
+      const auto& [m, c] = *largest(a);
+      monomial inverse = leading->first;
+      for (auto& [i, exponent] : inverse) {
+        exponent = -exponent;
+      }
+      const monomial factor = product_of(m, inverse);
+      if (std::any_of(factor.begin(), factor.end(), [](const auto& x) { return x.second < 0; })) {
+        return std::nullopt;
+      }
+      const rational ratio = c / leading->second;
+      add_term(result, factor, ratio);
+      for (const auto& [n, d] : b) {
+        add_term(a, product_of(factor, n), rational(-ratio * d));
+      }
+    }
+    return result;
+  }
+
   /// A text that equal polynomials of all rings have in common.
   [[nodiscard]] std::string text(const monomial& m) const {
     std::string result;
@@ -147,6 +205,49 @@ public:
   }
 
 private:
+  /// The polynomial of atoms with relations at values of the other ones.
+  [[nodiscard]] polynomial at_point(const polynomial& p) const {
+    polynomial result;
+    for (const auto& [m, c] : p) {
+      monomial rest;
+      rational value = c;
+      for (const auto& [i, exponent] : m) {
+        if ((*this)[i].degree > 0) {
+          rest.emplace_back(i, exponent);
+          continue;
+        }
+        const rational x(7 * i % 31 + 2, 3 + i % 5);
+        for (int k = 0; k < std::abs(exponent); ++k) {
+          value = exponent > 0 ? rational(value * x) : rational(value / x);
+        }
+      }
+      add_term(result, rest, value);
+    }
+    return result;
+  }
+  void add_product(polynomial& sum, const polynomial& a, const polynomial& b, int sign) const {
+    for (const auto& [m, c] : a) {
+      for (const auto& [n, d] : b) {
+        add_reduced(sum, product_of(m, n), rational(sign * c * d));
+      }
+    }
+  }
+  /// The largest term in an order that products keep: by the exponents of atoms, first ones first.
+  [[nodiscard]] static polynomial::const_iterator largest(const polynomial& p) {
+    return std::max_element(p.begin(), p.end(), [](const auto& x, const auto& y) {
+      const monomial &a = x.first, &b = y.first;
+      for (std::size_t k = 0;; ++k) {
+        if (k == a.size() || k == b.size()) {
+          return k == a.size() ? k < b.size() && b[k].second > 0 : a[k].second < 0;
+        }
+        if (a[k] != b[k]) {
+          return a[k].first == b[k].first  ? a[k].second < b[k].second
+                 : a[k].first < b[k].first ? a[k].second < 0
+                                           : b[k].second > 0;
+        }
+      }
+    });
+  }
   static void add_term(polynomial& sum, const monomial& m, const rational& c) {
     const auto [entry, is_new] = sum.emplace(m, c);
     if (!is_new) {
@@ -295,19 +396,29 @@ private:
     }
     return result;
   }
-  /// Without divisors that are an atom in all terms above.
+  /// Without divisors that divide what is above.
   [[nodiscard]] fraction reduced(fraction a) const {
     if (a.above.empty()) {
       return {};
     }
     for (auto each = a.below.begin(); each != a.below.end();) {
       const polynomial& p = divisors_[std::size_t(each->first)];
-      while (each->second > 0 && p.size() == 1 && divide(a.above, p.begin()->first[0].first)) {
+      while (each->second > 0 && divide(a.above, p)) {
         --each->second;
       }
       each = each->second == 0 ? a.below.erase(each) : std::next(each);
     }
     return a;
+  }
+  [[nodiscard]] bool divide(polynomial& a, const polynomial& b) const {
+    if (b.size() == 1) {
+      return divide(a, b.begin()->first[0].first);
+    }
+    if (auto result = ring.quotient(a, b)) {
+      a = std::move(*result);
+      return true;
+    }
+    return false;
   }
   /// Divides all terms by an atom if it is in all of them.
   [[nodiscard]] static bool divide(polynomial& p, int i) {

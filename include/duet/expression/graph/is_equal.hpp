@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -36,6 +37,8 @@ struct assumptions {
   std::vector<std::string> positive = {}; ///< scalars that are positive
   std::vector<std::string> nonzero = {};  ///< scalars, vectors and rotations that are not 0
   std::vector<std::string> unit = {};     ///< vectors, quaternions and poses of unit norm
+  /// The claim is equality where both have values, as x/x = 1.
+  bool where_both_have_values = false;
 };
 
 /// Verdict on the equality of two formulas, with the input that refutes it.
@@ -338,6 +341,16 @@ private:
       return positive_atom("exp " + field_.text(x), 1);
     }
     for (const auto& [m, c] : x.above) {
+      const auto logarithm =
+          m.size() == 1 && m[0].second == 1 ? logs_.find(m[0].first) : logs_.end();
+      if (logarithm != logs_.end() && denominator(c) <= 2 && abs(c) <= 8) { // e^{c log x} = x^c
+        fraction base = denominator(c) == 1 ? logarithm->second : root(logarithm->second, 2);
+        base = c < 0 ? field_.reciprocal(base) : base;
+        for (int k = 0; k < abs(numerator(c)); ++k) {
+          result = field_.product(result, base);
+        }
+        continue;
+      }
       const std::string term = field_.ring.text(m);
       const int n = multiple("exp " + term, c);
       if (n == 0) {
@@ -351,18 +364,82 @@ private:
 
   [[nodiscard]] fraction root(const fraction& x, int degree) {
     if (!x.below.empty()) {
-      return opaque("root" + std::to_string(degree), x);
+      const bool is_separate = degree == 2 && !is_implicit(x) &&
+                               std::all_of(x.below.begin(), x.below.end(), [&](const auto& each) {
+                                 return field_.ring.sign_of(field_.divisor(each.first), false) == 1;
+                               });
+      if (!is_separate) {
+        return opaque("root" + std::to_string(degree), x);
+      }
+      fraction result = root({x.above}, 2); // over those of positive divisors
+      for (const auto& [divisor, exponent] : x.below) {
+        const polynomial of = field_.divisor(divisor);
+        const fraction inverse = field_.reciprocal(root({of}, 2));
+        for (int k = 0; k < exponent; ++k) {
+          result = field_.product(result, inverse);
+        }
+      }
+      return result;
     }
-    const fraction f = opaque("root" + std::to_string(degree), x);
+    if (x.above.empty()) {
+      return x;
+    }
+    fraction outside = fraction_field::constant(1), rest = x;
+    if (degree == 2) { // squares of numbers and of what is positive
+      monomial common;
+      for (const auto& [i, exponent] : x.above.begin()->first) {
+        int least = field_.ring[i].is_positive ? exponent : 0;
+        for (const auto& [n, d] : x.above) {
+          const auto found =
+              std::find_if(n.begin(), n.end(), [i = i](const auto& y) { return y.first == i; });
+          least = found == n.end() ? 0 : std::min(least, found->second);
+        }
+        if (least >= 2) {
+          common.emplace_back(i, least / 2);
+        }
+      }
+      rational number = 1;
+      if (const auto root = square_root({{{}, x.above.begin()->second}}); !root.empty()) {
+        number = root.begin()->second;
+      }
+      monomial inverse = common;
+      for (auto& [i, exponent] : inverse) {
+        exponent *= -2;
+      }
+      rest.above.clear();
+      for (const auto& [n, d] : x.above) {
+        rest.above.emplace(polynomial_ring::product_of(n, inverse), d / (number * number));
+      }
+      outside.above = {{common, number}};
+      if (rest.above == polynomial_ring::constant(1)) {
+        return outside;
+      }
+    }
+    const fraction f = opaque("root" + std::to_string(degree), rest);
     atom& info = field_.ring[f.above.begin()->first[0].first];
     info.degree = degree;
-    info.relation = x.above;
-    info.is_positive = degree == 2 && field_.ring.sign_of(x.above) == 1;
-    return f;
+    info.relation = rest.above;
+    info.is_positive = degree == 2 && field_.ring.sign_of(rest.above) == 1;
+    return field_.product(outside, f);
   }
 
   /// c_n(s) by that of the largest order of the same argument: c_n = 1/n! − s c_{n+2}.
   [[nodiscard]] fraction stumpff_function(const fraction& s, int order) {
+    if (s.below.empty() && field_.ring.is_regular(s.above) &&
+        !(s.above.size() == 1 && s.above.begin()->first.empty())) {
+      if (order > 1) { // c_n = (1/(n − 2)! − c_{n−2})/s
+        const fraction constant = fraction_field::constant(1 / factorial_of(order - 2));
+        return continued_quotient(field_.sum(constant, stumpff_function(s, order - 2), -1),
+                                  s.above);
+      }
+      if (const auto angle = square_root(s.above); !angle.empty()) {
+        const auto [cosine, sine] = cosine_and_sine({angle});
+        return order == 0 ? cosine : continued_quotient(sine, angle);
+      }
+      if (const auto arc = pair_of_arc(s.above)) {
+        return order == 0 ? arc->first : arc->second;
+      }
+    }
     const std::string text = field_.text(s);
     int& largest = stumpff_[text];
     if (order > largest) {
@@ -385,16 +462,72 @@ private:
     }
     return by_largest_order(s, text, order, largest);
   }
+  [[nodiscard]] static rational factorial_of(int n) {
+    rational factorial = 1;
+    for (int i = 2; i <= n; ++i) {
+      factorial *= i;
+    }
+    return factorial;
+  }
+  /// A square root of a term, otherwise 0.
+  [[nodiscard]] static polynomial square_root(const polynomial& p) {
+    if (p.size() != 1 || p.begin()->second < 0) {
+      return {};
+    }
+    monomial m = p.begin()->first;
+    const rational c = p.begin()->second;
+    const rational root(sqrt(numerator(c)), sqrt(denominator(c)));
+    for (auto& [i, exponent] : m) {
+      if (exponent % 2 != 0) {
+        return {};
+      }
+      exponent /= 2;
+    }
+    return root * root == c ? polynomial{{m, root}} : polynomial();
+  }
+  /// cos kφ and sin kφ/kφ of k²φ² for the angle φ = √s a of a = arc_ratio(s, w) and an integer k:
+  /// cos φ = w/√(s + w²), sin φ/φ = 1/(a √(s + w²)).
+  [[nodiscard]] std::optional<std::pair<fraction, fraction>> pair_of_arc(const polynomial& square) {
+    for (const auto& [a, arc] : arcs_) {
+      const auto rest = field_.ring.quotient(square, polynomial_ring::power_of(a, 2));
+      const polynomial& s = arc.first.above;
+      if (!rest || !are_proportional(*rest, s)) {
+        continue;
+      }
+      const polynomial k = square_root({{{}, rest->begin()->second / s.begin()->second}});
+      if (k.empty() || denominator(k.begin()->second) != 1 || k.begin()->second > 8) {
+        continue;
+      }
+      const fraction w = arc.second, ratio{polynomial_ring::power_of(a, 1)};
+      const fraction norm = root(field_.sum(arc.first, field_.product(w, w)), 2);
+      if (norm.above.empty()) {
+        continue;
+      }
+      const fraction inverse = field_.reciprocal(norm);
+      const fraction cosine = field_.product(w, inverse);
+      const fraction sine = field_.product(inverse, field_.reciprocal(ratio)); // over φ
+      std::pair<fraction, fraction> result{cosine, sine};
+      const int count = int(numerator(k.begin()->second));
+      const fraction phi_square{field_.ring.product(s, polynomial_ring::power_of(a, 2))};
+      for (int i = 1; i < count; ++i) {
+        const fraction next =
+            field_.sum(field_.product(result.first, cosine),
+                       field_.product(phi_square, field_.product(result.second, sine)), -1);
+        result.second =
+            field_.sum(field_.product(result.second, cosine), field_.product(result.first, sine));
+        result.first = next;
+      }
+      result.second = field_.product(result.second, fraction_field::constant(rational(1, count)));
+      return result;
+    }
+    return std::nullopt;
+  }
   [[nodiscard]] fraction by_largest_order(const fraction& s, const std::string& text, int order,
                                           int largest) {
     if (order + 2 > largest) {
       return atom_of("stumpff" + std::to_string(order) + text);
     }
-    rational factorial = 1;
-    for (int i = 2; i <= order; ++i) {
-      factorial *= i;
-    }
-    return field_.sum(fraction_field::constant(1 / factorial),
+    return field_.sum(fraction_field::constant(1 / factorial_of(order)),
                       field_.product(s, by_largest_order(s, text, order + 2, largest)), -1);
   }
 
@@ -435,9 +568,11 @@ private:
     if (n.what == operation::no) {
       result.nonzero_if_true = x[0]->nonzero_if_false;
       result.nonzero_if_false = x[0]->nonzero_if_true;
-    } else if (n.what == operation::less && number_in(x[0]->number) >= 0) {
+    } else if (n.what == operation::less && number_in(x[0]->number) >= 0 &&
+               !is_implicit(x[1]->number)) {
       result.nonzero_if_true = x[1]->number.above;
-    } else if (n.what == operation::equal && number_in(x[1]->number) == 0) {
+    } else if (n.what == operation::equal && number_in(x[1]->number) == 0 &&
+               !is_implicit(x[0]->number)) {
       result.nonzero_if_false = x[0]->number.above;
     }
   }
@@ -453,7 +588,26 @@ private:
                            [&](const auto& known) { return known.first == factor.first; });
       });
     }
-    return are_proportional(c.p, divisor);
+    return field_.ring.quotient(divisor, c.p).has_value();
+  }
+  /// True for a value that keeps its meaning where its divisors vanish: by continuity.
+  [[nodiscard]] bool is_kept(const fraction& x) const {
+    return std::all_of(x.below.begin(), x.below.end(), [&](const auto& each) {
+      return field_.ring.is_regular(field_.divisor(each.first));
+    });
+  }
+  /// True if it has divisors that may vanish where it has a value.
+  [[nodiscard]] bool is_implicit(const fraction& x) const {
+    return std::any_of(x.below.begin(), x.below.end(),
+                       [&](const auto& each) { return implicit_.count(each.first) > 0; });
+  }
+  /// a/b of a regular b that may vanish, where the quotient is continued.
+  [[nodiscard]] fraction continued_quotient(const fraction& a, const polynomial& b) {
+    const fraction inverse = field_.reciprocal({b});
+    for (const auto& [divisor, exponent] : inverse.below) {
+      implicit_.insert(divisor);
+    }
+    return field_.product(a, inverse);
   }
 
   [[nodiscard]] value choice(const value& condition, const value& b, const value& c) {
@@ -461,7 +615,8 @@ private:
     result.needs.insert(b.needs.begin(), b.needs.end());
     result.needs.insert(c.needs.begin(), c.needs.end());
     if (are_equal(b.number, c.number)) {
-      value common{c.number, {}, condition.needs};
+      const fraction& kept = c.number.below.empty() || !is_kept(b.number) ? c.number : b.number;
+      value common{kept, {}, condition.needs};
       const auto add_needs = [&](const value& branch, const polynomial& cannot_vanish) {
         for (const int need : branch.needs) {
           if (!is_implied(need, cannot_vanish)) {
@@ -471,7 +626,15 @@ private:
       };
       add_needs(b, condition.nonzero_if_true);
       add_needs(c, condition.nonzero_if_false);
-      return common;
+      if (common.needs == result.needs) {
+        return common;
+      }
+      if (is_kept(kept)) {
+        for (const auto& [divisor, exponent] : kept.below) {
+          implicit_.insert(divisor);
+        }
+        return common;
+      }
     }
     result.number = atom_of("select(" + condition.condition + field_.text(b.number) +
                             field_.text(c.number) + ")");
@@ -518,7 +681,11 @@ private:
     case operation::expm1:
       return field_.sum(exponential(arg(0)), one(), -1);
     case operation::log:
-      require(result, kind::positive, arg(0));
+      if (const polynomial* square = square_of_root(arg(0))) {
+        require(result, kind::positive, {*square});
+      } else {
+        require(result, kind::positive, arg(0));
+      }
       return logarithm(arg(0));
     case operation::log1p: {
       const fraction y = field_.sum(one(), arg(0));
@@ -592,17 +759,43 @@ private:
   [[nodiscard]] fraction arc_ratio_of(const fraction& s, const fraction& w, value& result) {
     const std::string text = "arc_ratio(" + field_.text(s) + ")(" + field_.text(w) + ")";
     require_other(result, text, s.below.empty() ? s.above : polynomial());
-    return atom_of(text);
+    fraction f = atom_of(text);
+    const int a = f.above.begin()->first[0].first;
+    field_.ring[a].is_positive = true;
+    if (!s.above.empty() && s.below.empty() && w.below.empty() && field_.ring.is_regular(s.above)) {
+      arcs_.emplace(a, std::pair(s, w));
+    }
+    return f;
   }
   [[nodiscard]] fraction inverse(const fraction& x, value& result) {
     if (x.above.empty()) {
       return atom_of("1/0");
     }
+    if (is_implicit(x)) {
+      require_other(result, "1/" + field_.text(x));
+      return atom_of("1/" + field_.text(x));
+    }
     require(result, kind::nonzero, x);
     return field_.reciprocal(x);
   }
-  /// log x, of a power of an exponential its exponent.
-  [[nodiscard]] fraction logarithm(const fraction& x) { return opaque("log", x); }
+  /// p of √p, otherwise null.
+  [[nodiscard]] const polynomial* square_of_root(const fraction& x) const {
+    const bool is_atom = x.below.empty() && x.above.size() == 1 && x.above.begin()->second == 1 &&
+                         x.above.begin()->first.size() == 1;
+    const int root = is_atom ? root_in(x.above.begin()->first) : -1;
+    return root < 0 ? nullptr : &field_.ring[root].relation;
+  }
+  /// log x, of a square root half that of its square.
+  [[nodiscard]] fraction logarithm(const fraction& x) {
+    if (const polynomial* square = square_of_root(x)) {
+      return field_.product(fraction_field::constant(rational(1, 2)), logarithm({*square}));
+    }
+    fraction f = opaque("log", x);
+    if (!x.above.empty() && !is_implicit(x)) {
+      logs_.emplace(f.above.begin()->first[0].first, x);
+    }
+    return f;
+  }
 
   const assumptions& known_;
   std::map<std::string, rational>& bases_;
@@ -610,6 +803,9 @@ private:
   fraction_field field_;
   std::vector<value_condition> conditions_;
   std::set<int> nonzero_;
+  std::set<int> implicit_;       ///< divisors that may vanish where values exist
+  std::map<int, fraction> logs_; ///< x of the atoms of log x
+  std::map<int, std::pair<fraction, fraction>> arcs_; ///< s and w of the atoms of arc_ratio(s, w)
   std::vector<polynomial> nonzero_polynomials_;
   bool must_repeat_ = false;
 };
@@ -699,7 +895,8 @@ inline void add_sample(const named_value& x, const assumptions& known, random_so
       const std::vector<int>&of_f = f.outputs()[k].nodes, &of_g = g.outputs()[k].nodes;
       for (std::size_t i = 0; i < of_f.size() && is_proved; ++i) {
         const auto &x = a[std::size_t(of_f[i])], &y = b[std::size_t(of_g[i])];
-        is_proved = form.are_equal(x.number, y.number) && form.have_equal_domains(x, y);
+        is_proved = form.are_equal(x.number, y.number) &&
+                    (known.where_both_have_values || form.have_equal_domains(x, y));
       }
     }
     is_proved = is_proved && !form.field().ring.is_too_large();
