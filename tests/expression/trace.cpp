@@ -146,6 +146,60 @@ TEST_CASE("graphs: what is written alike is one node, and simplified exactly alo
   CHECK(half(u = 1.5e308, t = 2.0) == 1.5e308);
 }
 
+TEST_CASE("trace: bits of the function, also where it overflows or vanishes") {
+  const auto check = [](const auto& f) {
+    const auto traced = trace(f, u, t);
+    for (const double size : {1e-310, 1e-200, 1e-8, 1.0, 1e8, 1e160, 1e200, 1.7e308}) {
+      for (const double x : {1.1, -0.3, 0.7}) {
+        for (const double y : {1.0, 1e-150, 3e300}) {
+          const double written = f(x * size, y), recorded = traced(u = x * size, t = y);
+          CAPTURE(x * size);
+          CAPTURE(y);
+          CHECK((recorded == written || (recorded != recorded && written != written)));
+        }
+      }
+    }
+  };
+  check([](auto x, auto y) { return (x * 1e200) * 1e-200 + y; });
+  check([](auto x, auto y) { return 1e-200 * (1e200 * x) / y; });
+  check([](auto x, auto y) { return 0.1 * (0.3 * x) - y * 0.1; });
+  check([](auto x, auto y) { return (x + y) - x; });
+  check([](auto x, auto y) { return x * x / (y * y); });
+  check([](auto x, auto y) { return (x / y) * y / 3; });
+  check([](auto x, auto y) { return x * y * x - x * (y * x); });
+  check([](auto x, auto y) { return sqrt(x * x + y * y) - hypot(x, y); });
+  check([](auto x, auto y) { return x - 0.7 - (y + 0.3 - x); });
+  check([](auto x, auto y) { return -(x - y) * -3 / -(y * 0.1); });
+}
+
+TEST_CASE("trace: whole powers and their slopes within 4 ulp") {
+  using moving = duet::dual<double>;
+  duet_test::random_source random(4);
+  for (int n = -16; n <= 16; ++n) {
+    const auto power = trace(
+        [n](auto x) {
+          using std::pow;
+          return pow(x, decltype(x)(n));
+        },
+        u);
+    const auto gradient = reverse_gradient(power, {"u"});
+    for (int k = 0; k < 300; ++k) {
+      const double x = k % 2 == 0 ? random.uniform(0.5, 2) : -1 - random.uniform(0, 1e-7);
+      const long double y = std::pow(static_cast<long double>(x), n);
+      const long double slope = n * std::pow(static_cast<long double>(x), n - 1);
+      const auto ulps = [](double computed, long double exact) {
+        return exact == 0 ? double(computed != 0)
+                          : double(std::abs((computed - exact) / exact) / 0x1p-53L);
+      };
+      CAPTURE(n);
+      CAPTURE(x);
+      CHECK(ulps(power(u = x), y) < 4);
+      CHECK(ulps(power(u = moving(x, 1.0)).epsilon(), slope) < 4);
+      CHECK(ulps(evaluate(gradient, std::vector<double>{x})[1], slope) < 4);
+    }
+  }
+}
+
 TEST_CASE("graph_of: formulas with their derivatives") {
   const auto f = exp(-u) * rotate(exp(u * v) * q, w);
   const auto J = jacobian(f, wrt(u, q), duet::frame::body);

@@ -41,7 +41,7 @@ public:
     if (std::isinf(x)) {
       return x < 0 ? "-INFINITY" : "INFINITY";
     }
-    return is_single_ ? float_literal(x) : number_literal(x);
+    return is_single_ ? number_literal(static_cast<float>(x)) + "f" : number_literal(x);
   }
   [[nodiscard]] std::string function(const std::string& name) const {
     return is_cpp() ? "std::" + name : name + (is_single_ ? "f" : "");
@@ -68,26 +68,7 @@ public:
   }
   [[nodiscard]] bound_text condition(const graph_node& n,
                                      const std::array<bound_text, 3>& x) const {
-    const auto infix = [&](const char* sign, binding inner) -> bound_text {
-      return {x[0].inside(inner) + sign + x[1].inside(inner), binding::condition};
-    };
-    switch (n.what) {
-    case operation::less:
-      return infix(" < ", binding::sum);
-    case operation::less_equal:
-      return infix(" <= ", binding::sum);
-    case operation::equal:
-      return infix(" == ", binding::sum);
-    case operation::both:
-      return infix(" && ", binding::atom);
-    case operation::either:
-      return infix(" || ", binding::atom);
-    case operation::no:
-      return {"!" + x[0].inside(binding::atom)};
-    default:
-      return {(is_cpp() ? "std::" : "") + std::string(function_name_of(n.what)) + "(" + x[0].text +
-              ")"};
-    }
+    return infix_condition(n, x, "!", is_cpp() ? "std::" : "");
   }
   [[nodiscard]] std::string assignment(const std::string& name, const std::string& value,
                                        bool is_condition) const {

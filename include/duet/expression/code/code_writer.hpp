@@ -3,6 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/version.hpp>
+#include <duet/dual/stumpff.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
 #include <duet/expression/graph/graph.hpp>
@@ -44,25 +45,12 @@ struct code_options {
 namespace detail {
 
 /// The decimal digits of x that make it again, with a point or an exponent.
-[[nodiscard]] inline std::string number_literal(double x) {
+template <class T>
+[[nodiscard]] std::string number_literal(T x) {
   std::array<char, 32> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr;
-  std::string text(digits.data(), end);
-  if (text.find_first_of(".en") == std::string::npos) {
-    text += ".0";
-  }
-  return text;
-}
-/// Literal of the float nearest to x.
-[[nodiscard]] inline std::string float_literal(double x) {
-  std::array<char, 32> digits;
-  const auto end =
-      std::to_chars(digits.data(), digits.data() + digits.size(), static_cast<float>(x)).ptr;
-  std::string text(digits.data(), end);
-  if (text.find_first_of(".en") == std::string::npos) {
-    text += ".0";
-  }
-  return text + "f";
+  const std::string text(digits.data(), end);
+  return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
 }
 
 /// Keywords of C, C++, Python, MATLAB and Octave, and names that their libraries take or that look
@@ -175,9 +163,9 @@ private:
   std::set<std::string> taken_;
 };
 
-/// x^n by products for |n| ≤ 8, in another formula.
+/// x^n by products for |n| ≤ 5, in another formula.
 [[nodiscard]] inline recorded power_by_products(const recorded& x, int n) {
-  if (n > 8 || n < -8) {
+  if (n > 5 || n < -5) {
     return recorded::of(operation::pow, x, recorded(n));
   }
   if (n < 0) {
@@ -222,6 +210,32 @@ private:
     result.add_output(std::move(y));
   }
   return result;
+}
+
+/// A condition with the signs that C and MATLAB share. \param prefix  of functions
+[[nodiscard]] inline bound_text infix_condition(const graph_node& n,
+                                                const std::array<bound_text, 3>& x,
+                                                const std::string& negation,
+                                                const std::string& prefix) {
+  const auto infix = [&](const char* sign, binding inner) -> bound_text {
+    return {x[0].inside(inner) + sign + x[1].inside(inner), binding::condition};
+  };
+  switch (n.what) {
+  case operation::less:
+    return infix(" < ", binding::sum);
+  case operation::less_equal:
+    return infix(" <= ", binding::sum);
+  case operation::equal:
+    return infix(" == ", binding::sum);
+  case operation::both:
+    return infix(" && ", binding::atom);
+  case operation::either:
+    return infix(" || ", binding::atom);
+  case operation::no:
+    return {negation + x[0].inside(binding::atom)};
+  default:
+    return {prefix + std::string(function_name_of(n.what)) + "(" + x[0].text + ")"};
+  }
 }
 
 /// A language: how numbers, functions, conditions, choices and assignments are written, where
@@ -511,26 +525,13 @@ comment_lines(const formula_graph& f, const code_names& names, const code_option
 
 /// The coefficients 1/(2k+order)! with which c_order is summed, and their number.
 [[nodiscard]] inline std::vector<double> stumpff_terms(int order) {
-  const int terms = order < 2 ? 10 : 13;
-  std::vector<double> result;
-  long double factorial = 1;
-  for (int i = 2; i <= order; ++i) {
-    factorial *= i;
-  }
-  for (int k = 0; k < terms; ++k) {
-    result.push_back(static_cast<double>(1 / factorial));
-    factorial *= (2.0L * k + order + 1) * (2.0L * k + order + 2);
-  }
-  return result;
+  const auto all = duet::detail::stumpff_coefficients<double, 13>(order);
+  return {all.begin(), all.begin() + (order < 2 ? 10 : 13)};
 }
 
 /// 1/n!
 [[nodiscard]] inline double inverse_factorial(int n) {
-  double factorial = 1;
-  for (int i = 2; i <= n; ++i) {
-    factorial *= i;
-  }
-  return 1 / factorial;
+  return duet::detail::inverse_factorial<double>(n);
 }
 
 /// Every other term from the `first` on by Horner's rule, in a variable `square`.

@@ -55,27 +55,7 @@ public:
   }
   [[nodiscard]] bound_text condition(const graph_node& n,
                                      const std::array<bound_text, 3>& x) const {
-    const auto infix = [&](const char* sign, binding inner) -> bound_text {
-      return {x[0].inside(inner) + sign + x[1].inside(inner), binding::condition};
-    };
-    switch (n.what) {
-    case operation::less:
-      return infix(" < ", binding::sum);
-    case operation::less_equal:
-      return infix(" <= ", binding::sum);
-    case operation::equal:
-      return infix(" == ", binding::sum);
-    case operation::both:
-      return infix(" && ", binding::atom);
-    case operation::either:
-      return infix(" || ", binding::atom);
-    case operation::no:
-      return {"~" + x[0].inside(binding::atom)};
-    case operation::is_negative:
-      return {"duet_signbit(" + x[0].text + ")"};
-    default:
-      return {std::string(function_name_of(n.what)) + "(" + x[0].text + ")"};
-    }
+    return infix_condition(n, x, "~", n.what == operation::is_negative ? "duet_" : "");
   }
   [[nodiscard]] std::string assignment(const std::string& name, const std::string& value,
                                        bool /*is_condition*/) const {

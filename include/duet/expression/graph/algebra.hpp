@@ -98,6 +98,31 @@ public:
     return result;
   }
 
+  /// m^n of |n| > 0
+  [[nodiscard]] static monomial power_of(monomial m, int n) {
+    for (auto& [i, exponent] : m) {
+      exponent *= n;
+    }
+    return m;
+  }
+  /// The powers of atoms that all terms share.
+  [[nodiscard]] static monomial common_factor(const polynomial& p) {
+    monomial common = p.begin()->first;
+    for (const auto& [m, c] : p) {
+      monomial shared;
+      for (const auto& [i, exponent] : common) {
+        const auto found =
+            std::find_if(m.begin(), m.end(), [i = i](const auto& x) { return x.first == i; });
+        if (found != m.end() && (exponent > 0) == (found->second > 0)) {
+          shared.emplace_back(i, exponent > 0 ? std::min(exponent, found->second)
+                                              : std::max(exponent, found->second));
+        }
+      }
+      common = shared;
+    }
+    return common;
+  }
+
   /// True if a product exceeded the bound.
   [[nodiscard]] bool is_too_large() const { return is_too_large_; }
 
@@ -141,11 +166,7 @@ public:
         return std::nullopt;
       }
       const auto& [m, c] = *largest(a);
-      monomial inverse = leading->first;
-      for (auto& [i, exponent] : inverse) {
-        exponent = -exponent;
-      }
-      const monomial factor = product_of(m, inverse);
+      const monomial factor = product_of(m, power_of(leading->first, -1));
       if (std::any_of(factor.begin(), factor.end(), [](const auto& x) { return x.second < 0; })) {
         return std::nullopt;
       }
@@ -322,25 +343,8 @@ public:
       }
     }
     // common atoms are divisors of their own
-    monomial common = a.above.begin()->first;
-    for (const auto& [m, c] : a.above) {
-      monomial shared;
-      for (const auto& [i, exponent] : common) {
-        const auto found =
-            std::find_if(m.begin(), m.end(), [i = i](const auto& x) { return x.first == i; });
-        if (found != m.end() && found->second > 0 && exponent > 0) {
-          shared.emplace_back(i, std::min(exponent, found->second));
-        }
-      }
-      common = shared;
-    }
-    if (a.above.size() == 1) {
-      common = a.above.begin()->first;
-    }
-    monomial inverse = common;
-    for (auto& [i, exponent] : inverse) {
-      exponent = -exponent;
-    }
+    const monomial common = polynomial_ring::common_factor(a.above);
+    const monomial inverse = polynomial_ring::power_of(common, -1);
     polynomial rest;
     const rational leading = a.above.begin()->second;
     for (const auto& [m, c] : a.above) {

@@ -368,25 +368,16 @@ private:
     fraction outside = fraction_field::constant(1), rest = x;
     if (degree == 2) { // squares of numbers and of what is positive
       monomial common;
-      for (const auto& [i, exponent] : x.above.begin()->first) {
-        int least = field_.ring[i].is_positive ? exponent : 0;
-        for (const auto& [n, d] : x.above) {
-          const auto found =
-              std::find_if(n.begin(), n.end(), [i = i](const auto& y) { return y.first == i; });
-          least = found == n.end() ? 0 : std::min(least, found->second);
-        }
-        if (least >= 2) {
-          common.emplace_back(i, least / 2);
+      for (const auto& [i, exponent] : polynomial_ring::common_factor(x.above)) {
+        if (field_.ring[i].is_positive && exponent >= 2) {
+          common.emplace_back(i, exponent / 2);
         }
       }
       rational number = 1;
       if (const auto root = square_root({{{}, x.above.begin()->second}}); !root.empty()) {
         number = root.begin()->second;
       }
-      monomial inverse = common;
-      for (auto& [i, exponent] : inverse) {
-        exponent *= -2;
-      }
+      const monomial inverse = polynomial_ring::power_of(common, -2);
       rest.above.clear();
       for (const auto& [n, d] : x.above) {
         rest.above.emplace(polynomial_ring::product_of(n, inverse), d / (number * number));

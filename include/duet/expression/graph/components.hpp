@@ -146,10 +146,7 @@ private:
       break;
     case quotient:
       if (x(1).size() == 1 && is_plain(x(1).begin()->first)) {
-        monomial inverse = x(1).begin()->first;
-        for (auto& [a, exponent] : inverse) {
-          exponent = -exponent;
-        }
+        const monomial inverse = polynomial_ring::power_of(x(1).begin()->first, -1);
         y = ring_.product(x(0), {{inverse, rational(1 / x(1).begin()->second)}});
         return;
       }
@@ -402,27 +399,8 @@ private:
   }
   /// A polynomial of atoms that are nodes, with what all terms share before the others.
   [[nodiscard]] int sum_of_products(const polynomial& p) {
-    monomial common = p.begin()->first;
-    for (const auto& [m, c] : p) {
-      monomial shared;
-      for (const auto& [a, exponent] : common) {
-        const auto found =
-            std::find_if(m.begin(), m.end(), [a = a](const auto& x) { return x.first == a; });
-        if (found != m.end() && (exponent > 0) == (found->second > 0)) {
-          shared.emplace_back(a, exponent > 0 ? std::min(exponent, found->second)
-                                              : std::max(exponent, found->second));
-        }
-      }
-      common = shared;
-    }
-    monomial inverse = common;
-    for (auto& [a, exponent] : inverse) {
-      exponent = -exponent;
-    }
-    if (p.size() == 1 || common.empty()) {
-      common.clear();
-      inverse.clear();
-    }
+    const monomial common = p.size() == 1 ? monomial() : polynomial_ring::common_factor(p);
+    const monomial inverse = polynomial_ring::power_of(common, -1);
     const bool is_negative =
         std::all_of(p.begin(), p.end(), [](const auto& term) { return term.second < 0; });
     int result = -1;

@@ -10,6 +10,7 @@
 #include <duet/dual/rules/of_many.hpp>
 #include <duet/dual/stumpff.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/functions_of_one.hpp>
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
 
@@ -26,29 +27,45 @@
 
 namespace duet::expression::detail {
 
-/// x^n by halving n, for |n| ≤ 8; beyond that by `pow`, which rounds once.
-template <class S>
-[[nodiscard]] S integer_power_of(const S& x, int n) {
-  using std::pow;
-  if constexpr (duet::detail::is_recording<S>) {
-    return pow(x, S(n));
-  } else {
-    if (n == 0) {
-      return S(1);
+/// x^n: by products for −3 ≤ n ≤ 4, beyond that by `pow`, which rounds once; slopes are n x^(n−1).
+struct whole_power {
+  int n;
+
+  template <class S>
+  [[nodiscard]] S value(const S& x) const {
+    using std::pow;
+    if constexpr (duet::detail::is_recording<S>) {
+      return pow(x, S(n));
+    } else if constexpr (Infinitesimal<S>) {
+      return duet::detail::lift(*this, x);
+    } else {
+      switch (n) { // reciprocals in two steps: x^−n may be out of range where x^n is not
+      case -3:
+        return S(1 / x / S(x * x));
+      case -2:
+        return S(1 / x / x);
+      case -1:
+        return S(1 / x);
+      case 0:
+        return S(1);
+      case 1:
+        return x;
+      case 2:
+        return S(x * x);
+      case 3:
+        return S(x * x * x);
+      case 4:
+        return S(S(x * x) * S(x * x));
+      default:
+        return S(pow(x, n));
+      }
     }
-    if (n > 8 || n < -8) {
-      return S(pow(x, n));
-    }
-    if (n < 0) {
-      return S(1 / integer_power_of(x, -n));
-    }
-    if (n == 1) {
-      return x;
-    }
-    const S root = integer_power_of(x, n / 2);
-    return n % 2 == 0 ? S(root * root) : S(root * root * x);
   }
-}
+  template <class S>
+  [[nodiscard]] S slope(const S& x, const S&) const {
+    return duet::detail::integer<S>(n) * whole_power{n - 1}.value(x);
+  }
+};
 
 /// Stumpff functions of a higher order occur in derivatives of an order that nobody takes.
 inline constexpr int max_stumpff = 24;
@@ -126,38 +143,10 @@ template <class S>
     return S(name(x));                                                                             \
   }
   switch (what) {
-    DUET_CASE(sqrt)
-    DUET_CASE(cbrt)
-    DUET_CASE(exp)
-    DUET_CASE(exp2)
-    DUET_CASE(expm1)
-    DUET_CASE(log)
-    DUET_CASE(log2)
-    DUET_CASE(log10)
-    DUET_CASE(log1p)
-    DUET_CASE(sin)
-    DUET_CASE(cos)
-    DUET_CASE(tan)
-    DUET_CASE(asin)
-    DUET_CASE(acos)
-    DUET_CASE(atan)
-    DUET_CASE(sinh)
-    DUET_CASE(cosh)
-    DUET_CASE(tanh)
-    DUET_CASE(asinh)
-    DUET_CASE(acosh)
-    DUET_CASE(atanh)
-    DUET_CASE(erf)
-    DUET_CASE(erfc)
-    DUET_CASE(tgamma)
-    DUET_CASE(lgamma)
-    DUET_CASE(abs)
-    DUET_CASE(floor)
-    DUET_CASE(ceil)
-    DUET_CASE(trunc)
-    DUET_CASE(round)
+    DUET_EACH_FUNCTION(DUET_CASE)
+    DUET_EACH_ROUNDING(DUET_CASE)
   case operation::power:
-    return integer_power_of(x, index);
+    return whole_power{index}.value(x);
   case operation::stumpff:
     return stumpff_of_order{index}.value(x);
   default:

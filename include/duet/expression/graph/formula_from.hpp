@@ -8,6 +8,7 @@
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/functions_of_many.hpp>
 #include <duet/expression/graph/formula_grammar.hpp>
+#include <duet/expression/graph/functions_of_one.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/special_functions.hpp>
 #include <duet/expression/symbol.hpp>
@@ -234,32 +235,7 @@ private:
     } else if constexpr (f == "ln") {
       return log(a);
     }
-    DUET_CASE(sqrt)
-    DUET_CASE(cbrt)
-    DUET_CASE(exp)
-    DUET_CASE(exp2)
-    DUET_CASE(expm1)
-    DUET_CASE(log)
-    DUET_CASE(log2)
-    DUET_CASE(log10)
-    DUET_CASE(log1p)
-    DUET_CASE(sin)
-    DUET_CASE(cos)
-    DUET_CASE(tan)
-    DUET_CASE(asin)
-    DUET_CASE(acos)
-    DUET_CASE(atan)
-    DUET_CASE(sinh)
-    DUET_CASE(cosh)
-    DUET_CASE(tanh)
-    DUET_CASE(asinh)
-    DUET_CASE(acosh)
-    DUET_CASE(atanh)
-    DUET_CASE(erf)
-    DUET_CASE(erfc)
-    DUET_CASE(tgamma)
-    DUET_CASE(lgamma)
-    DUET_CASE(abs)
+    DUET_EACH_FUNCTION(DUET_CASE)
     DUET_CASE(norm)
     DUET_CASE(conj)
     DUET_CASE(vec)

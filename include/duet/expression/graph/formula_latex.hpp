@@ -14,8 +14,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -56,46 +58,28 @@ namespace detail {
 /// The command of a function in LaTeX, or its form with # for the argument; empty for its name.
 [[nodiscard]] inline const char* latex_command(operation what) {
   using enum operation;
-  switch (what) {
-  case log:
-    return "\\log";
-  case log2:
-    return "\\log_{2}";
-  case log10:
-    return "\\log_{10}";
-  case exp2:
-    return "2^{#}";
-  case sin:
-    return "\\sin";
-  case cos:
-    return "\\cos";
-  case tan:
-    return "\\tan";
-  case asin:
-    return "\\arcsin";
-  case acos:
-    return "\\arccos";
-  case atan:
-    return "\\arctan";
-  case sinh:
-    return "\\sinh";
-  case cosh:
-    return "\\cosh";
-  case tanh:
-    return "\\tanh";
-  case tgamma:
-    return "\\Gamma";
-  case lgamma:
-    return "\\log\\Gamma";
-  case abs:
-    return "\\left|#\\right|";
-  case floor:
-    return "\\left\\lfloor #\\right\\rfloor";
-  case ceil:
-    return "\\left\\lceil #\\right\\rceil";
-  default:
-    return "";
-  }
+  static constexpr std::pair<operation, const char*> commands[] = {
+      {log, "\\log"},
+      {log2, "\\log_{2}"},
+      {log10, "\\log_{10}"},
+      {exp2, "2^{#}"},
+      {sin, "\\sin"},
+      {cos, "\\cos"},
+      {tan, "\\tan"},
+      {asin, "\\arcsin"},
+      {acos, "\\arccos"},
+      {atan, "\\arctan"},
+      {sinh, "\\sinh"},
+      {cosh, "\\cosh"},
+      {tanh, "\\tanh"},
+      {tgamma, "\\Gamma"},
+      {lgamma, "\\log\\Gamma"},
+      {abs, "\\left|#\\right|"},
+      {floor, "\\left\\lfloor #\\right\\rfloor"},
+      {ceil, "\\left\\lceil #\\right\\rceil"}};
+  const auto* const found = std::find_if(std::begin(commands), std::end(commands),
+                                         [&](const auto& each) { return each.first == what; });
+  return found == std::end(commands) ? "" : found->second;
 }
 
 /// A variable, with the index of a component behind it.
