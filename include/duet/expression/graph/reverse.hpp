@@ -99,30 +99,67 @@ namespace duet::expression::detail {
 }
 
 /// Adjoints: the derivatives of a node with respect to the nodes before it, recorded in its graph.
+/// In a branch of a choice they are taken as if the branch were chosen, and masked where they leave
+/// it: infinite slopes of a branch that is not chosen do no harm.
 class adjoints {
 public:
   /// Computes them for the node `root`, in one sweep over the nodes before it.
   adjoints(graph& g, int root) : g_(g), values_(std::size_t(root) + 1) {
-    values_[std::size_t(root)] = recorded(1);
+    values_[std::size_t(root)].sum = recorded(1);
     for (int i = root; i >= 0; --i) {
-      const recorded& adjoint = values_[std::size_t(i)];
-      if (!(adjoint.is_constant() && adjoint.number() == 0)) {
+      const auto& [sum, branch, is_known] = values_[std::size_t(i)];
+      if (!(sum.is_constant() && sum.number() == 0)) {
         g_.require_own_derivative(i);
-        propagate(g_[i], i, adjoint);
+        branch_ = branch;
+        propagate(g_[i], i, sum);
       }
     }
   }
 
   /// With respect to a node.
   [[nodiscard]] recorded operator[](int node) const {
-    return std::size_t(node) < values_.size() ? values_[std::size_t(node)] : recorded(0);
+    if (std::size_t(node) >= values_.size()) {
+      return recorded(0);
+    }
+    const entry& x = values_[std::size_t(node)];
+    return masked(x.sum, x.branch, 0);
   }
 
 private:
+  struct entry {
+    recorded sum = recorded(0);
+    std::vector<int> branch = {}; ///< nodes of conditions under which it is meant; else it is 0
+    bool is_known = false;
+  };
+
   [[nodiscard]] recorded at(int node) { return {g_, node}; }
+  /// x where all conditions from the `first` on hold, otherwise 0.
+  [[nodiscard]] recorded masked(recorded x, const std::vector<int>& branch,
+                                std::size_t first) const {
+    for (std::size_t k = branch.size(); k > first; --k) {
+      x = blended(recorded_condition(g_, branch[k - 1]), x, recorded(0));
+    }
+    return x;
+  }
   void add(int node, const recorded& x) {
-    recorded& sum = values_[std::size_t(node)];
-    sum = sum + x;
+    auto& [sum, branch, is_known] = values_[std::size_t(node)];
+    if (!is_known) {
+      sum = x;
+      branch = branch_;
+      is_known = true;
+      return;
+    }
+    std::size_t common = 0;
+    while (common < branch.size() && common < branch_.size() && branch[common] == branch_[common]) {
+      ++common;
+    }
+    if (branch.size() == common + 1 && branch_.size() == common + 1 &&
+        g_.apply(operation::no, branch.back()) == branch_.back()) {
+      sum = blended(recorded_condition(g_, branch.back()), sum, x); // of both branches
+    } else {
+      sum = masked(sum, branch, common) + masked(x, branch_, common);
+    }
+    branch.resize(common);
   }
   void propagate(const graph_node n, int i, const recorded adjoint) {
     const int a = n.operands[0], b = n.operands[1], c = n.operands[2];
@@ -154,9 +191,10 @@ private:
       add_unless_number(b, [&] { return adjoint * at(a); });
       return add_unless_number(c, [&] { return adjoint; });
     case operation::select: {
-      const recorded_condition condition(g_, a);
-      add_unless_number(b, [&] { return blended(condition, adjoint, recorded(0)); });
-      return add_unless_number(c, [&] { return blended(condition, recorded(0), adjoint); });
+      branch_.push_back(a);
+      add_unless_number(b, [&] { return adjoint; });
+      branch_.back() = g_.apply(operation::no, a);
+      return add_unless_number(c, [&] { return adjoint; });
     }
     default:
       break;
@@ -179,7 +217,8 @@ private:
   }
 
   graph& g_;
-  std::vector<recorded> values_;
+  std::vector<entry> values_;
+  std::vector<int> branch_; ///< that of the node whose adjoint is propagated
 };
 
 /// A column of Eigen of floating-point numbers.
