@@ -529,7 +529,8 @@ constexpr double infinite = 1e300;
 double ulps(double computed, const wide& exact, double condition) {
   const wide difference = abs(wide(computed) - exact);
   const double scale = condition + std::abs(double(exact));
-  const double result = difference == 0 ? 0 : double(difference) / (scale * 0x1p-53);
+  const bool vanishes = difference < 1e-300; // below the normal numbers
+  const double result = vanishes ? 0 : double(difference) / (scale * 0x1p-53);
   return result < infinite ? result : infinite; // also of NaN
 }
 
