@@ -212,7 +212,9 @@ private:
   return result;
 }
 
-/// A condition with the signs that C and MATLAB share. \param prefix  of functions
+/// A condition with the signs that C and MATLAB share.
+///
+/// \param prefix  of functions
 [[nodiscard]] inline bound_text infix_condition(const graph_node& n,
                                                 const std::array<bound_text, 3>& x,
                                                 const std::string& negation,
