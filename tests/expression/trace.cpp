@@ -456,4 +456,16 @@ TEST_CASE("reverse_gradient: every function has the slope of the dual numbers") 
       signs);
 }
 
+TEST_CASE("graph_of: inputs are in the order in which symbols appear, with every compiler") {
+  constexpr symbol<"first"> first;
+  constexpr symbol<"second"> second;
+  constexpr symbol<"third"> third;
+  const formula_graph g = graph_of(exp(-third * first) * sin(second * first) + third);
+  std::string names;
+  for (const named_value& x : g.inputs()) {
+    names += x.name + " ";
+  }
+  CHECK(names == "third first second ");
+}
+
 } // namespace test_expression_trace

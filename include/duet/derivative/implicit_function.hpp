@@ -169,7 +169,6 @@ template <int N, class R>
 template <class F, class X, class P>
 class newton {
   static constexpr int n = manifold<X>::dimension;
-  static_assert(n > 0, "duet: an unknown vector needs a size known at compile time");
   using tag = derivative_tag<newton>;
 
 public:
@@ -177,6 +176,7 @@ public:
   using matrix = Eigen::Matrix<double, n, n>;
 
   newton(const F& f, const X& start, const P& p, const newton_options& options) : x(start) {
+    static_assert(n > 0, "duet: an unknown vector needs a size known at compile time");
     linearise(f, p);
     for (; iterations_ < options.max_iterations; ++iterations_) {
       if (advance(f, p)) {

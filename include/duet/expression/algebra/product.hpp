@@ -72,6 +72,10 @@ template <std::uint64_t Bits, class X>
 inline constexpr bool has_small_number<applied_node<op::product, number_node<Bits>, X>> =
     number_node<Bits>::value >= 1 && number_node<Bits>::value <= 16 &&
     number_node<Bits>::value == int(number_node<Bits>::value);
+/// A product with such a number, or with any number before what is not a scalar.
+template <class T>
+inline constexpr bool has_leading_number = has_small_number<T> ||
+                                           (has_number<T> && T::kind_of != kind::scalar);
 
 /// True if a/b is exact in double precision.
 [[nodiscard]] constexpr bool is_quotient_exact(double a, double b) {
@@ -141,9 +145,9 @@ struct product {
       return (a * operand<0>(b)) * operand<1>(b);
     } else if constexpr (is_number<A>) {
       return;
-    } else if constexpr (detail::has_small_number<A>) {
+    } else if constexpr (detail::has_leading_number<A>) {
       return operand<0>(a) * (operand<1>(a) * b);
-    } else if constexpr (detail::has_small_number<B>) {
+    } else if constexpr (detail::has_leading_number<B>) {
       return operand<0>(b) * (a * operand<1>(b));
     } else if constexpr (detail::is_inverse<A>) {
       return b / operand<1>(a);

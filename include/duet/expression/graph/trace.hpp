@@ -300,7 +300,11 @@ template <class F, class... Items>
       return std::tuple<>{};
     }
   };
-  auto arguments = std::tuple_cat(symbol_argument(std::type_identity<Items>{})...);
+  // In braces, which are evaluated in their order: that of the inputs.
+  std::tuple<decltype(symbol_argument(std::type_identity<Items>{}))...> parts{
+      symbol_argument(std::type_identity<Items>{})...};
+  const auto arguments =
+      std::apply([](const auto&... part) { return std::tuple_cat(part...); }, parts);
   add_outputs(g, "", std::apply(f, arguments));
   return g;
 }
