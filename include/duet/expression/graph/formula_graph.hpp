@@ -45,9 +45,13 @@ public:
   /// For those who extend duet: to record further operations.
   [[nodiscard]] graph& operations() { return operations_; }
   /// The inputs in their order.
-  [[nodiscard]] const std::vector<named_value>& inputs() const { return inputs_; }
+  [[nodiscard]] const std::vector<named_value>& inputs() const& { return inputs_; }
+  /// Those of a temporary, so that a range-based for loop may use it.
+  [[nodiscard]] std::vector<named_value> inputs() && { return std::move(inputs_); }
   /// The outputs in their order.
-  [[nodiscard]] const std::vector<named_value>& outputs() const { return outputs_; }
+  [[nodiscard]] const std::vector<named_value>& outputs() const& { return outputs_; }
+  /// Those of a temporary, likewise.
+  [[nodiscard]] std::vector<named_value> outputs() && { return std::move(outputs_); }
 
   /// Number of all numbers of the inputs.
   [[nodiscard]] int input_size() const { return size_of(inputs_); }
