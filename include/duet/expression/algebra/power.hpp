@@ -35,25 +35,14 @@ struct whole_power {
   static constexpr kind kind_of(kind a) { return a; }
   template <class X>
   static constexpr X value(const X& x) {
-    constexpr bool is_accurate = -4 <= Exponent && Exponent <= 5;
-    if constexpr (!is_accurate && std::floating_point<real_type_t<X>> && !Infinitesimal<X>) {
+    if constexpr (!detail::is_accurate_by_products(Exponent) &&
+                  std::floating_point<real_type_t<X>> && !Infinitesimal<X>) {
       if (!std::is_constant_evaluated()) {
         using std::pow;
         return X(pow(x, X(Exponent)));
       }
     }
-    if constexpr (Exponent == -1) {
-      return X(1 / x);
-    } else if constexpr (Exponent < 0) { // x^n may be out of range where its reciprocal is not
-      return X(1 / power_of<-Exponent / 2>(x) / power_of<(1 - Exponent) / 2>(x));
-    } else {
-      const X root = power_of<Exponent / 2>(x);
-      if constexpr (Exponent % 2 == 0) {
-        return X(root * root);
-      } else {
-        return X(root * root * x);
-      }
-    }
+    return detail::power_by_products<Exponent>(x);
   }
   template <class X>
   static constexpr auto differential(X x, auto dx) {
@@ -70,16 +59,6 @@ struct whole_power {
       return detail::latex_power(x, {n, precedence::atom, style, factor_order::number});
     }
     return {x.inside(precedence::atom) + "^" + n, precedence::power};
-  }
-
-private:
-  template <int N, class X>
-  static constexpr X power_of(const X& x) {
-    if constexpr (N == 1) {
-      return x;
-    } else {
-      return whole_power<N>::value(x);
-    }
   }
 };
 

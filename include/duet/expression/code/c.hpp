@@ -94,7 +94,7 @@ namespace detail {
 
 /// The formula as a function of C99: `void name(double u, const double w[3], double value[1] …)`,
 /// inputs first. It takes no heap, has no state, and computes in the order of the formula; whole
-/// powers to ±5 are products. The text is a whole file, which also compiles as C++.
+/// powers from −4 to 5 are products. The text is a whole file, which also compiles as C++.
 ///
 /// \param f     a formula, its gradient, Hessian, Jacobian or motion, or what `trace` returns
 /// \param name  of the function

@@ -163,21 +163,6 @@ private:
   std::set<std::string> taken_;
 };
 
-/// x^n by products for |n| ≤ 5, in another formula.
-[[nodiscard]] inline recorded power_by_products(const recorded& x, int n) {
-  if (n > 5 || n < -5) {
-    return recorded::of(operation::pow, x, recorded(n));
-  }
-  if (n < 0) {
-    return 1 / power_by_products(x, -n);
-  }
-  if (n == 1) {
-    return x;
-  }
-  const recorded root = power_by_products(x, n / 2);
-  return n % 2 == 0 ? root * root : root * root * x;
-}
-
 /// The formula with whole powers as products, and nothing that its outputs do not need.
 [[nodiscard]] inline formula_graph without_powers(const formula_graph& f) {
   formula_graph result;
@@ -188,6 +173,10 @@ private:
   const graph& from = f.operations();
   const std::vector<bool> needed = f.needed();
   std::vector<int> image(needed.size(), -1);
+  const auto power = [](const recorded& x, int n) {
+    return is_accurate_by_products(n) ? power_by_products(x, n)
+                                      : recorded::of(operation::pow, x, recorded(n));
+  };
   for (int i = 0; i < from.size(); ++i) {
     if (!needed[std::size_t(i)]) {
       continue;
@@ -200,7 +189,7 @@ private:
     image[std::size_t(i)] = n.what == operation::number     ? to.number(n.number)
                             : n.what == operation::variable ? to.variable(n.index)
                             : n.what == operation::power
-                                ? power_by_products(recorded(to, x[0]), n.index).node_in(to)
+                                ? power(recorded(to, x[0]), n.index).node_in(to)
                                 : to.apply(n.what, x[0], x[1], x[2], n.index);
   }
   for (named_value y : f.outputs()) {

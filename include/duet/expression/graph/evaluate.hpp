@@ -27,7 +27,7 @@
 
 namespace duet::expression::detail {
 
-/// x^n: by products for −3 ≤ n ≤ 4, beyond that by `pow`, which rounds once; slopes are n x^(n−1).
+/// x^n as `power_by_products`, or by `pow`, which rounds once; slopes are n x^(n−1).
 struct whole_power {
   int n;
 
@@ -39,26 +39,7 @@ struct whole_power {
     } else if constexpr (Infinitesimal<S>) {
       return duet::detail::lift(*this, x);
     } else {
-      switch (n) { // reciprocals in two steps: x^−n may be out of range where x^n is not
-      case -3:
-        return S(1 / x / S(x * x));
-      case -2:
-        return S(1 / x / x);
-      case -1:
-        return S(1 / x);
-      case 0:
-        return S(1);
-      case 1:
-        return x;
-      case 2:
-        return S(x * x);
-      case 3:
-        return S(x * x * x);
-      case 4:
-        return S(S(x * x) * S(x * x));
-      default:
-        return S(pow(x, n));
-      }
+      return is_accurate_by_products(n) ? power_by_products(x, n) : S(pow(x, n));
     }
   }
   template <class S>

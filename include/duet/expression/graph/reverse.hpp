@@ -99,8 +99,8 @@ namespace duet::expression::detail {
 }
 
 /// Adjoints: the derivatives of a node with respect to the nodes before it, recorded in its graph.
-/// In a branch of a choice they are taken as if the branch were chosen, and masked where they leave
-/// it: infinite slopes of a branch that is not chosen do no harm.
+/// Within a branch of a choice they are those of the chosen branch, and masked where they leave it:
+/// infinite slopes of a branch that is not chosen do no harm.
 class adjoints {
 public:
   /// Computes them for the node `root`, in one sweep over the nodes before it.

@@ -33,6 +33,39 @@ namespace detail {
   return ((a_high * b_high - a * b) + a_high * b_low + a_low * b_high) + a_low * b_low == 0;
 }
 
+/// True if x^n by products is within 4 units in the last place.
+[[nodiscard]] constexpr bool is_accurate_by_products(int n) { return -4 <= n && n <= 5; }
+
+/// x^N by products. Reciprocals take two steps, as x^−N may be out of range where x^N is not.
+template <int N, class X>
+[[nodiscard]] constexpr X power_by_products(const X& x) {
+  if constexpr (N == 0) {
+    return X(1);
+  } else if constexpr (N == 1) {
+    return x;
+  } else if constexpr (N == -1) {
+    return X(1 / x);
+  } else if constexpr (N < 0) {
+    return X(1 / power_by_products<-N / 2>(x) / power_by_products<(1 - N) / 2>(x));
+  } else {
+    const X root = power_by_products<N / 2>(x);
+    if constexpr (N % 2 == 0) {
+      return X(root * root);
+    } else {
+      return X(root * root * x);
+    }
+  }
+}
+/// x^n for an n of `is_accurate_by_products`.
+template <int N = -4, class X>
+[[nodiscard]] X power_by_products(const X& x, int n) {
+  if constexpr (is_accurate_by_products(N + 1)) {
+    return n == N ? power_by_products<N>(x) : power_by_products<N + 1>(x, n);
+  } else {
+    return power_by_products<N>(x);
+  }
+}
+
 [[nodiscard]] constexpr std::uint64_t bits_of(double x) {
   return duet::detail::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x);
 }
