@@ -444,9 +444,9 @@ window.duetLive = (() => {
     return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
   };
 
-  /// Starts the page where there is <div class="live" data-live="<name>">: `build(host, call)` puts what is
-  /// live into the host. Where that cannot be, what the page has in that place stays, and is told why. What
-  /// `begin` promises is given to `build`: a caller of the module, unless the page makes something else of it.
+  /// Starts the page in each <div class="live" data-live="<name>">: `build(host, call)` adds the controls. If
+  /// the module cannot run, the static content stays, with a sentence that says why. `call` is what `begin`
+  /// promises: a caller of the module, unless the page makes something else of it.
   const start = (name, build, begin = (factory, wasmBinary, page) => factory({ wasmBinary }).then((module) => caller(module, page.calls))) => {
     for (const place of document.querySelectorAll(`.live[data-live="${name}"]`)) {
       const stay = (why) => {
