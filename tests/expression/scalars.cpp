@@ -152,6 +152,14 @@ TEST_CASE("the derivative of sqrt(x^2) at 0 is that of dual numbers") {
   CHECK(by_formula == by_duals);
 }
 
+TEST_CASE("second derivatives have the signs of slopes and rates that are negative") {
+  // d2/dx2 sqrt(1 - x^2) = -(1 - x^2)^(-3/2), acos'' = -x (1 - x^2)^(-3/2)
+  const double cube = std::pow(1 - 0.36, 1.5);
+  CHECK(derivative(derivative(sqrt(c<1> - x * x), x), x)(x = 0.6) == doctest::Approx(-1 / cube));
+  CHECK(derivative(derivative(acos(-x), x), x)(x = 0.6) == doctest::Approx(0.6 / cube));
+  CHECK(derivative(derivative(log(c<2> - x), x), x)(x = 0.6) == doctest::Approx(-1 / (1.4 * 1.4)));
+}
+
 TEST_CASE("any scalar: 50 digits, float, Taylor numbers") {
   const auto f = sin(x) * exp(-x * x) + log(1 + x * x) / sqrt(2 + cos(x)) + pi;
   const auto generic = [](const auto& t) {
