@@ -6,7 +6,6 @@
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/level.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/parts.hpp>
 #include <duet/dual/second_dual.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>

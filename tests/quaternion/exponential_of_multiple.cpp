@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/derivative/derivative.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/second_dual.hpp>
 #include <duet/dual/taylor.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>

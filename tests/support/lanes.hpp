@@ -5,7 +5,7 @@
 
 #include <duet/core/batch/batch.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 
 #include <doctest/doctest.h>
 

@@ -4,8 +4,8 @@
 
 #include <duet/core/structure.hpp>
 #include <duet/dual/eigen_traits.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/parts.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/quaternion/rotation.hpp>
 

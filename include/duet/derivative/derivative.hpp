@@ -4,8 +4,8 @@
 #include <duet/core/config.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/argument.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/parts.hpp>
 
 #include <array>
 #include <concepts>

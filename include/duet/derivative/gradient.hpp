@@ -7,7 +7,7 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/second_dual.hpp>
 
 #include <Eigen/Core>

@@ -6,7 +6,7 @@
 #include <duet/core/structure.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/derivative.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 
 #include <Eigen/Core>
 

@@ -5,8 +5,8 @@
 #include <duet/core/select.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual/eigen_traits.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/partials.hpp>
-#include <duet/dual/parts.hpp>
 
 #include <Eigen/Core>
 

@@ -10,7 +10,7 @@
 #include <duet/derivative/levenberg_marquardt.hpp>
 #include <duet/derivative/manifold.hpp>
 #include <duet/derivative/parameters.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/taylor.hpp>
 
 #include <Eigen/Cholesky>

@@ -7,7 +7,7 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>

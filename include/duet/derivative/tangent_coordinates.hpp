@@ -8,8 +8,8 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/manifold.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/partials.hpp>
-#include <duet/dual/parts.hpp>
 
 #include <Eigen/Core>
 

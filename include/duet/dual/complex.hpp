@@ -5,7 +5,6 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/level.hpp>
-#include <duet/dual/parts.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual/rules/functions.hpp>
 #include <duet/dual/taylor.hpp>

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>

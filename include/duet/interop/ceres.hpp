@@ -7,7 +7,7 @@
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/manifold.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>

@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>

@@ -3,8 +3,8 @@
 
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/dual/parts.hpp>
 
 #include <boost/math/policies/policy.hpp>
 #include <boost/math/special_functions/bessel.hpp>

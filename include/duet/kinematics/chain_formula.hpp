@@ -4,7 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual/dual.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
 #include <duet/expression/graph/recorded.hpp>

@@ -5,7 +5,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 

@@ -8,7 +8,7 @@
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
-#include <duet/dual/parts.hpp>
+#include <duet/dual/level.hpp>
 
 #include <array>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>
+#include <duet/dual/level.hpp>
 #include <duet/dual/partials.hpp>
-#include <duet/dual/parts.hpp>
 #include <duet/dual/rules/elementary.hpp>
 
 #include <array>
