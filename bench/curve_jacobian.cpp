@@ -17,7 +17,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <random>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,22 +26,6 @@ namespace duet_bench {
 namespace {
 
 using screw = duet::screw_dual<double>;
-
-/// Spans and parameters in random order.
-class random_spans {
-public:
-  random_spans() {
-    std::mt19937_64 engine(1);
-    for (double& u : values_) {
-      u = double(engine() >> 11) * 0x1p-53 * segments * knot_distance;
-    }
-  }
-  double next() { return values_[next_++ % values_.size()]; }
-
-private:
-  std::array<double, 1024> values_;
-  std::size_t next_ = 0;
-};
 
 template <class T>
 duet::cumulative_bspline<T> make_curve() {
@@ -140,7 +123,7 @@ template <class T>
 void add(const std::string& workload) {
   static const auto curve = make_curve<T>();
   static const raw_controls<T> raw(curve);
-  random_spans parameters;
+  random_parameters parameters;
   for (int k = 0; k < 100; ++k) {
     const double u = parameters.next();
     const auto a = raw.duals(u);
@@ -163,13 +146,13 @@ void add(const std::string& workload) {
     check("duet", curve.template motion_jacobian<2>(u, duet::frame::body));
     check("controls", raw.closed_form(u));
   }
-  register_benchmark(workload, "duet", random_spans(), [](random_spans& u) {
+  register_benchmark(workload, "duet", random_parameters(), [](random_parameters& u) {
     return curve.template motion_jacobian<2>(u.next(), duet::frame::body);
   });
-  register_benchmark(workload, "controls", random_spans(),
-                     [](random_spans& u) { return raw.closed_form(u.next()); });
-  register_benchmark(workload, "duals", random_spans(),
-                     [](random_spans& u) { return raw.duals(u.next()); });
+  register_benchmark(workload, "controls", random_parameters(),
+                     [](random_parameters& u) { return raw.closed_form(u.next()); });
+  register_benchmark(workload, "duals", random_parameters(),
+                     [](random_parameters& u) { return raw.duals(u.next()); });
 }
 
 const bool registered = [] {

@@ -17,28 +17,11 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <random>
 #include <string_view>
 #include <vector>
 
 namespace duet_bench {
 namespace {
-
-/// Parameters in random order.
-class random_parameters {
-public:
-  random_parameters() {
-    std::mt19937_64 engine(1);
-    for (double& u : values_) {
-      u = double(engine() >> 11) * 0x1p-53 * segments * knot_distance;
-    }
-  }
-  double next() { return values_[next_++ % values_.size()]; }
-
-private:
-  std::array<double, 1024> values_;
-  std::size_t next_ = 0;
-};
 
 template <class F>
 void add(std::string_view workload, std::string_view contender, F evaluate) {

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <random>
 #include <type_traits>
 #include <vector>
 
@@ -46,6 +47,22 @@ inline duet::cumulative_bspline<double> make_spline() {
   }
   return {knots, controls()};
 }
+
+/// Parameters of the curve in random order.
+class random_parameters {
+public:
+  random_parameters() {
+    std::mt19937_64 engine(1);
+    for (double& u : values_) {
+      u = double(engine() >> 11) * 0x1p-53 * segments * knot_distance;
+    }
+  }
+  double next() { return values_[next_++ % values_.size()]; }
+
+private:
+  std::array<double, 1024> values_;
+  std::size_t next_ = 0;
+};
 
 /// Hand-written cubic for uniform knots: logarithms are cached as axis and half angle, the segment
 /// is found by one product, polynomials are written out.
