@@ -11,6 +11,7 @@
 #include <duet/expression/condition.hpp>
 #include <duet/expression/functions_of_many.hpp>
 #include <duet/expression/gradient.hpp>
+#include <duet/expression/graph/read_formula.hpp>
 #include <duet/expression/graph/reverse.hpp>
 #include <duet/expression/jacobian.hpp>
 #include <duet/expression/matrix.hpp>
@@ -605,6 +606,11 @@ int main(int count, char** arguments) {
   require_refused("sines in float", [] {
     return to_c(u + 1, "f", {.is_single_precision = true, .has_own_sines = true});
   });
+  const std::string greek = to_c(read_formula("θ₁ + Γ + ζ_0"), "f");
+  if (greek.find("double theta1, double Gamma, double zeta_0") == std::string::npos) {
+    std::cerr << "Greek letters and indices are not spelt out: " << greek;
+    return 1;
+  }
   write_c(folder, false);
   write_c(folder, true);
   write_sines(folder);

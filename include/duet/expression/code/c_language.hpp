@@ -47,19 +47,12 @@ public:
     return is_cpp() ? "std::" + name : name + (is_single_ ? "f" : "");
   }
   [[nodiscard]] bound_text call(const graph_node& n, const std::array<bound_text, 3>& x) const {
-    std::string name(function_name_of(n.what));
-    if (n.what == operation::abs) {
-      name = "fabs";
-    } else if (n.what == operation::stumpff) {
-      return {helper("stumpff" + std::to_string(n.index)) + "(" + x[0].text + ")"};
-    } else if (n.what == operation::arc_ratio) {
-      return {helper("arc_ratio") + "(" + x[0].text + ", " + x[1].text + ")"};
-    }
-    std::string text = function(name) + "(" + x[0].text;
-    for (int k = 1; k < operand_count(n.what); ++k) {
-      text += ", " + x[std::size_t(k)].text;
-    }
-    return {text + ")"};
+    const std::string name(function_name_of(n.what));
+    return call_of(n.what == operation::stumpff     ? helper(name + std::to_string(n.index))
+                   : n.what == operation::arc_ratio ? helper(name)
+                   : n.what == operation::abs       ? function("fabs")
+                                                    : function(name),
+                   n, x);
   }
   [[nodiscard]] bound_text choice(const std::array<bound_text, 3>& x) const {
     return {x[0].inside(binding::atom) + " ? " + x[1].inside(binding::sum) + " : " +

@@ -94,37 +94,23 @@ template <class T>
   return names;
 }
 
-/// Letters, digits and underscores for a name: Greek letters by their names, other characters by
-/// their codes.
+/// Letters, digits and underscores for a name: Greek letters and indices spelt out, other
+/// characters by their codes.
 [[nodiscard]] inline std::string plain_name(const std::string& name) {
-  static constexpr std::array<std::string_view, 25> greek = {
-      "alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
-      "kappa", "lambda", "mu",      "nu",    "xi",      "omicron", "pi",   "rho",   "sigma",
-      "sigma", "tau",    "upsilon", "phi",   "chi",     "psi",     "omega"};
   std::string result;
-  for (std::size_t k = 0; k < name.size(); ++k) {
-    const auto c = static_cast<unsigned char>(name[k]);
-    const bool is_digit = c >= '0' && c <= '9';
-    if ((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || is_digit) {
-      result += is_digit && result.empty() ? "x" : "";
-      result += name[k];
+  for (const char letter : spelt_out(name)) {
+    const bool is_digit = letter >= '0' && letter <= '9';
+    const bool is_plain =
+        (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') || letter == '_';
+    result += result.empty() && !is_plain ? "x" : "";
+    if (is_plain || is_digit) {
+      result += letter;
       continue;
     }
-    if ((c == 0xCE || c == 0xCF) && k + 1 < name.size()) { // U+0391 to U+03C9 in UTF-8
-      const unsigned code = ((c & 0x1FU) << 6U) | (static_cast<unsigned char>(name[k + 1]) & 0x3FU);
-      const bool is_small = code >= 0x3B1 && code <= 0x3C9;
-      if (is_small || (code >= 0x391 && code <= 0x3A9)) {
-        std::string letter(greek[code - (is_small ? 0x3B1 : 0x391)]);
-        letter[0] = is_small ? letter[0] : static_cast<char>(letter[0] - 'a' + 'A');
-        result += letter;
-        ++k;
-        continue;
-      }
-    }
     constexpr const char* hexadecimal = "0123456789abcdef";
-    result += result.empty() ? "x" : "";
-    result += hexadecimal[c / 16];
-    result += hexadecimal[c % 16];
+    const auto code = static_cast<unsigned char>(letter);
+    result += hexadecimal[code / 16];
+    result += hexadecimal[code % 16];
   }
   return result;
 }
@@ -199,6 +185,16 @@ private:
     result.add_output(std::move(y));
   }
   return result;
+}
+
+/// A function called with the operands of a node.
+[[nodiscard]] inline bound_text call_of(const std::string& function, const graph_node& n,
+                                        const std::array<bound_text, 3>& x) {
+  std::string text = function + "(" + x[0].text;
+  for (int k = 1; k < operand_count(n.what); ++k) {
+    text += ", " + x[std::size_t(k)].text;
+  }
+  return {text + ")"};
 }
 
 /// A condition with the signs that C and MATLAB share.

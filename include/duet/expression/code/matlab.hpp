@@ -44,11 +44,7 @@ public:
     } else if (!helper_of(n.what).empty()) {
       name.insert(0, "duet_");
     }
-    std::string text = name + "(" + x[0].text;
-    for (int k = 1; k < operand_count(n.what); ++k) {
-      text += ", " + x[std::size_t(k)].text;
-    }
-    return {text + ")"};
+    return call_of(name, n, x);
   }
   [[nodiscard]] bound_text choice(const std::array<bound_text, 3>& x) const {
     return {"duet_select(" + x[0].text + ", " + x[1].text + ", " + x[2].text + ")"};

@@ -34,11 +34,7 @@ public:
     return number_literal(x);
   }
   [[nodiscard]] bound_text call(const graph_node& n, const std::array<bound_text, 3>& x) const {
-    std::string text = function(n) + "(" + x[0].text;
-    for (int k = 1; k < operand_count(n.what); ++k) {
-      text += ", " + x[std::size_t(k)].text;
-    }
-    return {text + ")"};
+    return call_of(function(n), n, x);
   }
   [[nodiscard]] bound_text choice(const std::array<bound_text, 3>& x) const {
     return {"np.where(" + x[0].text + ", " + x[1].text + ", " + x[2].text + ")"};

@@ -27,34 +27,6 @@ namespace duet::expression {
 
 namespace detail {
 
-/// A name with Greek letters and indices spelt out: `theta1` of `θ₁`.
-[[nodiscard]] inline std::string spelt_out(const std::string& name) {
-  static constexpr std::array letters = {
-      "alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
-      "kappa", "lambda", "mu",      "nu",    "xi",      "omicron", "pi",   "rho",   "varsigma",
-      "sigma", "tau",    "upsilon", "phi",   "chi",     "psi",     "omega"};
-  constexpr unsigned alpha = 0x3B1, index_0 = 0x2080;
-  std::string result;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const auto byte = [&](std::size_t k) {
-      return i + k < name.size() ? static_cast<unsigned char>(name[i + k]) & 0x3FU : 0U;
-    };
-    const unsigned first = static_cast<unsigned char>(name[i]);
-    const unsigned two = ((first & 0x1FU) << 6U) | byte(1);
-    const unsigned three = ((first & 0xFU) << 12U) | (byte(1) << 6U) | byte(2);
-    if ((first >> 5U) == 6 && two >= alpha && two < alpha + letters.size()) {
-      result += letters[two - alpha];
-      i += 1;
-    } else if ((first >> 4U) == 14 && three >= index_0 && three < index_0 + 10) {
-      result += char('0' + (three - index_0));
-      i += 2;
-    } else {
-      result += name[i];
-    }
-  }
-  return result;
-}
-
 /// The command of a function in LaTeX, or its form with # for the argument; empty for its name.
 [[nodiscard]] inline const char* latex_command(operation what) {
   using enum operation;

@@ -29,6 +29,39 @@ namespace duet::expression::detail {
   return names[std::size_t(what)];
 }
 
+/// A name with Greek letters and indices spelt out: `theta1` of `θ₁`, `Gamma` of `Γ`.
+[[nodiscard]] inline std::string spelt_out(const std::string& name) {
+  static constexpr std::array<std::string_view, 25> letters = {
+      "alpha", "beta",   "gamma",   "delta", "epsilon", "zeta",    "eta",  "theta", "iota",
+      "kappa", "lambda", "mu",      "nu",    "xi",      "omicron", "pi",   "rho",   "varsigma",
+      "sigma", "tau",    "upsilon", "phi",   "chi",     "psi",     "omega"};
+  constexpr unsigned capital_alpha = 0x391, alpha = 0x3B1, index_0 = 0x2080;
+  std::string result;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    const auto byte = [&](std::size_t k) { // of UTF-8
+      return i + k < name.size() ? static_cast<unsigned char>(name[i + k]) & 0x3FU : 0U;
+    };
+    const unsigned first = static_cast<unsigned char>(name[i]);
+    const unsigned two = ((first & 0x1FU) << 6U) | byte(1);
+    const unsigned three = ((first & 0xFU) << 12U) | (byte(1) << 6U) | byte(2);
+    const unsigned letter = two >= alpha ? two - alpha : two - capital_alpha;
+    if ((first >> 5U) == 6 && letter < letters.size()) {
+      result += letters[letter];
+      if (two < alpha) {
+        char& capital = result[result.size() - letters[letter].size()];
+        capital = char(capital - 'a' + 'A');
+      }
+      i += 1;
+    } else if ((first >> 4U) == 14 && three >= index_0 && three < index_0 + 10) {
+      result += char('0' + (three - index_0));
+      i += 2;
+    } else {
+      result += name[i];
+    }
+  }
+  return result;
+}
+
 /// Precedence of the outermost operation of a text.
 enum class binding { condition, sum, negative, product, power, atom };
 
