@@ -35,11 +35,12 @@ void single_step() {
   vector7<double> rate = vector7<double>::Zero();
   rate[2] = 1; // of gamma = [t; alpha]: the tip rises at 1 m/s
   const vector rates = B * rate;
-  std::printf("N22: the tip rises at 1 m/s for joint velocities of");
+  std::printf("| N22: joint | 1 | 2 | 3 | 4 | 5 | 6 | 7 |\n|---|---|---|---|---|---|---|---|\n"
+              "| velocity, rad/s |");
   for (const double x : rates) {
-    std::printf(" %.4f", std::abs(x) < 1e-12 ? 0 : x);
+    std::printf(" %.4f |", std::abs(x) < 1e-12 ? 0 : x);
   }
-  std::printf(" rad/s.\n\n| N23: step of the tip | distance left |\n|---|---|\n");
+  std::printf("\n\n| N23: length of the step | position error after it |\n|---|---|\n");
   for (const double h : {.1, .01, .001}) {
     const auto next = pose(quaternion<double>(1), Eigen::Vector3d(0, 0, h)) * current;
     const auto residual = pose_error_between(arm.pose(resolved_step(arm, theta, next, 1)), next);
@@ -100,7 +101,7 @@ void plans() {
 void paths() {
   const auto first = arm.pose(gripper_down());
   std::printf(
-      "\n| N25, note 1: poses | beta | outcome | largest deviation | in distances of poses |\n"
+      "\n| N25, note 1: poses | beta | outcome | largest deviation | divided by h |\n"
       "|---|---|---|---|---|\n");
   for (const int n : {50, 100, 200}) {
     const double full_turn = 6.283185307179586;

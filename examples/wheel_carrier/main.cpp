@@ -118,8 +118,8 @@ constexpr int convergence_rows[] = {25, 50, 100, 200, 400};
 std::string convergence(const carrier& mechanism, const arc_length& arcs,
                         const std::vector<state>& states) {
   std::printf("\nConvergence: maximal errors in percent over the whole travel, observed order in "
-              "parentheses\n\n| samples | delta_E clamped | ddelta_E clamped | delta_E natural | "
-              "ddelta_E natural |\n|---|---|---|---|---|\n");
+              "parentheses\n\n| samples | velocity, clamped | acceleration, clamped | "
+              "velocity, natural | acceleration, natural |\n|---|---|---|---|---|\n");
   std::string csv = "rows,delta_E_clamped,ddelta_E_clamped,delta_E_natural,ddelta_E_natural\n";
   const known_ends known = ends_of(states.front(), states.back());
   std::array<double, 4> before{};
@@ -173,7 +173,8 @@ std::vector<named_curve> compare_splines(const carrier& mechanism,
 std::string spline_convergence(const carrier& mechanism, const arc_length& arcs,
                                const std::vector<state>& states) {
   const known_ends known = ends_of(states.front(), states.back());
-  std::printf("\nEvery spline, every end: maximal ddelta_E in percent for so many rows\n\n|");
+  std::printf("\nEvery spline, every end: maximal error of the acceleration in percent for so many "
+              "rows\n\n|");
   std::vector<std::vector<double>> columns;
   std::vector<table> made;
   for (const int rows : convergence_rows) {

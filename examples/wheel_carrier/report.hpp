@@ -55,7 +55,7 @@ inline std::string error_cells(const std::vector<double>& samples,
 }
 
 inline void print_header_of_errors() {
-  std::printf("| | delta_E median | maximum | at u | at lower, upper end | ddelta_E median | "
+  std::printf("| | velocity: median | maximum | at u | at lower, upper end | acceleration: median | "
               "maximum | at u | "
               "at lower, upper end |\n|---|---|---|---|---|---|---|---|---|\n");
 }
