@@ -100,9 +100,8 @@ void plans() {
 /// A circle of 10 cm as a sequence of poses (note 1 of N25).
 void paths() {
   const auto first = arm.pose(gripper_down());
-  std::printf(
-      "\n| N25, note 1: poses | beta | outcome | largest deviation | divided by h |\n"
-      "|---|---|---|---|---|\n");
+  std::printf("\n| N25, note 1: poses | beta | outcome | largest deviation | divided by h |\n"
+              "|---|---|---|---|---|\n");
   for (const int n : {50, 100, 200}) {
     const double full_turn = 6.283185307179586;
     std::vector<dual_quaternion<double>> path;

@@ -55,9 +55,10 @@ inline std::string error_cells(const std::vector<double>& samples,
 }
 
 inline void print_header_of_errors() {
-  std::printf("| | velocity: median | maximum | at u | at lower, upper end | acceleration: median | "
-              "maximum | at u | "
-              "at lower, upper end |\n|---|---|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| | velocity: median | maximum | at u | at lower, upper end | acceleration: median | "
+      "maximum | at u | "
+      "at lower, upper end |\n|---|---|---|---|---|---|---|---|---|\n");
 }
 
 inline void print_error_row(const std::string& name, const std::vector<double>& samples,
