@@ -1,7 +1,6 @@
 # Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-"""Checks code that must not compile. A snippet holds the mistake under `#ifdef DUET_MUST_FAIL` and the right way under
-`#else`, and says in its first lines
+"""Checks code that must not compile. A snippet says in its first lines
 
     // expect: <regex that a line of the compiler's errors or notes must match>
     // flags: <flags for both compilations, optional>
@@ -9,8 +8,11 @@
     // within: <by which line of the compiler's output it must be said, optional>
     // forms: <how many forms the mistake has: DUET_MUST_FAIL is 1, 2 ... for them, optional>
 
-The right way, the control, must compile: else the mistake may fail for the wrong reason. Of several mistakes in one form
-each line ends with `// mistake`: the compiler must name every one of them.
+A blank line and statements follow. One that ends with `// wrong` is a form of the mistake, compiled with those without a
+mark; `// wrong, too` adds to the form before. Those that end with `// right` are the control, which must compile: else the
+mistake may fail for the wrong reason. Statements alone, without functions and types, are put into a main function. Code
+can also ask for DUET_MUST_FAIL, the number of the form. Of several mistakes in one form each ends with `// mistake`: the
+compiler must name every one of them.
 
 A table <layer>.cpp has many of them, each below a line `//// <name>`; what stands above the first is for all. They are
 compiled together, each in a namespace of its own, and errors are told apart by the lines that they name. A snippet whose
@@ -33,6 +35,25 @@ KEYS = ("expect", "flags", "wrong flags", "within", "forms")
 CONTEXT = re.compile(r"In file included from |\s+from .*[,:]$|.*: (In|At) .*:$|.*:\d+:\d+:\s+(recursively )?required |"
                      r".*:\d+:\d+:\s+in .constexpr. expansion of |\s*(required|recursively) ")
 ERROR = re.compile(r"[^ ].*?: (fatal )?error: ")
+MARK = re.compile(r".*// (wrong|wrong, too|right|mistake)$")
+# Begins a definition, which no function may hold.
+DEFINITION = re.compile(r"(namespace|template|struct)\b|[\w:<>]+ \w+\([^;]*\) \{")
+
+
+def forms_of(code):
+    """The form of the mistake that each line is for: 0 for the control, None for all."""
+    result, start, depth, form = [], 0, 0, 0
+    for i, line in enumerate(code):
+        text = re.sub(r'"(?:\\.|[^"\\])*"|//.*', "", line).rstrip()
+        depth += len(re.findall(r"[(\[{]", text)) - len(re.findall(r"[)\]}]", text))
+        in_main = code[:i].count("int main() {")
+        if text != "int main() {" and (depth > in_main or text and text[-1] not in ";}" and text[0] != "#"):
+            continue
+        marks = {mark[1] for mark in map(MARK.match, code[start:i + 1]) if mark}
+        form += marks == {"wrong"} or form == 0 and bool(marks - {"right"})
+        result += [(0 if marks == {"right"} else form) if marks else None] * (i + 1 - start)
+        start = i + 1
+    return result + [None] * (len(code) - start)
 
 
 class Snippet:
@@ -50,18 +71,28 @@ class Snippet:
         if "expect" not in self.keys:
             faults.append(f'{name} has no line "// expect: <regex>"')
         self.flags, self.wrong_flags = (shlex.split(self.keys.get(key, "")) for key in ("flags", "wrong flags"))
-        self.forms = int(self.keys.get("forms", 1))
         self.code = [""] * end + lines[end:]
+        if any(map(MARK.match, self.code)) and not any(map(DEFINITION.match, self.code)):
+            self.code[end] = "int main() {"
+            self.code[-1] += "}"
+        self.forms_of = forms_of(self.code)
+        self.forms = int(self.keys.get("forms", max(form or 1 for form in self.forms_of)))
         self.mistakes = [i + first_line for i, line in enumerate(self.code) if line.endswith("// mistake")]
 
-    def alone(self, table):
-        return "\n".join([f'#line 1 "{table.label(1)}"', *table.for_all,
-                          f'#line {self.first_line} "{table.label(1)}"', *self.code, ""])
+    def parts(self, form):
+        """Includes and code of a form."""
+        lines = [line if of in (None, form) else "" for line, of in zip(self.code, self.forms_of)]
+        return ([line for line in lines if line.startswith("#include ")],
+                ["" if line.startswith("#include ") else line for line in lines])
+
+    def alone(self, table, form):
+        includes, code = self.parts(form)
+        return "\n".join([f'#line 1 "{table.label(1)}"', *table.for_all, *includes,
+                          f'#line {self.first_line} "{table.label(1)}"', *code, ""])
 
     def in_namespace(self, table, form):
-        """Beside others, its includes before it. Form 0 is the right way."""
-        includes = [line for line in self.code if line.startswith("#include ")]
-        code = ["" if line.startswith("#include ") else line for line in self.code]
+        """Beside others, its includes before it. Form 0 is the control."""
+        includes, code = self.parts(form)
         mistake = [f"#define DUET_MUST_FAIL {form}"] if form else []
         return "\n".join([*includes, "#undef DUET_MUST_FAIL", *mistake, f"namespace {self.name}_{form} {{",
                           f'#line {self.first_line} "{table.label(form)}"', *code, "}", ""])
@@ -130,7 +161,7 @@ def fault_of(snippet, form, label, lines):
 def fault_alone(compiler, table, snippet, form):
     # What fails for one mistake need not be compiled further.
     flags = [] if snippet.mistakes or "within" in snippet.keys else ["-Wfatal-errors"]
-    compiles, log = compiler(f"{table.path.stem}_{snippet.name}", snippet.alone(table), *snippet.flags, *snippet.wrong_flags,
+    compiles, log = compiler(f"{table.path.stem}_{snippet.name}", snippet.alone(table, form), *snippet.flags, *snippet.wrong_flags,
                              f"-DDUET_MUST_FAIL={form}", *flags, is_precompiled=not snippet.flags + snippet.wrong_flags)
     if compiles:
         return f"form {form}: it compiles, but should have failed with: {snippet.keys['expect']}"

@@ -26,12 +26,9 @@ constexpr auto arm = duet::from_dh(std::array<duet::dh_row<>, 1>{{{.alpha = 1.5}
 
 const auto proceed = [](const duet::progress&) { return true; };
 
-#ifdef DUET_MUST_FAIL
 // The lambda it refers to is destroyed before the run begins.
-const duet::execution how{2, [](const duet::progress&) { return true; }};
-#else
-const duet::execution how{2, proceed};
-#endif
+const duet::execution how{2, [](const duet::progress&) { return true; }}; // wrong
+const duet::execution how{2, proceed};                                    // right
 
 int main() { return how.report ? 0 : 1; }
 
@@ -40,10 +37,8 @@ int main() { return how.report ? 0 : 1; }
 
 int main() {
   const Eigen::Vector2d a(1, 2);
-#ifdef DUET_MUST_FAIL
-  const auto minus = [&] { return -a; };
-#else
-  const auto minus = [&] { return (-a).eval(); };
-#endif
+  const auto minus = [&] { return -a; };                    // wrong
   return duet::select(true, minus, minus)[0] == -1 ? 0 : 1; // mistake
+  const auto minus = [&] { return (-a).eval(); };           // right
+  return duet::select(true, minus, minus)[0] == -1 ? 0 : 1; // right
 }

@@ -50,59 +50,36 @@ int main() {
 //// goal_and_start
 // expect: duet: (the start is missing|the goal precedes the start|the goal is a rotation)
 // within: 2
-// forms: 3
 
-int main() {
-  const duet::quaternion<double> q(1);
-  const duet::dual_quaternion<double> goal = pose(q, duet::vector3<double>(0.5, 0, 0.5));
-#if DUET_MUST_FAIL == 1
-  std::cout << inverse_kinematics(arm, goal).joints << "\n";
-#elif DUET_MUST_FAIL == 2
-  const auto result = inverse_kinematics(arm, start, goal);
-#elif DUET_MUST_FAIL == 3
-  std::cout << inverse_kinematics(arm, q, start).joints << "\n";
-#else
-  std::cout << inverse_kinematics(arm, goal, start).joints << "\n";
-#endif
-}
+const duet::quaternion<double> q(1);
+const duet::dual_quaternion<double> goal = pose(q, duet::vector3<double>(0.5, 0, 0.5));
+std::cout << inverse_kinematics(arm, goal).joints << "\n";        // wrong
+const auto result = inverse_kinematics(arm, start, goal);         // wrong
+std::cout << inverse_kinematics(arm, q, start).joints << "\n";    // wrong
+std::cout << inverse_kinematics(arm, goal, start).joints << "\n"; // right
 
 //// goal_of_eigen
 // expect: duet: a rotation or pose of Eigen: from_eigen
 // within: 5
-// forms: 2
 
 #include <duet/interop/eigen.hpp>
 
-int main() {
-  const Eigen::Isometry3d goal = Eigen::Isometry3d::Identity();
-#if DUET_MUST_FAIL == 1
-  const auto result = duet::inverse_kinematics(arm, goal, start);
-#elif DUET_MUST_FAIL == 2
-  std::cout << duet::inverse_kinematics(arm, goal, start).joints << "\n";
-#else
-  std::cout << duet::inverse_kinematics(arm, duet::from_eigen(goal), start).joints << "\n";
-#endif
-}
+const Eigen::Isometry3d goal = Eigen::Isometry3d::Identity();
+const auto result = duet::inverse_kinematics(arm, goal, start);                           // wrong
+std::cout << duet::inverse_kinematics(arm, goal, start).joints << "\n";                   // wrong
+std::cout << duet::inverse_kinematics(arm, duet::from_eigen(goal), start).joints << "\n"; // right
 
 //// goals_in_part
 // expect: duet: (for a position as|the goal is a rotation|the start is missing)
 // within: 3
-// forms: 3
 
 #include <duet/robotics/goals.hpp>
 
-int main() {
-  const duet::vector3<double> position(0.5, 0, 0.5);
-#if DUET_MUST_FAIL == 1
-  std::cout << inverse_kinematics(arm, position, start).joints << "\n";
-#elif DUET_MUST_FAIL == 2
-  const auto result = inverse_kinematics(arm, duet::quaternion<double>(1), start);
-#elif DUET_MUST_FAIL == 3
-  std::cout << inverse_kinematics(arm, duet::position_goal(position)).joints << "\n";
-#else
-  std::cout << inverse_kinematics(arm, duet::position_goal(position), start).joints << "\n";
-#endif
-}
+const duet::vector3<double> position(0.5, 0, 0.5);
+std::cout << inverse_kinematics(arm, position, start).joints << "\n";                      // wrong
+const auto result = inverse_kinematics(arm, duet::quaternion<double>(1), start);           // wrong
+std::cout << inverse_kinematics(arm, duet::position_goal(position)).joints << "\n";        // wrong
+std::cout << inverse_kinematics(arm, duet::position_goal(position), start).joints << "\n"; // right
 
 //// objective_without_value
 // expect: the objective is not a function of the joint coordinates that returns a number
@@ -122,11 +99,8 @@ struct with_value : gradient_alone {
 };
 
 inverse_kinematics_result solve(const dual_quaternion<double>& goal) {
-#ifdef DUET_MUST_FAIL
-  const gradient_alone objective;
-#else
-  const with_value objective;
-#endif
+  const gradient_alone objective; // wrong
+  const with_value objective;     // right
   return inverse_kinematics(robots::panda(), goal, start, {}, objective);
 }
 
@@ -136,47 +110,30 @@ inverse_kinematics_result solve(const dual_quaternion<double>& goal) {
 #include <duet/interop/eigen.hpp>
 #include <duet/robotics/follow_path.hpp>
 
-int main() {
-  const auto moved = [](double u) { return Eigen::Isometry3d(Eigen::Translation3d(0, 0, u)); };
-#ifdef DUET_MUST_FAIL
-  static_cast<void>(follow_path(arm, start, moved, 0, 1));
-#else
-  const auto path = [&](double u) { return from_eigen(moved(u)); };
-  static_cast<void>(follow_path(arm, start, path, 0, 1));
-#endif
-}
+const auto moved = [](double u) { return Eigen::Isometry3d(Eigen::Translation3d(0, 0, u)); };
+static_cast<void>(follow_path(arm, start, moved, 0, 1));          // wrong
+const auto path = [&](double u) { return from_eigen(moved(u)); }; // right
+static_cast<void>(follow_path(arm, start, path, 0, 1));           // right
 
 //// scene_and_objective
 // expect: duet: (a scene is passed as the objective|the argument after the objective)
-// forms: 7
 
 #include <duet/robotics/choose_start.hpp>
 #include <duet/robotics/follow_path.hpp>
 #include <duet/robotics/goals.hpp>
 
-int main() {
-  const auto goal = arm.pose(start);
-  const auto path = [&](double) { return goal; };
-  const scene around;
-  const std::vector<sphere<>> spheres(1);
-#if DUET_MUST_FAIL == 1
-  static_cast<void>(inverse_kinematics(arm, goal, start, {}, around));
-#elif DUET_MUST_FAIL == 2
-  static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {}, around));
-#elif DUET_MUST_FAIL == 3
-  static_cast<void>(follow_path(arm, start, path, 0, 1, {}, around));
-#elif DUET_MUST_FAIL == 4
-  static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, around));
-#elif DUET_MUST_FAIL == 5
-  static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, spheres));
-#elif DUET_MUST_FAIL == 6
-  static_cast<void>(follow_path(arm, start, path, 0, 1, {}, no_objective{}, spheres));
-#elif DUET_MUST_FAIL == 7
-  static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, no_objective{}, spheres));
-#else
-  static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, around));
-#endif
-}
+const auto goal = arm.pose(start);
+const auto path = [&](double) { return goal; };
+const scene around;
+const std::vector<sphere<>> spheres(1);
+static_cast<void>(inverse_kinematics(arm, goal, start, {}, around));                       // wrong
+static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {}, around)); // wrong
+static_cast<void>(follow_path(arm, start, path, 0, 1, {}, around));                        // wrong
+static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, around));                  // wrong
+static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, spheres));      // wrong
+static_cast<void>(follow_path(arm, start, path, 0, 1, {}, no_objective{}, spheres));       // wrong
+static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, no_objective{}, spheres)); // wrong
+static_cast<void>(inverse_kinematics(arm, goal, start, {}, no_objective{}, around));       // right
 
 //// start_of_path
 // expect: duet: find_start_configuration takes no start
@@ -184,13 +141,8 @@ int main() {
 
 #include <duet/robotics/choose_start.hpp>
 
-int main() {
-  const auto path = [](double u) {
-    return duet::pose(duet::quaternion<double>(1), duet::vector3<double>(u, 0, 0.5));
-  };
-#ifdef DUET_MUST_FAIL
-  std::cout << find_start_configuration(arm, start, path, 0.5, 1).starts << "\n";
-#else
-  std::cout << find_start_configuration(arm, path, 0.5, 1).starts << "\n";
-#endif
-}
+const auto path = [](double u) {
+  return duet::pose(duet::quaternion<double>(1), duet::vector3<double>(u, 0, 0.5));
+};
+std::cout << find_start_configuration(arm, start, path, 0.5, 1).starts << "\n"; // wrong
+std::cout << find_start_configuration(arm, path, 0.5, 1).starts << "\n";        // right
