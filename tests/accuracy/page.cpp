@@ -1,31 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "accuracy/probe.hpp"
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>
-#include <iterator>
-#include <map>
-#include <sstream>
-#include <string>
-#include <vector>
 
 // docs/reference/accuracy.md: compares a few inputs of every row with its table. The target
 // duet_accuracy_page writes the table from many inputs.
 
 namespace test_accuracy_page {
+namespace {
 
 using namespace duet_test::accuracy;
-
-namespace {
 
 rows all_rows(extent e) {
   rows result;
@@ -87,8 +76,6 @@ std::string text_of(const row& r) {
   return text.str();
 }
 
-} // namespace
-
 #ifndef DUET_ACCURACY_IS_WRITTEN
 TEST_CASE("accuracy: every function is as accurate as docs/reference/accuracy.md states") {
   std::map<std::string, row> bounds;
@@ -115,8 +102,6 @@ TEST_CASE("accuracy: every function is as accurate as docs/reference/accuracy.md
 }
 
 #else
-namespace {
-
 double worst_of(const row& r) { return *std::max_element(r.worst.begin(), r.worst.end()); }
 
 /// | build | worst | where | rows with errors above 4 and above twice those of the page |
@@ -140,8 +125,6 @@ std::string comparison_of(const rows& measured, const std::map<std::string, row>
   text << (*separator == ' ' ? " none |" : " |");
   return text.str();
 }
-
-} // namespace
 
 // DUET_ACCURACY=merge writes the larger of the error on the page, as measured with another
 // compiler, and the error measured now. DUET_ACCURACY=compare writes nothing and prints one line
@@ -179,4 +162,5 @@ TEST_CASE("accuracy: writes docs/reference/accuracy.md") {
 }
 #endif
 
+} // namespace
 } // namespace test_accuracy_page

@@ -171,8 +171,7 @@ template <class T>
 template <class T>
 [[nodiscard]] std::vector<probed<T>> pose_functions() {
   using list = std::vector<T>;
-  using duet::frame::body;
-  using duet::frame::spatial;
+  using duet::frame::body, duet::frame::spatial;
   return {
       {"exp of a dual vector",
        {4, 4},

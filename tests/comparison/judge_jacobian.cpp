@@ -1,27 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/comparison/judge_jacobian.hpp>
 #include <duet/comparison/rigid_motions.hpp>
 #include <duet/duet.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <tuple>
-#include <vector>
 
 namespace test_comparison_judge_jacobian {
 namespace {
 
 using namespace duet;
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector2d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector2d, Eigen::Vector3d;
 using rotation_type = quaternion<double>;
 using pose_type = dual_quaternion<double>;
 
@@ -72,8 +61,6 @@ void check_slips(const Judge& judge, const std::vector<expected>& single,
     CHECK(to_text(j).find("no single slip explains it") != std::string::npos);
   }
 }
-
-} // namespace
 
 TEST_CASE("a pinhole camera: slips in blocks, and in factors of the chain") {
   const auto f = [](const auto& q, const auto& t, const auto& p, const auto& a) {
@@ -681,4 +668,5 @@ TEST_CASE("a judgement as text") {
   CHECK(j.simplest->column == 5);
 }
 
+} // namespace
 } // namespace test_comparison_judge_jacobian

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/comparison/numeric_derivative.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/interop/multiprecision.hpp>
@@ -7,30 +9,20 @@
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
 
-#include <array>
-#include <cmath>
 #include <complex>
 
 // Complex steps and central differences, against dual numbers.
 
 namespace test_comparison_numeric_derivative {
-
-using duet::central_difference_derivative;
-using duet::complex_step_derivative;
-using duet::derivative;
-
 namespace {
 
+using duet::central_difference_derivative, duet::complex_step_derivative, duet::derivative;
+
 const auto wave = [](const auto& x) {
-  using std::exp;
-  using std::log;
-  using std::sin;
+  using std::exp, std::log, std::sin;
   return sin(x * x) * exp(-x) + log(2.0 + x) / x;
 };
-
-} // namespace
 
 TEST_CASE("complex_step_derivative: exact to round-off") {
   for (const double x : {0.1, 0.7, 2.0, 9.0}) {
@@ -40,8 +32,7 @@ TEST_CASE("complex_step_derivative: exact to round-off") {
   }
   CHECK(complex_step_derivative([](const auto& x) { return x * x * x; }, 2.0L) == 12.0L);
   const auto curve = [](const auto& x) {
-    using std::cos;
-    using std::sin;
+    using std::cos, std::sin;
     return Eigen::Matrix<std::decay_t<decltype(x)>, 2, 1>(cos(x), sin(x));
   };
   CHECK((complex_step_derivative(curve, 0.4) - Eigen::Vector2d(-std::sin(0.4), std::cos(0.4)))
@@ -84,4 +75,5 @@ TEST_CASE("central_difference_derivative: the step shrinks away from a kink; the
   CHECK(std::isinf(at_pole.error));
 }
 
+} // namespace
 } // namespace test_comparison_numeric_derivative

@@ -1,22 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/comparison/compare.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cstddef>
-#include <limits>
-#include <string>
 
 // Text forms of a comparison, for people and for programs.
 
 namespace test_comparison_reports {
-
-using duet::comparison;
-using duet::verdict;
-
 namespace {
+
+using duet::comparison, duet::verdict;
 
 comparison sample() {
   comparison c;
@@ -30,8 +23,6 @@ comparison sample() {
       "u = 1, w = (0, 1)", {0.5, 1e-20, 2}, {1.0 / 3, 0, std::numeric_limits<double>::quiet_NaN()}};
   return c;
 }
-
-} // namespace
 
 TEST_CASE(
     "to_text of a comparison: text for people names verdict, samples, errors and counterexample") {
@@ -129,4 +120,5 @@ TEST_CASE(
   CHECK(calls == 7);
 }
 
+} // namespace
 } // namespace test_comparison_reports

@@ -1,36 +1,22 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/comparison/domain.hpp>
 #include <duet/comparison/rotations.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/interop/multiprecision.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
-#include <tuple>
-#include <vector>
 
 // Points at which compared functions are evaluated.
 
 namespace test_comparison_samplers {
-
-using duet::arrays;
-using duet::coordinates;
-using duet::quaternions;
-using duet::real_50;
-using duet::real_numbers;
-using duet::rotations;
-using duet::sampler;
-using duet::vectors;
-
 namespace {
+
+using duet::arrays, duet::coordinates, duet::quaternions, duet::real_50, duet::real_numbers,
+    duet::rotations, duet::sampler, duet::vectors;
 
 template <class Domain>
 void check_domain(const Domain& domain) {
@@ -50,8 +36,6 @@ void check_domain(const Domain& domain) {
 bool has(const std::vector<coordinates>& points, const coordinates& point) {
   return std::find(points.begin(), points.end(), point) != points.end();
 }
-
-} // namespace
 
 TEST_CASE("sampler: points of every domain are inside it") {
   check_domain(real_numbers{});
@@ -110,8 +94,6 @@ TEST_CASE(
   }
 }
 
-namespace {
-
 /// Checks that there are points at distances from `centre` of every decade from 1e-12 to 1e-3, on
 /// both sides if both are in the domain.
 template <class Domain>
@@ -148,8 +130,6 @@ void check_near(const Domain& domain, const coordinates& centre) {
         }) >= 2);
 }
 
-} // namespace
-
 TEST_CASE("sampler: points near zero occur at every order of magnitude down to 1e-12") {
   check_decades_near(real_numbers{-2, 2}, {0});
   check_decades_near(real_numbers{-1e3, 1e3}, {0});
@@ -185,8 +165,6 @@ TEST_CASE("sampler: some components are zero or equal while others are not") {
   CHECK(count([](const auto& p) { return p[0] == -p[2] && p[0] != p[1] && p[0] != 0; }) > 5);
 }
 
-namespace {
-
 /// The components of q_i* q_j for rotations i and j of each point.
 template <class Inputs>
 std::vector<duet::quaternion<double>> relative(const Inputs& inputs, std::size_t samples,
@@ -200,8 +178,6 @@ std::vector<duet::quaternion<double>> relative(const Inputs& inputs, std::size_t
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("sampler: equal, nearly equal and opposite arguments occur for any number of arguments") {
   const auto check = [](const auto& inputs, std::size_t arguments) {
@@ -350,4 +326,5 @@ TEST_CASE("sampler: points are described by name and coordinates") {
         "q = (1, 0, 0, 0.5)");
 }
 
+} // namespace
 } // namespace test_comparison_samplers

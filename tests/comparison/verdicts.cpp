@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/rotations.hpp>
 #include <duet/core/errors.hpp>
@@ -11,41 +13,17 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <utility>
-#include <vector>
-
 // Verdicts on formulas that are right, wrong, wrong at one point only, or badly rounded.
 
 namespace test_comparison_verdicts {
-
-using duet::compare;
-using duet::comparison;
-using duet::comparison_options;
-using duet::derivative;
-using duet::real_50;
-using duet::real_numbers;
-using duet::rotations;
-using duet::sampler;
-using duet::vectors;
-using duet::verdict;
-
 namespace {
+
+using duet::compare, duet::comparison, duet::comparison_options, duet::derivative, duet::real_50,
+    duet::real_numbers, duet::rotations, duet::sampler, duet::vectors, duet::verdict;
 
 const auto slope_of_wave = [](auto x) {
   return derivative([](auto t) { return sin(t * t); }, x).derivative;
 };
-
-} // namespace
 
 TEST_CASE("compare: a right formula agrees in every precision") {
   const auto closed_form = [](auto x) {
@@ -193,8 +171,6 @@ TEST_CASE("compare: a result that is not finite on one side only gives not_finit
   CHECK(compare("both", naive, naive, sampler(real_numbers{-1, 1})));
 }
 
-namespace {
-
 /// cos x, sin x and e^x, one of them wrong near zero: cos x by x²/6, sin x by x, e^x by 1.
 struct wrong_near_zero {
   int component;
@@ -211,8 +187,6 @@ struct wrong_near_zero {
     return y;
   }
 };
-
-} // namespace
 
 TEST_CASE("compare: an error in a series for small arguments is detected for any threshold") {
   const wrong_near_zero right{0, 0};
@@ -242,8 +216,6 @@ TEST_CASE("compare: an error in a series for small arguments is detected for any
   CHECK(compare<double, real_50>("series", right, wrong_near_zero{0, 1e-9}, inputs).outcome ==
         verdict::loses_precision);
 }
-
-namespace {
 
 /// The rotation vector of q, wrong if `where` holds.
 struct wrong_logarithm {
@@ -277,8 +249,6 @@ const std::vector<wrong_logarithm> wrong_logarithms = {
     {[](double, double, const auto& v) { return v[0] < 0 && v[1] > 0 && v[2] < 0; }},
 };
 
-} // namespace
-
 TEST_CASE(
     "compare: an error at small rotations, half turns, full turns or in one octant is detected") {
   const wrong_logarithm right{[](double, double, const auto&) { return false; }};
@@ -307,8 +277,6 @@ TEST_CASE(
   CHECK(compare("Log(A'B)", right, right, two));
 }
 
-namespace {
-
 /// (1 − cos x)/x², as it is written, or so that it keeps its digits; or, below a threshold, wrong.
 struct half_square_sinc {
   bool naive = false;
@@ -323,8 +291,6 @@ struct half_square_sinc {
                               : T(2 * half_sine * half_sine);
   }
 };
-
-} // namespace
 
 TEST_CASE("compare: near an excluded point the right formula agrees or loses digits") {
   const auto sinc = [](auto x) {
@@ -520,15 +486,11 @@ TEST_CASE("compare: results of different shapes throw invalid_input") {
   }));
 }
 
-namespace {
-
 const std::string note_of_first = "the first function returned double where its arguments were "
                                   "long double: a constant made it so, as the 0.0 of "
                                   "derivative(f, 0.0): write T(0)";
 constexpr bool long_double_is_longer =
     std::numeric_limits<long double>::digits10 > std::numeric_limits<double>::digits10;
-
-} // namespace
 
 TEST_CASE("compare: with a constant of double, a right formula agrees to the digits of double") {
   const auto inputs = sampler(vectors<3>{}, vectors<3>{}).named("w", "v");
@@ -643,4 +605,5 @@ TEST_CASE("compare: constants are judged as they are, without a note on their ty
             .outcome == verdict::loses_precision);
 }
 
+} // namespace
 } // namespace test_comparison_verdicts

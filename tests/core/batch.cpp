@@ -1,34 +1,24 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
+#include "support/ulp.hpp"
+
 #include <duet/core/batch/batch.hpp>
 #include <duet/core/batch/math.hpp>
 #include <duet/core/select.hpp>
 #include <duet/dual/math.hpp>
 
-#include "support/multiprecision.hpp"
-#include "support/random.hpp"
-#include "support/ulp.hpp"
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <sstream>
-#include <type_traits>
-
 namespace test_core_batch {
+namespace {
 
-using duet::batch;
-using duet::select;
+using duet::batch, duet::select;
 
 static_assert(duet::Scalar<batch<double>> && duet::Real<batch<float, 4>>);
 static_assert(duet::Batched<batch<double>> && !duet::Batched<double>);
 static_assert(std::is_same_v<duet::lane_type_t<batch<float>>, float>);
 static_assert(!std::is_convertible_v<duet::lane_mask<double, 4>, bool>);
-
-namespace {
 
 template <class B>
 B counted(double first, double step = 1) {
@@ -46,8 +36,6 @@ void check_lanes(const F& f, const B& x, const B& y) {
     CHECK(duet::lane(result, i) == f(x[i], y[i]));
   }
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("batch: arithmetic and comparisons equal those of the lanes", B, batch<double>,
                    batch<double, 1>, batch<double, 8>, batch<float, 4>, batch<float, 16>,
@@ -210,4 +198,5 @@ TEST_CASE("batch: output lists the lanes") {
   CHECK(text.str() == "[0.5, 1.5]");
 }
 
+} // namespace
 } // namespace test_core_batch

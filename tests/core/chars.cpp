@@ -3,24 +3,19 @@
 // The substitute for std::from_chars of floating-point numbers, compared with the standard library
 // if it has it, and with known results; shortest texts.
 
-#include <duet/core/text/number_text.hpp>
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
+#include <duet/core/text/number_text.hpp>
 
 #include <bit>
 #include <charconv>
-#include <cmath>
 #include <concepts>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <random>
-#include <string>
 #include <string_view>
 #include <system_error>
 
 namespace test_core_chars {
-
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -66,8 +61,6 @@ void check_text(T x) {
   }
   CHECK(T(std::strtold(text.c_str(), nullptr)) == x);
 }
-
-} // namespace
 
 TEST_CASE("read_by_strtod: a text is a number as a whole, or invalid") {
   constexpr auto none = std::errc();
@@ -185,4 +178,5 @@ TEST_CASE("to_text: every text reads back as the same number") {
   CHECK(duet::to_text(123456789012345683968.) == "123456789012345683968");
 }
 
+} // namespace
 } // namespace test_core_chars

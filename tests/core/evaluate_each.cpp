@@ -1,18 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/batch/evaluate_each.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/gradient.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/quaternion/rotation.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cstddef>
-#include <vector>
 
 namespace test_core_evaluate_each {
 namespace {
@@ -24,8 +19,6 @@ std::vector<double> numbers(std::size_t size, double first) {
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("evaluate_each: arrays of any length, on one core and several") {
   using namespace duet::expression;
@@ -74,4 +67,5 @@ TEST_CASE("evaluate_each: arrays of other sizes") {
         }) == "duet: evaluate_each: 4 inputs, but room for 3 results");
 }
 
+} // namespace
 } // namespace test_core_evaluate_each

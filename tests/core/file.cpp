@@ -1,31 +1,24 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/text/file.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <string>
-#include <thread>
-#include <utility>
-
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <thread>
 #include <unistd.h>
 
 namespace test_core_file {
 namespace {
 
 namespace fs = std::filesystem;
-using duet::write_file;
-using duet::detail::temporary_file;
+using duet::write_file, duet::detail::temporary_file;
 
 /// A separate folder, created empty and removed at the end.
 class playground {
@@ -54,8 +47,6 @@ std::string content_of(const std::string& path) {
 std::string message(const std::string& path) {
   return duet_test::message_of<duet::file_error>([&] { write_file(path, "x"); });
 }
-
-} // namespace
 
 TEST_CASE("write_file: replaces the complete file and keeps its permissions") {
   const playground folder("whole");
@@ -267,4 +258,5 @@ TEST_CASE("write_file: missing permissions for files and folders are errors") {
   CHECK(folder.count() == 1);
 }
 
+} // namespace
 } // namespace test_core_file

@@ -1,26 +1,18 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/text/number_text.hpp>
 
-#include <doctest/doctest.h>
-
 #include <bit>
-#include <cmath>
-#include <cstdint>
 #include <cstdlib>
-#include <limits>
 #include <locale>
-#include <sstream>
-#include <string>
 
 namespace test_core_number_text {
-
-using duet::parse_number;
-using duet::to_text;
-
 namespace {
+
+using duet::parse_number, duet::to_text;
 
 struct german : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
@@ -39,8 +31,6 @@ public:
 private:
   std::locale before_;
 };
-
-} // namespace
 
 TEST_CASE("to_text of a number: gives the shortest text that reads back") {
   CHECK(to_text(0.1) == "0.1");
@@ -99,4 +89,5 @@ TEST_CASE("to_text and parse_number: a decimal comma in the global locale has no
   CHECK_FALSE(parse_number("1234,5").has_value());
 }
 
+} // namespace
 } // namespace test_core_number_text

@@ -1,10 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/skip.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/text/number_text.hpp>
-
-#include <doctest/doctest.h>
 
 #include <clocale>
 #include <cstdlib>

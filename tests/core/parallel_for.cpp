@@ -1,19 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/parallel_for.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstddef>
 #include <mutex>
 #include <set>
-#include <stdexcept>
-#include <string>
 #include <thread>
-#include <vector>
 
 namespace test_core_parallel_for {
 

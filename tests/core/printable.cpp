@@ -1,10 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/text/printable.hpp>
-
-#include <doctest/doctest.h>
-
-#include <string>
 
 namespace test_core_printable {
 

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/text/result_text.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
@@ -11,13 +13,6 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 #include <duet/spline/orientations.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-#include <vector>
 
 // Results as text, field by field.
 

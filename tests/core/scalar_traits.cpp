@@ -1,24 +1,18 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/core/constants.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/version.hpp>
 
-#include <doctest/doctest.h>
-
 #include <concepts>
-#include <string>
-#include <type_traits>
 
 namespace test_core_scalar_traits {
 
-using duet_test::real_100;
-using duet_test::real_50;
-using duet_test::real_50_et;
-using duet_test::worst_error;
+using duet_test::real_100, duet_test::real_50, duet_test::real_50_et, duet_test::worst_error;
 
 static_assert(duet::Real<float> && duet::Real<double> && duet::Real<long double>);
 static_assert(duet::Real<real_50> && duet::Real<real_50_et>);

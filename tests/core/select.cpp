@@ -1,16 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/select.hpp>
 #include <duet/dual/math.hpp>
 
-#include <doctest/doctest.h>
-
-#include <type_traits>
-
 namespace test_core_select {
 
-using duet::dual;
-using duet::select;
+using duet::dual, duet::select;
 
 static_assert(select(
                   true, [] { return 1; }, [] { return 2; }) == 1);

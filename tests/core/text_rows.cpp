@@ -1,16 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/text/csv.hpp>
-
-#include <doctest/doctest.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <vector>
 
 namespace test_core_text_rows {
 namespace {
@@ -25,8 +22,6 @@ std::string error_message(const std::string& file, std::size_t columns = 0) {
   return duet_test::message_of<duet::file_error>(
       [&] { static_cast<void>(csv_file(file, columns)); });
 }
-
-} // namespace
 
 TEST_CASE("csv_file: reads headers, names, blanks, line ends and byte order marks") {
   write("\xef\xbb\xbfname , a [m],b\r\n\r\n# a comment\nfirst, 1 ,-2e3 # the "
@@ -106,4 +101,5 @@ TEST_CASE("csv_file: an invalid file gives an error with line and reason") {
   std::remove(path.c_str());
 }
 
+} // namespace
 } // namespace test_core_text_rows

@@ -1,21 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
+#include "support/ulp.hpp"
+
 #include <duet/core/batch/vector_sine_cosine.hpp>
 #include <duet/core/compiler/vector.hpp>
 
-#include "support/multiprecision.hpp"
-#include "support/random.hpp"
-#include "support/ulp.hpp"
-
 #include <boost/math/constants/constants.hpp>
-#include <doctest/doctest.h>
 
-#include <array>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <vector>
 
 namespace test_core_vector_sine_cosine {
 namespace {
@@ -85,8 +80,6 @@ void check_lanes() {
   CHECK_MESSAGE(cosines <= 1, cosines);
 }
 
-} // namespace
-
 TEST_CASE("vector_sine_cosine: accurate to one unit in the last place") {
   check_lanes<two_lanes>();
   check_lanes<all_lanes>();
@@ -110,4 +103,5 @@ TEST_CASE(
   }
 }
 
+} // namespace
 } // namespace test_core_vector_sine_cosine

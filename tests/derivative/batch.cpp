@@ -1,29 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/lanes.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/linear_solve.hpp>
 #include <duet/dual/taylor.hpp>
 
-#include "support/lanes.hpp"
-#include "support/random.hpp"
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 namespace test_derivative_batch {
 namespace {
 
-using duet::batch;
-using duet::dual;
-using duet_test::check_lanes;
+using duet::batch, duet::dual, duet_test::check_lanes;
 
 using matrix = Eigen::Matrix3d;
 using vector = Eigen::Vector3d;
@@ -89,8 +79,6 @@ std::string message_of(const Eigen::Matrix<batch<double, 4>, 2, 2>& a) {
   return "";
 }
 
-} // namespace
-
 TEST_CASE("solve over batches: lanes with pivots in different rows are solved independently") {
   const auto solved = [](const auto& a, const auto& b) { return duet::solve(a, b); };
   check_lanes<4>(solved, 8, matrices(), right_sides());
@@ -145,4 +133,5 @@ TEST_CASE("drivers over batches: derivatives, gradients, Hessians and Jacobians 
       4, std::vector<double>{0, 1, -2, 1e-9, 3});
 }
 
+} // namespace
 } // namespace test_derivative_batch

@@ -1,26 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/identical.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/errors.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <type_traits>
 
 // Gradients and Jacobians with respect to many variables, into memory of the caller.
 
 namespace test_derivative_chunked {
-
-using duet::gradient_into;
-using duet::jacobian_into;
-
 namespace {
+
+using duet::gradient_into, duet::jacobian_into;
 
 /// Σ xᵢ² xᵢ₊₁: every component has its own derivative.
 const auto chain = [](const auto& x) {
@@ -65,8 +59,6 @@ void check_gradient(Eigen::Index n) {
     CHECK(std::abs(g[i] - slope_of_chain(x, std::size_t(i))) <= 1e-15 * 8);
   }
 }
-
-} // namespace
 
 TEST_CASE("gradient_into: any chunk gives the same gradient in the expected number of passes") {
   check_gradient<0>(1000);
@@ -147,4 +139,5 @@ TEST_CASE("gradient_into and jacobian_into: sizes that do not match throw invali
   CHECK_THROWS_AS(static_cast<void>(gradient_into(chain, nothing, g)), duet::invalid_input);
 }
 
+} // namespace
 } // namespace test_derivative_chunked

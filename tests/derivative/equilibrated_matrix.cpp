@@ -1,19 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/implicit_function.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numeric>
 
 // Inverses and determinants, and which matrices count as singular.
 
@@ -65,8 +58,6 @@ void check_inverses() {
   }
 }
 
-} // namespace
-
 TEST_CASE("equilibrated_matrix: inverses do not depend on units") {
   check_inverses<1>();
   check_inverses<2>();
@@ -110,4 +101,5 @@ TEST_CASE("equilibrated_matrix: singular matrices are recognised") {
   CHECK(of<3>(1e-100 * matrix<3>::Identity()).is_invertible());
 }
 
+} // namespace
 } // namespace test_derivative_equilibrated_matrix

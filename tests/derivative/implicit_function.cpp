@@ -3,27 +3,18 @@
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/jacobian.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <string>
-#include <tuple>
-#include <type_traits>
 
 // x(p) with F(x, p) = 0: values and derivatives of scalars, vectors and tuples, against closed
 // forms and wide arithmetic.
 
 namespace test_derivative_implicit_function {
-
-using duet::implicit_function;
-using duet_test::real_100;
-
 namespace {
+
+using duet::implicit_function, duet_test::real_100;
 
 /// Kepler's equation E − e sin E = M: no closed form, and singular as e → 1.
 struct kepler {
@@ -43,8 +34,6 @@ real_100 wide_kepler(double eccentricity, const real_100& mean) {
   }
   return x;
 }
-
-} // namespace
 
 TEST_CASE(
     "implicit_solution: a scalar unknown has the closed-form derivatives of the square root") {
@@ -201,4 +190,5 @@ TEST_CASE("implicit_solution: no solution or a singular one throws no_convergenc
                   duet::no_convergence);
 }
 
+} // namespace
 } // namespace test_derivative_implicit_function

@@ -1,28 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <tuple>
-
 // Implicit functions whose unknown is, or contains, a rotation: three coordinates, no constraint on
 // the norm, derivatives of the quaternion itself.
 
 namespace test_derivative_implicit_rotation {
-
-using duet::implicit_function;
-using duet::quaternion;
-using duet::vector3;
-
 namespace {
+
+using duet::implicit_function, duet::quaternion, duet::vector3;
 
 /// A rotation about three axes at once, over any scalar.
 template <class T>
@@ -57,8 +49,6 @@ struct contact {
                              slip[1] - tip[0] * tip[1]);
   }
 };
-
-} // namespace
 
 TEST_CASE("implicit_solution: a rotation as unknown is differentiated to third order") {
   for (const double p : {-0.4, 0.0, 0.3}) {
@@ -157,4 +147,5 @@ TEST_CASE("implicit_solution: an orientation out of reach throws no_convergence"
       duet::no_convergence);
 }
 
+} // namespace
 } // namespace test_derivative_implicit_rotation

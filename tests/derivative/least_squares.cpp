@@ -4,35 +4,19 @@
 #include "support/identical.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/least_squares.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <type_traits>
 
 // x that minimises ‖A x − b‖: values to the last bit, derivatives against the normal equations and
 // QR over duals.
 
 namespace test_derivative_least_squares {
-
-using duet::dual;
-using duet::least_squares;
-using duet::taylor;
-using duet_test::check_solution;
-using duet_test::linear_problem;
-using duet_test::seeded;
-using Eigen::Dynamic;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
+
+using duet::dual, duet::least_squares, duet::taylor, duet_test::check_solution,
+    duet_test::linear_problem, duet_test::seeded, Eigen::Dynamic, Eigen::MatrixXd, Eigen::VectorXd;
 
 struct outer_tag;
 
@@ -109,8 +93,6 @@ template <class A, class B>
 std::string message(const A& a, const B& b) {
   return duet_test::message_of([&] { static_cast<void>(least_squares(a, b)); });
 }
-
-} // namespace
 
 // All fixed sizes here are 4 x 3: each size that Eigen factorises takes seconds to compile.
 TEST_CASE(
@@ -311,4 +293,5 @@ TEST_CASE("null_space_step: the projection of a step, and its derivative") {
                   duet::invalid_input);
 }
 
+} // namespace
 } // namespace test_derivative_least_squares

@@ -2,30 +2,19 @@
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/linear_solve.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-
 // Systems, least squares and eigenvectors in 50 digits, and how far doubles are from that where the
 // matrix is ill-conditioned.
 
 namespace test_derivative_linear_algebra_wide {
-
-using duet::dual;
-using duet::taylor;
-using Eigen::Dynamic;
-using Eigen::MatrixXd;
-
 namespace {
+
+using duet::dual, duet::taylor, Eigen::Dynamic, Eigen::MatrixXd;
 
 // Every type of matrix that Eigen factorises takes seconds to compile: all are of dynamic size, and
 // of the harder kind of 50 digits, that with expression templates.
@@ -111,8 +100,6 @@ std::array<double, 2> relative_errors(const vector<dual<double>>& computed,
   }
   return result;
 }
-
-} // namespace
 
 // The condition reaches 1e13.
 TEST_CASE("solve: Hilbert systems have errors below cond(A) ε / 10") {
@@ -273,4 +260,5 @@ TEST_CASE("linear algebra: error messages print numbers of 50 digits") {
   CHECK(duet::solve(b, right).rows() == 2);
 }
 
+} // namespace
 } // namespace test_derivative_linear_algebra_wide

@@ -2,35 +2,21 @@
 
 #include "support/eigen_problems.hpp"
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/linear_solve.hpp>
 
 #include <Eigen/LU>
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <type_traits>
 
 // x with A x = b: values to the last bit, derivatives against closed forms and elimination over
 // duals.
 
 namespace test_derivative_linear_solve {
-
-using duet::dual;
-using duet::solve;
-using duet::taylor;
-using duet_test::linear_problem;
-using duet_test::problems;
-using duet_test::seeded;
-using Eigen::Dynamic;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
+
+using duet::dual, duet::solve, duet::taylor, duet_test::linear_problem, duet_test::problems,
+    duet_test::seeded, Eigen::Dynamic, Eigen::MatrixXd, Eigen::VectorXd;
 
 struct outer_tag;
 
@@ -61,8 +47,6 @@ template <class A, class B>
 std::string message(const A& a, const B& b) {
   return duet_test::message_of([&] { static_cast<void>(solve(a, b)); });
 }
-
-} // namespace
 
 // All fixed sizes here are 3: each size that Eigen factorises takes seconds to compile.
 TEST_CASE("solve: fixed sizes give Eigen's values and the derivatives A⁻¹(b′ − A′x)") {
@@ -256,4 +240,5 @@ TEST_CASE("solve: singular or invalid systems throw invalid_input") {
   CHECK(message(hilbert(12), VectorXd::Ones(12).eval()) == "");
 }
 
+} // namespace
 } // namespace test_derivative_linear_solve

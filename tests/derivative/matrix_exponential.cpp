@@ -2,6 +2,7 @@
 
 #include "support/differences.hpp"
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/batch/batch.hpp>
 #include <duet/derivative/matrix_exponential.hpp>
@@ -9,25 +10,15 @@
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <complex>
-#include <limits>
 
 // exp A: values and derivatives against the series in 100 digits and closed forms.
 
 namespace test_derivative_matrix_exponential {
-
-using duet::dual;
-using duet::matrix_exponential;
-using duet_test::real_100;
-using Eigen::Dynamic;
-using Eigen::Matrix2d;
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-
 namespace {
+
+using duet::dual, duet::matrix_exponential, duet_test::real_100, Eigen::Dynamic, Eigen::Matrix2d,
+    Eigen::Matrix3d, Eigen::MatrixXd;
 
 /// exp A = (1 + B + … + B³⁰/30!)^(2⁶⁰), B = A/2⁶⁰; over Taylor numbers duet's.
 template <class T>
@@ -63,8 +54,6 @@ template <class A>
 std::string message(const A& a) {
   return duet_test::message_of([&] { static_cast<void>(matrix_exponential(a)); });
 }
-
-} // namespace
 
 TEST_CASE(
     "matrix_exponential: derivatives to third order at 0, nilpotent, diagonal and dense matrices") {
@@ -142,4 +131,5 @@ TEST_CASE("matrix_exponential: invalid matrices and overflow throw invalid_input
         "duet: matrix_exponential: entry (1, 1) of A is not finite");
 }
 
+} // namespace
 } // namespace test_derivative_matrix_exponential

@@ -1,24 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/derivative/jacobian.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-
 // Differentiation inside differentiated functions: no level may confuse another's infinitesimal
 // with its own.
 
 namespace test_derivative_nesting {
-
-using duet::derivative;
-using duet::derivatives;
-
 namespace {
+
+using duet::derivative, duet::derivatives;
 
 template <class X>
 struct plus {
@@ -34,8 +29,6 @@ struct times_slope_of_sum {
     return x * derivative(plus<X>{x}, 1.0).derivative;
   }
 };
-
-} // namespace
 
 // d/dx (x · d/dy (x + y)|₁)|₁ = 1, not 2.
 TEST_CASE("nested derivatives: perturbations are not confused") {
@@ -160,4 +153,5 @@ TEST_CASE("nested derivatives: a user-defined tag separates two differentiations
   CHECK(derivative(g, 2.0).derivative == 12);
 }
 
+} // namespace
 } // namespace test_derivative_nesting

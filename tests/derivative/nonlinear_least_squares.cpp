@@ -2,6 +2,7 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/nonlinear_least_squares.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
@@ -10,32 +11,19 @@
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
-#include <string>
-#include <tuple>
-#include <vector>
 
 // Nonlinear least squares against certified regressions, problems whose solution is known, and the
 // conditions of a minimum.
 
 namespace test_derivative_nonlinear_least_squares {
+namespace {
 
-using duet::least_squares_stop;
-using duet::loss_function;
-using duet::nonlinear_least_squares;
-using duet::nonlinear_least_squares_options;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using duet::least_squares_stop, duet::loss_function, duet::nonlinear_least_squares,
+    duet::nonlinear_least_squares_options, Eigen::MatrixXd, Eigen::VectorXd;
 using pose = duet::dual_quaternion<double>;
 using rotation = duet::quaternion<double>;
-
-namespace {
 
 struct regression {
   std::string name;
@@ -162,8 +150,6 @@ auto image(const P& camera, const V& intrinsics, const Eigen::Vector3d& point) {
   return Eigen::Matrix<T, 2, 1>(intrinsics[0] * p[0] / p[2] + intrinsics[2],
                                 intrinsics[1] * p[1] / p[2] + intrinsics[3]);
 }
-
-} // namespace
 
 TEST_CASE("estimates and standard deviations of the NIST regressions, from both starts") {
   int solved = 0;
@@ -571,4 +557,5 @@ TEST_CASE("bad input is refused with the value") {
   CHECK(of([](const auto& x) { return x; }, VectorXd()) == name + "there are no parameters");
 }
 
+} // namespace
 } // namespace test_derivative_nonlinear_least_squares

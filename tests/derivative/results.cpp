@@ -1,40 +1,24 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/SparseCore>
-
-#include <array>
-#include <cmath>
-#include <optional>
-#include <string>
-#include <tuple>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 // derivative, derivatives and directional_derivative of functions with results of every shape.
 
 namespace test_derivative_results {
-
-using duet::derivative;
-using duet::derivatives;
-using duet::directional_derivative;
-using duet::quaternion;
-using duet_test::shared_tag;
-
 namespace {
+
+using duet::derivative, duet::derivatives, duet::directional_derivative, duet::quaternion,
+    duet_test::shared_tag;
 
 /// sin and its derivatives at x, as numbers.
 double sine(int k, double x) { return std::sin(x + k * 1.5707963267948966); }
-
-} // namespace
 
 TEST_CASE("derivative: the result may be a scalar") {
   const auto [y, dy] = derivative([](auto x) { return sin(x) * exp(-x * x); }, 0.3);
@@ -184,8 +168,7 @@ TEST_CASE("directional_derivative: equals the Jacobian times the direction") {
 }
 
 TEST_CASE("refers_elsewhere: distinguishes owning types from references and expressions") {
-  using duet::detail::refers_elsewhere;
-  using Eigen::Vector3d;
+  using duet::detail::refers_elsewhere, Eigen::Vector3d;
   using sparse = Eigen::SparseMatrix<double>;
   static_assert(!refers_elsewhere<sparse> && !refers_elsewhere<Eigen::SparseVector<double>>);
   static_assert(!refers_elsewhere<Eigen::DiagonalMatrix<double, 3>>);
@@ -211,4 +194,5 @@ TEST_CASE("structure: scalars are visited from the first to the last") {
   CHECK(order == "1234567890");
 }
 
+} // namespace
 } // namespace test_derivative_results

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/batch/batch.hpp>
 #include <duet/derivative/scalar_type.hpp>
 #include <duet/dual/math.hpp>
@@ -9,18 +11,11 @@
 #include <duet/spline/rotation_vector_spline.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <array>
-#include <tuple>
-#include <type_traits>
-#include <vector>
 
 namespace test_derivative_scalar_type {
+namespace {
 
 using duet::scalar_t;
-
-namespace {
 
 using D = duet::dual<double, 3>;
 
@@ -28,8 +23,6 @@ template <class X>
 concept HasScalar = requires {
   typename scalar_t<X>;
 };
-
-} // namespace
 
 TEST_CASE_TEMPLATE("scalar_t: the scalar of scalars and of what is made of them", T, float, double,
                    D, duet::taylor<double, 3>, duet::batch<double>) {
@@ -50,4 +43,5 @@ TEST_CASE("scalar_t: curves and chains, and types without a scalar") {
   CHECK(!HasScalar<const char*>);
 }
 
+} // namespace
 } // namespace test_derivative_scalar_type

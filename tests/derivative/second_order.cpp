@@ -1,25 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/errors.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <type_traits>
 
 // Parts of Hessians, against the complete Hessian and closed forms.
 
 namespace test_derivative_second_order {
-
-using duet::hessian;
-using duet::hessian_vector_product;
-using duet::mixed_hessian;
-
 namespace {
+
+using duet::hessian, duet::hessian_vector_product, duet::mixed_hessian;
 
 /// x₀ sin(x₁ x₂) + exp(−x·x)
 const auto wavy = [](const auto& x) {
@@ -27,12 +21,9 @@ const auto wavy = [](const auto& x) {
   for (std::size_t i = 1; i < std::size_t(x.size()); ++i) {
     square = square + x[i] * x[i];
   }
-  using std::exp;
-  using std::sin;
+  using std::exp, std::sin;
   return x[0] * sin(x[1] * x[2]) + exp(-square);
 };
-
-} // namespace
 
 TEST_CASE("hessian_vector_product: equals the Hessian times the vector") {
   const Eigen::Vector3d x(0.4, -1.1, 0.7);
@@ -107,4 +98,5 @@ TEST_CASE("hessian_vector_product: sizes that differ throw invalid_input") {
                        duet::invalid_input);
 }
 
+} // namespace
 } // namespace test_derivative_second_order

@@ -1,25 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/sparse.hpp>
 
 #include <Eigen/SparseCore>
-#include <doctest/doctest.h>
-
-#include <cstddef>
-#include <tuple>
-#include <vector>
 
 // sparse_jacobian and sparse_hessian against the dense ones, over several kinds of patterns.
 
 namespace test_derivative_sparse {
-
-using duet::sparse_hessian;
-using duet::sparse_jacobian;
-using matrix = Eigen::SparseMatrix<double>;
-
 namespace {
+
+using duet::sparse_hessian, duet::sparse_jacobian;
+using matrix = Eigen::SparseMatrix<double>;
 
 /// Pairs of n variables that occur in a common term.
 struct pairs {
@@ -71,8 +66,7 @@ struct sum_over_pairs {
 
   template <class X>
   auto operator()(const X& x) const {
-    using std::exp;
-    using std::sin;
+    using std::exp, std::sin;
     auto sum = 0.0 * x[0];
     for (const auto& [i, j] : of->met) {
       sum += exp(x[std::size_t(i)] / 2) * x[std::size_t(j)] * sin(x[std::size_t(j)]);
@@ -135,8 +129,6 @@ matrix band_of_rows(int n, int width) {
   result.setFromTriplets(entries.begin(), entries.end());
   return result;
 }
-
-} // namespace
 
 TEST_CASE("sparse_hessian: bands, arrows and grids equal the dense Hessian") {
   for (const int n : {1, 2, 3, 8, 9, 40}) {
@@ -223,4 +215,5 @@ TEST_CASE("sparse_jacobian: several arguments, and derivatives of the Jacobian")
   CHECK(duet::derivative(entry, 0.5).derivative == 6);
 }
 
+} // namespace
 } // namespace test_derivative_sparse

@@ -2,35 +2,22 @@
 
 #include "support/differences.hpp"
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/nearest_rotation.hpp>
 #include <duet/derivative/svd.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
-#include <type_traits>
-
 // Singular values and vectors, and the nearest rotation: derivatives against differences in 100
 // digits, where singular values are equal or zero, too.
 
 namespace test_derivative_svd {
-
-using duet::dual;
-using duet::nearest_rotation;
-using duet::singular_values;
-using duet::svd;
-using duet_test::error_to_third_order;
-using Eigen::Dynamic;
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-
 namespace {
+
+using duet::dual, duet::nearest_rotation, duet::singular_values, duet::svd,
+    duet_test::error_to_third_order, Eigen::Dynamic, Eigen::Matrix3d, Eigen::MatrixXd,
+    Eigen::Vector3d;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
@@ -74,8 +61,6 @@ template <class A>
 std::string message_of_nearest(const A& a) {
   return duet_test::message_of([&] { static_cast<void>(nearest_rotation(a)); });
 }
-
-} // namespace
 
 TEST_CASE("svd: derivatives to third order at dense, diagonal and reflected matrices") {
   for (const Matrix3d& a : {dense(), diagonal(3, 1, 2), diagonal(3, 2, -1), diagonal(-1, -5, -2),
@@ -228,4 +213,5 @@ TEST_CASE("nearest_rotation: throws if the nearest rotation is not unique") {
   CHECK(message_of_nearest(MatrixXd(0, 0)) == "duet: nearest_rotation: A is empty");
 }
 
+} // namespace
 } // namespace test_derivative_svd

@@ -2,32 +2,19 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/symmetric_eigen.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <type_traits>
 
 // A v = λ v: values to the last bit, derivatives against perturbation theory and against the
 // equations themselves.
 
 namespace test_derivative_symmetric_eigen {
-
-using duet::dual;
-using duet::symmetric_eigen;
-using duet::taylor;
-using Eigen::Dynamic;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 namespace {
+
+using duet::dual, duet::symmetric_eigen, duet::taylor, Eigen::Dynamic, Eigen::MatrixXd,
+    Eigen::VectorXd;
 
 struct outer_tag;
 
@@ -139,8 +126,6 @@ template <class A>
 std::string message(const A& a) {
   return duet_test::message_of([&] { static_cast<void>(symmetric_eigen(a)); });
 }
-
-} // namespace
 
 // All fixed sizes here are 3: each size that Eigen decomposes takes seconds to compile.
 TEST_CASE(
@@ -293,4 +278,5 @@ TEST_CASE("symmetric_eigen: float, long double and integers are accepted") {
   CHECK(std::abs(e.vectors(0, 0).value() * e.vectors(1, 0).epsilon() + 0.5L) <= 1e-18L);
 }
 
+} // namespace
 } // namespace test_derivative_symmetric_eigen

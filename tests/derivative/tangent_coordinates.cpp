@@ -2,6 +2,7 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
@@ -12,32 +13,17 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <tuple>
-#include <type_traits>
-#include <vector>
-
 // Jacobians, gradients and Hessians of functions of rotations, against closed forms.
 
 namespace test_derivative_tangent_coordinates {
+namespace {
 
-using duet::gradient;
-using duet::hessian;
-using duet::jacobian;
-using duet::rotation_matrix;
-using duet::frame::body;
-using duet::frame::spatial;
+using duet::gradient, duet::hessian, duet::jacobian, duet::rotation_matrix, duet::frame::body,
+    duet::frame::spatial;
 
 using quaternion = duet::quaternion<double>;
 using vector = Eigen::Vector3d;
 using matrix = Eigen::Matrix3d;
-
-namespace {
 
 const quaternion q = duet::from_rotation_vector(vector(0.3, -1.2, 0.7));
 const quaternion r = duet::from_rotation_vector(vector(-2.1, 0.4, 1.3));
@@ -53,8 +39,6 @@ template <class A, class B>
 double max_abs_difference(const A& a, const B& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
-
-} // namespace
 
 TEST_CASE("jacobian in a frame: of a vector rotated by the variable") {
   const auto rotated = [](const auto& x) { return duet::rotate(x, v); };
@@ -349,4 +333,5 @@ TEST_CASE("jacobian in a frame: works inside another differentiation") {
   CHECK(duet::derivative(trace, 2.0).derivative == doctest::Approx(1).epsilon(1e-15));
 }
 
+} // namespace
 } // namespace test_derivative_tangent_coordinates

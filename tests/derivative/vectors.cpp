@@ -1,28 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/identical.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/gradient.hpp>
 #include <duet/derivative/jacobian.hpp>
 
 #include <Eigen/LU>
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <tuple>
-#include <type_traits>
-#include <vector>
 
 // gradient, jacobian and hessian: vectors of every kind and size.
 
 namespace test_derivative_vectors {
-
-using duet::gradient;
-using duet::hessian;
-using duet::jacobian;
-
 namespace {
+
+using duet::gradient, duet::hessian, duet::jacobian;
 
 /// Σ i xᵢ² + x₀ x_last
 struct quadratic {
@@ -95,8 +86,6 @@ void check_fixed_size() {
     check_jacobian(x);
   }
 }
-
-} // namespace
 
 // Up to 32 components in one pass, beyond in several, the last of them not full.
 TEST_CASE("gradient, jacobian and hessian: the point may be given in braces") {
@@ -355,4 +344,5 @@ TEST_CASE("gradient: single precision") {
   CHECK(g == Eigen::Vector2f(3, 2));
 }
 
+} // namespace
 } // namespace test_derivative_vectors

@@ -2,6 +2,7 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/batch/batch.hpp>
 #include <duet/core/batch/math.hpp>
@@ -19,22 +20,10 @@
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/text.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <string>
-#include <tuple>
-#include <type_traits>
-#include <vector>
-
 namespace test_derivative_with_derivative {
-
-using duet::derivative;
-using duet::derivatives;
-using duet::with_derivative;
-
 namespace {
+
+using duet::derivative, duet::derivatives, duet::with_derivative;
 
 /// eˣ as another library would give it.
 double exponential(double x) { return std::exp(x); }
@@ -44,8 +33,6 @@ const auto generic_exp = [](const auto& x) {
   return exp(x);
 };
 const auto wrapped = with_derivative(exponential, generic_exp);
-
-} // namespace
 
 TEST_CASE("with_derivative: derivatives of every order and kind come from the given one") {
   const double e = std::exp(0.5);
@@ -101,8 +88,7 @@ TEST_CASE("with_derivative: several arguments, and constants beside variables") 
                                        return p * pow(x, p - 1);
                                      },
                                      [](const auto& x, const auto& p) {
-                                       using std::log;
-                                       using std::pow;
+                                       using std::log, std::pow;
                                        return log(x) * pow(x, p);
                                      });
   const auto [y, dy] =
@@ -176,8 +162,6 @@ TEST_CASE("with_derivative: typed formulas have the given derivative, of every o
   }
 }
 
-namespace {
-
 /// A function object with a name, whose rule for higher orders is itself.
 struct root_function {
   static constexpr const char* name = "root";
@@ -188,8 +172,6 @@ struct root_slope {
     return 0.5 / with_derivative(root_function(), root_slope())(x);
   }
 };
-
-} // namespace
 
 TEST_CASE("with_derivative: typed formulas of function objects and of several arguments") {
   using namespace duet::expression;
@@ -217,4 +199,5 @@ TEST_CASE("with_derivative: typed formulas of function objects and of several ar
   CHECK(product(u, c<2>)(u = 3.0) == 6);
 }
 
+} // namespace
 } // namespace test_derivative_with_derivative

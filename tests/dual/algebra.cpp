@@ -1,19 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
-
-#include <doctest/doctest.h>
-
-#include <type_traits>
 
 // N10, N11 at compile time. Whatever is asserted here holds for constants, so it is exact.
 
 namespace test_dual_algebra {
-
-using duet::dual;
-using duet::taylor;
-
 namespace {
+
+using duet::dual, duet::taylor;
 
 struct outer_tag;
 
@@ -136,8 +132,6 @@ static_assert(dual<double>().value() == 0 && dual<double>().epsilon() == 0);
 static_assert(dual<double, 7>().partial(6) == 0);
 static_assert(duet::scalar_traits<dual<taylor<double, 3>, 2, outer_tag>>::order == 4);
 
-} // namespace
-
 // Run time uses packets, which constant evaluation does not.
 template <class T, int N>
 void check_packed() {
@@ -192,4 +186,5 @@ TEST_CASE("dual: packed partials at run time give the same results as constant e
   check_packed_of_all_sizes<long double>();
 }
 
+} // namespace
 } // namespace test_dual_algebra

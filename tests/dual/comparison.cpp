@@ -1,26 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <complex>
-#include <limits>
-#include <numeric>
-#include <utility>
-#include <vector>
 
 // Numbers are compared, classified and limited by their values.
 
 namespace test_dual_comparison {
-
-using duet::dual;
-using duet::taylor;
-
 namespace {
+
+using duet::dual, duet::taylor;
 
 struct outer_tag;
 
@@ -38,8 +29,6 @@ static_assert(!(dual<double>(not_a_number, 0) < 1) && !(dual<double>(not_a_numbe
 static_assert(dual<dual<double>, 1, outer_tag>(3) == dual<double>(3, 7));
 static_assert(taylor<double, 3>::variable(1) < 1.25 && 1 <= taylor<double, 3>::variable(1));
 static_assert(dual<float>(0.1F, 0) != 0.1); // as 0.1F != 0.1
-
-} // namespace
 
 TEST_CASE_TEMPLATE("dual: classification depends on the value alone", D, dual<double>,
                    dual<double, 5>, taylor<double, 3>, dual<dual<double>, 1, outer_tag>) {
@@ -137,4 +126,5 @@ TEST_CASE("std::complex of dual: multiplication and division") {
   CHECK(norm(z).epsilon() == 2);
 }
 
+} // namespace
 } // namespace test_dual_comparison

@@ -1,30 +1,20 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual/complex.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
 #include <complex>
 #include <concepts>
-#include <limits>
-#include <sstream>
-#include <type_traits>
 
 // Dual and Taylor numbers over the complex numbers: analytic functions and their derivatives.
 
 namespace test_dual_complex {
-
-using duet::dual;
-using duet::promote_t;
-using duet::taylor;
-using duet_test::random_source;
-
 namespace {
+
+using duet::dual, duet::promote_t, duet::taylor, duet_test::random_source;
 
 using C = std::complex<double>;
 using D = dual<C>;
@@ -109,8 +99,6 @@ void check_analytic(F f, DF df, DDF ddf) {
     CHECK(within(chained.epsilon() / C(2, -3), slope));
   }
 }
-
-} // namespace
 
 TEST_CASE("dual of complex: the algebra is exact") {
   const D a(C(1, 2), C(3, -1));
@@ -342,4 +330,5 @@ TEST_CASE_TEMPLATE("dual of complex: functions work in every built-in precision"
   CHECK(std::abs(y.epsilon() - exact) <= 8 * std::numeric_limits<T>::epsilon() * std::abs(exact));
 }
 
+} // namespace
 } // namespace test_dual_complex

@@ -2,6 +2,7 @@
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/batch/batch.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -9,26 +10,15 @@
 #include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
 
-#include <array>
-#include <cmath>
 #include <complex>
-#include <cstddef>
-#include <limits>
-#include <sstream>
-#include <string>
-#include <type_traits>
 
 // std::complex over dual numbers: complex functions of a real parameter, |z| and arg z among them.
 
 namespace test_dual_complex_of_dual {
-
-using duet::dual;
-using duet::taylor;
-using duet_test::random_source;
-
 namespace {
+
+using duet::dual, duet::taylor, duet_test::random_source;
 
 using D = dual<double>;
 using Z = std::complex<D>;
@@ -77,8 +67,6 @@ void check_analytic(F f) {
     CHECK(near(velocity(y), exact.epsilon(), scale));
   }
 }
-
-} // namespace
 
 TEST_CASE("std::complex of dual: arithmetic") {
   random_source random(1);
@@ -194,8 +182,6 @@ TEST_CASE("std::complex of Taylor: e^{it} has the derivatives i^k e^{it}") {
   }
   CHECK(std::abs(abs(z).derivative(1)) <= 4 * epsilon); // it stays on the unit circle
 }
-
-namespace {
 
 using R = duet_test::real_100;
 using CR = std::complex<R>;
@@ -336,8 +322,6 @@ bool identical(const C& a, const C& b) {
 }
 
 bool is_infinite(const C& z) { return std::isinf(z.real()) || std::isinf(z.imag()); }
-
-} // namespace
 
 TEST_CASE("std::complex of dual: derivatives to the third agree with differences in 100 digits") {
   // Among them equal parts, on axes, small and large.
@@ -531,4 +515,5 @@ TEST_CASE_TEMPLATE(
   CHECK(std::abs(slope - exact) <= 16 * std::numeric_limits<real>::epsilon() * std::abs(exact));
 }
 
+} // namespace
 } // namespace test_dual_complex_of_dual

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/errors.hpp>
 #include <duet/dual/dynamic_dual.hpp>
 #include <duet/dual/eigen_traits.hpp>
@@ -7,24 +9,13 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <sstream>
-#include <type_traits>
-#include <vector>
 
 // A run-time number of partials: the same numbers as with a fixed one.
 
 namespace test_dual_dynamic {
-
-using duet::dual;
-using duet::dynamic_dual;
-
 namespace {
+
+using duet::dual, duet::dynamic_dual;
 
 /// Every kind of operation: sums, products, quotients, functions of one, two and three arguments.
 template <class D>
@@ -61,8 +52,6 @@ void check_against_fixed() {
           8 * std::numeric_limits<T>::epsilon() * scale);
   }
 }
-
-} // namespace
 
 TEST_CASE("dynamic_dual: derivatives equal those with a fixed number of partials") {
   check_against_fixed<double, 2, 8>();
@@ -154,4 +143,5 @@ TEST_CASE("dynamic_dual: works nested, in Eigen and in streams") {
   CHECK(text.str() == "1.5[0, 1] 2[]");
 }
 
+} // namespace
 } // namespace test_dual_dynamic

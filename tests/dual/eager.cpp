@@ -1,22 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/select.hpp>
 #include <duet/dual/math.hpp>
-
-#include <doctest/doctest.h>
-
-#include <functional>
-#include <type_traits>
-#include <vector>
 
 // Duals are plain values: code that dangles or does not compile with lazy libraries works.
 
 namespace test_dual_eager {
-
-using duet::dual;
-using duet::taylor;
-
 namespace {
+
+using duet::dual, duet::taylor;
 
 auto square(dual<double> x) { return x * x; }
 
@@ -27,8 +21,6 @@ auto polynomial(const T& x) {
   auto w = z - x;
   return w * 2;
 }
-
-} // namespace
 
 TEST_CASE("dual: auto holds values, not dangling references") {
   auto y = square(dual<double>::variable(3));
@@ -89,4 +81,5 @@ TEST_CASE("dual: an operand may be the result") {
   CHECK(t.coefficient(1) == 0);
 }
 
+} // namespace
 } // namespace test_dual_eager

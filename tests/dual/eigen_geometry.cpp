@@ -1,25 +1,21 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/differences.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/Geometry>
-#include <doctest/doctest.h>
-
-#include <cmath>
 
 // Eigen's Geometry module over duals: a frame that rotates about n at unit rate has Ṙ = [n]× R.
 
 namespace test_dual_eigen_geometry {
+namespace {
 
 using D = duet::dual<double>;
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
+using Eigen::Matrix3d, Eigen::Vector3d;
 using DVector = Eigen::Matrix<D, 3, 1>;
 using DMatrix = Eigen::Matrix<D, 3, 3>;
-
-namespace {
 
 template <class M>
 auto slopes(const M& m) {
@@ -40,8 +36,6 @@ const Matrix3d rotation = Eigen::AngleAxisd(0.7, axis).toRotationMatrix();
 const Matrix3d rate = skew(axis) * rotation;
 
 bool near(const auto& a, const auto& b) { return (a - b).norm() <= 1e-14 * (1 + b.norm()); }
-
-} // namespace
 
 TEST_CASE("Eigen geometry over dual: AngleAxis") {
   const Eigen::AngleAxis<D> angle_axis(angle, axis.cast<D>());
@@ -110,8 +104,6 @@ TEST_CASE("Eigen geometry over dual: products of vectors") {
 }
 
 // Members that the page "With Eigen" lists as right: zeros, equal values, identity, half turns.
-namespace {
-
 /// Members of Eigen at structured inputs that move with t.
 template <class T>
 Eigen::Matrix<T, Eigen::Dynamic, 1> at_structured_points(const T& t) {
@@ -167,11 +159,10 @@ Eigen::Matrix<T, Eigen::Dynamic, 1> at_structured_points(const T& t) {
   return all;
 }
 
-} // namespace
-
 TEST_CASE("Eigen geometry over dual: members are right to third order at structured points") {
   CHECK(duet_test::error_to_third_order([](const auto& t) { return at_structured_points(t); }) <=
         1e-13);
 }
 
+} // namespace
 } // namespace test_dual_eigen_geometry

@@ -2,18 +2,14 @@
 
 #include "support/eigen_problems.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <Eigen/QR>
-#include <doctest/doctest.h>
 
 namespace test_dual_eigen_least_squares {
 
-using duet::dual;
-using duet_test::check_solution;
-using duet_test::linear_problem;
-using duet_test::seeded;
-using Eigen::Dynamic;
-using Eigen::MatrixXd;
+using duet::dual, duet_test::check_solution, duet_test::linear_problem, duet_test::seeded,
+    Eigen::Dynamic, Eigen::MatrixXd;
 
 TEST_CASE("Eigen over dual: least squares satisfy AᵀA x = Aᵀb with derivatives") {
   duet_test::random_source random(5);

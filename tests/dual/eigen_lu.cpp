@@ -1,22 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/eigen_problems.hpp"
+#include "support/test.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
-#include <doctest/doctest.h>
 
 namespace test_dual_eigen_lu {
-
-using duet::dual;
-using duet_test::check_solution;
-using duet_test::linear_problem;
-using duet_test::problems;
-using duet_test::random_problem;
-using duet_test::seeded;
-using Eigen::Dynamic;
-
 namespace {
+
+using duet::dual, duet_test::check_solution, duet_test::linear_problem, duet_test::problems,
+    duet_test::random_problem, duet_test::seeded, Eigen::Dynamic;
 
 template <int N>
 using matrix = Eigen::Matrix<dual<double>, N, N>;
@@ -27,8 +21,6 @@ void check_decomposition(const linear_problem& p) {
   const Decomposition decomposition(seeded<dual<double>, N, N>(p.a, p.a_slope));
   check_solution(decomposition.solve(seeded<dual<double>, N, 1>(p.b, p.b_slope)).eval(), p);
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("Eigen over dual: LU of dynamic size", Decomposition,
                    Eigen::PartialPivLU<matrix<Dynamic>>, Eigen::FullPivLU<matrix<Dynamic>>) {
@@ -74,4 +66,5 @@ TEST_CASE("Eigen over dual: several right-hand sides and systems larger than Eig
   }
 }
 
+} // namespace
 } // namespace test_dual_eigen_lu

@@ -1,22 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/LU>
-#include <doctest/doctest.h>
 
 #include <iomanip>
-#include <sstream>
-#include <type_traits>
 
 namespace test_dual_eigen_matrices {
-
-using duet::dual;
-using duet::screw_tag;
-using duet::taylor;
-using Eigen::Dynamic;
-
 namespace {
+
+using duet::dual, duet::screw_tag, duet::taylor, Eigen::Dynamic;
 
 template <class D, int Rows, int Columns>
 using matrix = Eigen::Matrix<D, Rows, Columns>;
@@ -32,8 +27,6 @@ template <class M>
 auto values(const M& m) {
   return m.unaryExpr([](const auto& x) { return x.value(); }).eval();
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("Eigen over dual: mixed products with double", D, dual<double>,
                    dual<double, 3>) {
@@ -176,4 +169,5 @@ TEST_CASE("Eigen over dual: matrices are printed in columns") {
   CHECK(series.str() == "(1 + 1 e + 0 e^2) (2 + 0 e + 0 e^2)");
 }
 
+} // namespace
 } // namespace test_dual_eigen_matrices

@@ -1,20 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/eigen_problems.hpp"
+#include "support/test.hpp"
 
 #include <Eigen/QR>
-#include <doctest/doctest.h>
 
 namespace test_dual_eigen_qr {
-
-using duet::dual;
-using duet_test::check_solution;
-using duet_test::linear_problem;
-using duet_test::problems;
-using duet_test::seeded;
-using Eigen::Dynamic;
-
 namespace {
+
+using duet::dual, duet_test::check_solution, duet_test::linear_problem, duet_test::problems,
+    duet_test::seeded, Eigen::Dynamic;
 
 template <class Decomposition, int N>
 void check_decomposition(const linear_problem& p) {
@@ -25,8 +20,6 @@ void check_decomposition(const linear_problem& p) {
 
 template <int N>
 using matrix = Eigen::Matrix<dual<double>, N, N>;
-
-} // namespace
 
 TEST_CASE_TEMPLATE("Eigen over dual: QR of dynamic size", Decomposition,
                    Eigen::HouseholderQR<matrix<Dynamic>>,
@@ -40,4 +33,5 @@ TEST_CASE_TEMPLATE("Eigen over dual: QR of dynamic size", Decomposition,
   }
 }
 
+} // namespace
 } // namespace test_dual_eigen_qr

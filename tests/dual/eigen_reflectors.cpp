@@ -1,20 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/eigen_problems.hpp"
+#include "support/test.hpp"
 
 #include <Eigen/QR>
-#include <doctest/doctest.h>
 
 namespace test_dual_eigen_reflectors {
-
-using duet::dual;
-using duet_test::check_solution;
-using duet_test::problems;
-using duet_test::seeded;
-using Eigen::Dynamic;
-using Eigen::MatrixXd;
-
 namespace {
+
+using duet::dual, duet_test::check_solution, duet_test::problems, duet_test::seeded, Eigen::Dynamic,
+    Eigen::MatrixXd;
 
 using dual_matrix = Eigen::Matrix<dual<double>, Dynamic, Dynamic>;
 
@@ -24,10 +19,6 @@ MatrixXd values(const dual_matrix& m) {
 MatrixXd slopes(const dual_matrix& m) {
   return m.unaryExpr([](const auto& x) { return x.epsilon(); });
 }
-
-} // namespace
-
-namespace {
 
 template <class QR>
 void check_factors(const QR& qr, const dual_matrix& a) {
@@ -41,8 +32,6 @@ void check_factors(const QR& qr, const dual_matrix& a) {
   CHECK((values(identity) - MatrixXd::Identity(a.rows(), a.rows())).norm() <= tolerance);
   CHECK(slopes(identity).norm() <= tolerance);
 }
-
-} // namespace
 
 // Among them matrices whose columns are zero below the diagonal, but their derivatives are not; and
 // one larger than the blocks that Eigen puts reflectors together in.
@@ -106,4 +95,5 @@ TEST_CASE("Eigen over dual: QR of fixed sizes with several partials and right-ha
   }
 }
 
+} // namespace
 } // namespace test_dual_eigen_reflectors

@@ -1,24 +1,18 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/eigen_problems.hpp"
+#include "support/test.hpp"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
-#include <doctest/doctest.h>
-
-#include <cmath>
 
 // Second derivatives of solutions, by Taylor numbers and by nested duals:
 // A x″ = b″ − 2A′x′ − A″x.
 
 namespace test_dual_eigen_second_order {
-
-using duet::dual;
-using duet::taylor;
-using duet_test::problems;
-using Eigen::Dynamic;
-
 namespace {
+
+using duet::dual, duet::taylor, duet_test::problems, Eigen::Dynamic;
 
 struct outer_tag;
 
@@ -28,8 +22,6 @@ auto seeded_twice(const Eigen::MatrixXd& value, const Eigen::MatrixXd& slope, Se
       value.rows(), value.cols(),
       [=](Eigen::Index i, Eigen::Index j) { return seed(value(i, j), slope(i, j)); });
 }
-
-} // namespace
 
 TEST_CASE("Eigen over dual: second derivatives of solutions") {
   using series = taylor<double, 2>;
@@ -68,4 +60,5 @@ TEST_CASE("Eigen over dual: second derivatives of solutions") {
   }
 }
 
+} // namespace
 } // namespace test_dual_eigen_second_order

@@ -1,13 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/SparseCholesky>
-#include <doctest/doctest.h>
-
-#include <cmath>
 
 // Eigen's sparse solvers over dual numbers: they solve their systems with all derivatives.
 

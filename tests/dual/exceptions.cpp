@@ -1,15 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual/function_cases.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/second_dual.hpp>
 
-#include <doctest/doctest.h>
-
 #include <cfenv>
-#include <cmath>
-#include <limits>
-#include <string>
 
 // Floating-point exceptions: a quiet NaN raises none, as in <cmath>, and neither do finite
 // derivatives. (An infinite one, such as 1/√0, divides by zero.)
@@ -93,8 +89,6 @@ void for_each_of_two(const Visit& visit) {
   visit(DUET_FUNCTION(isunordered));
 }
 
-} // namespace
-
 TEST_CASE("dual: a quiet NaN or ordinary argument raises no floating-point exception" *
           doctest::skip(!has_flags)) {
   duet_test::for_each_function([](const std::string& name, auto f, auto, const auto&, auto) {
@@ -137,4 +131,5 @@ TEST_CASE("dual: branches by comparison raise no floating-point exception at inf
   }
 }
 
+} // namespace
 } // namespace test_dual_exceptions

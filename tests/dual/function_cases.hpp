@@ -74,29 +74,9 @@ private:
 /// both are smooth, which sets the step of difference quotients.
 template <class Visit>
 void for_each_function(Visit&& visit) {
-  using std::acos;
-  using std::acosh;
-  using std::asin;
-  using std::asinh;
-  using std::atan;
-  using std::atanh;
-  using std::cbrt;
-  using std::cos;
-  using std::cosh;
-  using std::erf;
-  using std::erfc;
-  using std::exp;
-  using std::exp2;
-  using std::expm1;
-  using std::log;
-  using std::log10;
-  using std::log1p;
-  using std::log2;
-  using std::sin;
-  using std::sinh;
-  using std::sqrt;
-  using std::tan;
-  using std::tanh;
+  using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atanh, std::cbrt, std::cos,
+      std::cosh, std::erf, std::erfc, std::exp, std::exp2, std::expm1, std::log, std::log10,
+      std::log1p, std::log2, std::sin, std::sinh, std::sqrt, std::tan, std::tanh;
   const auto unit = []<class R>(const R&) { return R(1); };
   const auto size = []<class R>(const R& x) -> R { return abs(x) > 1 ? abs(x) : R(1); };
   const auto from_zero = []<class R>(const R& x) -> R { return abs(x); };

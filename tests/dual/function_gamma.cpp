@@ -2,29 +2,19 @@
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/dual/math.hpp>
 
 #include <boost/math/special_functions/bernoulli.hpp>
 #include <boost/math/special_functions/digamma.hpp>
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace test_dual_function_gamma {
+namespace {
 
-using duet::dual;
-using duet_test::central_difference;
-using duet_test::real_100;
-using duet_test::scale;
-using duet_test::ulps;
-using duet_test::worst_error;
+using duet::dual, duet_test::central_difference, duet_test::real_100, duet_test::scale,
+    duet_test::ulps, duet_test::worst_error;
 
 TEST_CASE("gamma functions: derivatives agree with series") {
   worst_error worst_tgamma("tgamma");
@@ -57,8 +47,6 @@ TEST_CASE("gamma functions: derivatives agree with series") {
   CHECK_MESSAGE(worst_lgamma <= 16, worst_lgamma);
   CHECK_MESSAGE(worst_tgamma <= 16, worst_tgamma);
 }
-
-namespace {
 
 /// ψ^(n)(x) for n = 0…6: (−1)^(n+1) n! Σ 1/(x + k)^(n+1), the terms from 60 on by Euler's and
 /// Maclaurin's formula. Unlike the rules it uses no reflection.
@@ -100,8 +88,6 @@ std::array<real_100, 7> gammas(const real_100& x, const std::array<real_100, 7>&
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("gamma functions: derivatives to the fifth in every built-in precision", T,
                    float, double, long double) {
@@ -154,4 +140,5 @@ TEST_CASE("gamma functions: derivatives at -3/2 agree with a table") {
   CHECK(g.derivative(5) == doctest::Approx(3831.21).epsilon(5e-6));
 }
 
+} // namespace
 } // namespace test_dual_function_gamma

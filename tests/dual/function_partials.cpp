@@ -1,21 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual/function_cases.hpp"
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cstddef>
-#include <string>
-#include <utility>
+#include "support/test.hpp"
 
 namespace test_dual_function_partials {
-
-using duet::dual;
-using duet_test::domain;
-using duet_test::for_each_function;
-
 namespace {
+
+using duet::dual, duet_test::domain, duet_test::for_each_function;
 
 /// y.partial(i) is the slope of one variable times the i-th seed, for every i.
 template <class T, int N, class F>
@@ -36,8 +27,6 @@ bool partials_agree(F&& f, T x) {
   return y.value() == f(x) || f(x) != f(x);
 }
 
-} // namespace
-
 TEST_CASE("functions over dual: every number of partials gives the same slope") {
   for_each_function([](const std::string& name, auto f, auto, const domain& d, auto) {
     CAPTURE(name);
@@ -54,4 +43,5 @@ TEST_CASE("functions over dual: every number of partials gives the same slope") 
   });
 }
 
+} // namespace
 } // namespace test_dual_function_partials

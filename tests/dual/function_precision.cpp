@@ -2,22 +2,13 @@
 
 #include "dual/function_cases.hpp"
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
 
 namespace test_dual_function_precision {
 
-using duet::dual;
-using duet_test::domain;
-using duet_test::for_each_function;
-using duet_test::scale;
-using duet_test::ulps;
-using duet_test::worst_error;
+using duet::dual, duet_test::domain, duet_test::for_each_function, duet_test::scale,
+    duet_test::ulps, duet_test::worst_error;
 
 // float and long double beside double: the same rules in another precision.
 TEST_CASE_TEMPLATE("functions over dual: first derivatives in every built-in precision", T, float,

@@ -2,22 +2,13 @@
 
 #include "dual/function_cases.hpp"
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
-
-#include <doctest/doctest.h>
-
-#include <string>
 
 namespace test_dual_function_slopes {
 
-using duet::dual;
-using duet_test::central_difference;
-using duet_test::domain;
-using duet_test::for_each_function;
-using duet_test::real_100;
-using duet_test::scale;
-using duet_test::ulps;
-using duet_test::worst_error;
+using duet::dual, duet_test::central_difference, duet_test::domain, duet_test::for_each_function,
+    duet_test::real_100, duet_test::scale, duet_test::ulps, duet_test::worst_error;
 
 TEST_CASE("functions over dual: first derivatives agree with 100 digits") {
   for_each_function([](const std::string& name, auto f, auto df, const domain& d, auto length) {

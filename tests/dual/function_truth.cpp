@@ -2,16 +2,11 @@
 
 #include "dual/function_cases.hpp"
 #include "support/multiprecision.hpp"
-
-#include <doctest/doctest.h>
-
-#include <string>
+#include "support/test.hpp"
 
 namespace test_dual_function_truth {
 
-using duet_test::central_difference;
-using duet_test::domain;
-using duet_test::real_100;
+using duet_test::central_difference, duet_test::domain, duet_test::real_100;
 
 // Checks the references of the other tests: derivatives by hand agree with difference quotients of
 // the functions themselves.

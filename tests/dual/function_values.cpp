@@ -2,29 +2,18 @@
 
 #include "dual/function_cases.hpp"
 #include "support/identical.hpp"
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <string>
+#include "support/test.hpp"
 
 namespace test_dual_function_values {
-
-using duet::dual;
-using duet::taylor;
-using duet_test::domain;
-using duet_test::for_each_function;
-using duet_test::identical;
-
 namespace {
+
+using duet::dual, duet::taylor, duet_test::domain, duet_test::for_each_function,
+    duet_test::identical;
 
 struct outer_tag;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-} // namespace
 
 TEST_CASE("functions over dual: values equal those of <cmath> bit by bit") {
   for_each_function([](const std::string& name, auto f, auto, domain d, auto) {
@@ -69,4 +58,5 @@ TEST_CASE("functions over dual: a constant at any nesting level has no derivativ
   });
 }
 
+} // namespace
 } // namespace test_dual_function_values

@@ -3,29 +3,18 @@
 #include "support/identical.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/dual/math.hpp>
 #include <duet/dual/second_dual.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <string>
-#include <utility>
-#include <vector>
-
 namespace test_dual_functions_of_many {
-
-using duet::dual;
-using duet_test::identical;
-using duet_test::real_100;
-using duet_test::ulps;
-using duet_test::worst_error;
-using std::atan2, std::fma, std::fmod, std::hypot, std::lerp, std::pow, std::remainder;
-
 namespace {
+
+using duet::dual, duet_test::identical, duet_test::real_100, duet_test::ulps,
+    duet_test::worst_error;
+using std::atan2, std::fma, std::fmod, std::hypot, std::lerp, std::pow, std::remainder;
 
 /// f of M arguments: values against <cmath>, partials against `slopes` in 100 digits. One ulp is
 /// that of |f_i| + Σ_j |f_ij x_j|. Every argument is also passed as a constant, one at a time.
@@ -89,8 +78,6 @@ std::vector<std::array<double, M>> random_inputs(Draw draw) {
 using R = real_100;
 template <std::size_t M>
 using wide = std::array<R, M>;
-
-} // namespace
 
 TEST_CASE("pow: values and partials of base and exponent") {
   duet_test::random_source random(11);
@@ -221,8 +208,6 @@ TEST_CASE("fmod, remainder and remquo: values and partials") {
   }
 }
 
-namespace {
-
 /// Checks the derivatives along the first argument at y, `exact[k]` up to order 4.
 template <class F>
 void add_series(worst_error& worst, F f, double x, const std::array<R, 5>& exact) {
@@ -231,8 +216,6 @@ void add_series(worst_error& worst, F f, double x, const std::array<R, 5>& exact
     worst.add(ulps(series.derivative(int(k)), exact[k], exact[k]), k, x);
   }
 }
-
-} // namespace
 
 // By closed forms: differences would need more than 100 digits to resolve x²/r³ beside 1/r.
 TEST_CASE("hypot and atan2: arguments decades apart keep their digits to the fourth derivative") {
@@ -308,4 +291,5 @@ TEST_CASE("pow: constant exponent to the fifth derivative") {
   CHECK_MESSAGE(worst <= 8, worst);
 }
 
+} // namespace
 } // namespace test_dual_functions_of_many

@@ -14,8 +14,7 @@
 #include <cstdlib>
 #include <new>
 
-using duet::dual;
-using duet::taylor;
+using duet::dual, duet::taylor;
 
 namespace {
 

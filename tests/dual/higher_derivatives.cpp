@@ -2,28 +2,15 @@
 
 #include "dual/function_cases.hpp"
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
-#include <string>
-
 namespace test_dual_higher_derivatives {
-
-using duet::dual;
-using duet::taylor;
-using duet_test::central_difference;
-using duet_test::domain;
-using duet_test::for_each_function;
-using duet_test::real_100;
-using duet_test::scale;
-using duet_test::ulps;
-using duet_test::worst_error;
-
 namespace {
+
+using duet::dual, duet::taylor, duet_test::central_difference, duet_test::domain,
+    duet_test::for_each_function, duet_test::real_100, duet_test::scale, duet_test::ulps,
+    duet_test::worst_error;
 
 struct tag_1;
 struct tag_2;
@@ -34,8 +21,6 @@ using thrice = dual<twice, 1, tag_3>;
 
 /// x + ε₁ + ε₂ + ε₃
 thrice variable_of_three(double x) { return {twice(once(x, 1), once(1)), twice(once(1))}; }
-
-} // namespace
 
 TEST_CASE(
     "functions over Taylor and nested duals: derivatives to the fourth agree with 100 digits") {
@@ -107,4 +92,5 @@ TEST_CASE("odd functions: even derivatives near 0 vanish with x") {
   }
 }
 
+} // namespace
 } // namespace test_dual_higher_derivatives

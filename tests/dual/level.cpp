@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/batch/batch.hpp>
 #include <duet/derivative/linear_solve.hpp>
 #include <duet/dual/dynamic_dual.hpp>
@@ -9,13 +11,6 @@
 #include <duet/dual/second_dual.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <sstream>
-#include <type_traits>
 
 // The interface `Level`, implemented by a number defined here. (Its tag is duet's, so that duet's
 // functions are found for it.)
@@ -127,11 +122,7 @@ struct duet::scalar_traits<test_dual_level::sloped<T, Tag>> {
 
 namespace test_dual_level {
 
-using duet::batch;
-using duet::dual;
-using duet::quaternion;
-using duet::second_order_dual;
-using duet::taylor;
+using duet::batch, duet::dual, duet::quaternion, duet::second_order_dual, duet::taylor;
 
 static_assert(duet::Level<sloped<double>> && duet::Level<sloped<batch<double>>>);
 static_assert(duet::Level<dual<double>> && duet::Level<dual<dual<float, 3>, 2, slope_tag>>);
@@ -141,8 +132,7 @@ static_assert(duet::Level<second_order_dual<double, 2>> && !duet::Level<double>)
 /// Uses every function that depends on the interface of levels.
 template <class D>
 D tried(const D& x) {
-  using std::atan2;
-  using std::hypot;
+  using std::atan2, std::hypot;
   const D y = sinh(x) / cosh(x) + pow(x, 2.5) + pow(D(1.5), x) + atan2(x, D(2)) +
               hypot(x, D(3), sin(x)) + cos(x) * tgamma(x) - 2 / x;
   const quaternion<D> q = exp(quaternion<D>(D(0), D(0.3 * x), D(0.2), D(-x)));

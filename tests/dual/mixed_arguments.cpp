@@ -1,26 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/mixed_arguments.hpp"
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
-
-#include <doctest/doctest.h>
-#include <support/mixed_arguments.hpp>
-
-#include <cmath>
 
 namespace test_dual_mixed_arguments {
 
 using namespace test_support::mixed;
 
 TEST_CASE("functions of several arguments: constants mix with derivatives") {
-  using std::atan2;
-  using std::fdim;
-  using std::fma;
-  using std::fmax;
-  using std::fmin;
-  using std::fmod;
-  using std::hypot;
-  using std::pow;
-  using std::remainder;
+  using std::atan2, std::fdim, std::fma, std::fmax, std::fmin, std::fmod, std::hypot, std::pow,
+      std::remainder;
   DUET_CHECK_MIXED(atan2, 0.7, -0.4);
   DUET_CHECK_MIXED(pow, 1.7, -0.4);
   DUET_CHECK_MIXED(hypot, 0.7, -0.4);

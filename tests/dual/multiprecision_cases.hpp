@@ -3,11 +3,8 @@
 
 #include "dual/function_cases.hpp"
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
-
-#include <doctest/doctest.h>
-
-#include <string>
 
 /// \file
 /// Dual numbers over Boost.Multiprecision, one test per kind of number so that each compiles fast.

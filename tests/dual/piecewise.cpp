@@ -1,22 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/identical.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/math.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
 namespace test_dual_piecewise {
-
-using duet::dual;
-using duet::taylor;
-using duet_test::identical;
-
 namespace {
+
+using duet::dual, duet::taylor, duet_test::identical;
 
 struct outer_tag;
 
@@ -59,8 +51,6 @@ void check_values(F f, Slope slope) {
 }
 
 const auto flat = [](double) { return 0.0; };
-
-} // namespace
 
 using std::abs, std::ceil, std::copysign, std::fabs, std::fdim, std::floor, std::fmax, std::fmin,
     std::frexp, std::ldexp, std::logb, std::modf, std::nearbyint, std::nextafter, std::nexttoward,
@@ -157,4 +147,5 @@ TEST_CASE("nextafter: the neighbour keeps the derivatives") {
   CHECK(nexttoward(taylor<double, 2>::variable(1), 2.0L).coefficient(1) == 1);
 }
 
+} // namespace
 } // namespace test_dual_piecewise

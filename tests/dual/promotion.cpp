@@ -1,27 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/multiprecision.hpp"
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
 
-#include "support/multiprecision.hpp"
-
-#include <doctest/doctest.h>
-
 #include <concepts>
-#include <type_traits>
 
 // The common nesting of two scalars, and scalars that must not meet at all.
 
 namespace test_dual_promotion {
-
-using duet::dual;
-using duet::Promotable;
-using duet::promote_t;
-using duet::screw_tag;
-using duet::taylor;
-using duet_test::real_50;
-using duet_test::real_50_et;
-
 namespace {
+
+using duet::dual, duet::Promotable, duet::promote_t, duet::screw_tag, duet::taylor,
+    duet_test::real_50, duet_test::real_50_et;
 
 struct tag_a;
 struct tag_bb;
@@ -150,8 +142,6 @@ static_assert(duet::Infinitesimal<taylor<double, 2>> && !duet::Infinitesimal<dou
 static_assert(duet::Real<real_50> && !duet::Real<d> && !duet::Real<int>);
 static_assert(std::same_as<duet::real_type_t<dual<taylor<float, 2, tag_a>, 3>>, float>);
 
-} // namespace
-
 TEST_CASE("promotion: a derivative dual is a scalar of the screw algebra") {
   const screw s(2, 3);
   const auto x = d::variable(5);
@@ -192,4 +182,5 @@ TEST_CASE("conversion: widening keeps every part, narrowing rounds it") {
   CHECK(static_cast<int>(dual<double>(2.7, 1)) == 2);
 }
 
+} // namespace
 } // namespace test_dual_promotion

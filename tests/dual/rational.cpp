@@ -1,24 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/interop/boost_rational.hpp>
 
-#include <doctest/doctest.h>
-
 #include <concepts>
-#include <sstream>
-#include <type_traits>
 
 // Dual and Taylor numbers over the rational numbers: N10, N11 without any rounding.
 
 namespace test_dual_rational {
-
-using duet::dual;
-using duet::promote_t;
-using duet::taylor;
-
 namespace {
+
+using duet::dual, duet::promote_t, duet::taylor;
 
 using Q = boost::rational<long long>;
 using D = dual<Q>;
@@ -47,8 +42,6 @@ static_assert(!std::constructible_from<double, D>);
 bool same(const D& x, const Q& value, const Q& slope) {
   return x.value() == value && x.epsilon() == slope;
 }
-
-} // namespace
 
 TEST_CASE("dual of rationals: the algebra is exact") {
   const D a(Q(2, 3), Q(5, 7));
@@ -146,4 +139,5 @@ TEST_CASE("dual of rationals: derivatives of rational functions of every order a
   CHECK((u / v).partial(1) == -x / 25);
 }
 
+} // namespace
 } // namespace test_dual_rational

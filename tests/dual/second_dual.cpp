@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual/function_cases.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/gradient.hpp>
@@ -10,24 +11,15 @@
 #include <duet/dual/stumpff.hpp>
 
 #include <Eigen/LU>
-#include <doctest/doctest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <complex>
-#include <limits>
-#include <sstream>
-#include <string>
 
 // Numbers with second derivatives, against duals over duals.
 
 namespace test_dual_second_dual {
-
-using duet::dual;
-using duet::second_order_dual;
-
 namespace {
+
+using duet::dual, duet::second_order_dual;
 
 struct outer_tag;
 
@@ -92,8 +84,6 @@ void check_everything() {
   }
   check_same<N, T>(everything(x), everything(y));
 }
-
-} // namespace
 
 TEST_CASE("second_order_dual: every function of one argument") {
   duet_test::for_each_function(
@@ -194,4 +184,5 @@ TEST_CASE("second_order_dual: works in Eigen, Stumpff functions and streams") {
   CHECK(text.str() == "9[0, 6; 0; 0, 2]");
 }
 
+} // namespace
 } // namespace test_dual_second_dual

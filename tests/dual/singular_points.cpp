@@ -1,37 +1,27 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual/math.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
 #include <initializer_list>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 // The tables of docs/reference/singular_points.md, line by line.
 // Every line is checked in several numbers: values bit by bit against plain numbers, the derivative
 // by each argument where the others are arithmetic constants, constants and variables.
 
 namespace test_dual_singular_points {
+namespace {
 
-using duet::dual;
-using duet::taylor;
+using duet::dual, duet::taylor;
 
 using std::abs, std::acos, std::acosh, std::asin, std::atan, std::atan2, std::atanh, std::cbrt,
     std::erf, std::exp, std::fdim, std::floor, std::fmax, std::fmin, std::fmod, std::hypot,
     std::lgamma, std::log, std::log1p, std::max, std::pow, std::sin, std::sqrt, std::tan, std::tanh,
     std::tgamma;
-
-namespace {
 
 struct outer_tag;
 
@@ -219,8 +209,6 @@ void rows(const std::string& name, F f, std::initializer_list<line<M>> lines) {
   }
 }
 
-} // namespace
-
 #define DUET_ROWS_1(f, ...) rows<1>(#f, [](const auto& x) { return f; }, {__VA_ARGS__})
 #define DUET_ROWS_2(f, ...)                                                                        \
   rows<2>(#f, [](const auto& x, const auto& y) { return f; }, {__VA_ARGS__})
@@ -293,4 +281,5 @@ TEST_CASE("singular points: std::max and std::min take the first of equal number
   CHECK(max(x, x).partial(0) == 1);
 }
 
+} // namespace
 } // namespace test_dual_singular_points

@@ -1,37 +1,21 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <iterator>
-#include <limits>
-#include <map>
-#include <numeric>
-#include <optional>
 #include <ranges>
 #include <set>
-#include <tuple>
-#include <type_traits>
-#include <utility>
 #include <valarray>
-#include <vector>
 
 // Code for double works with dual and Taylor numbers: literals of every arithmetic type,
 // the conditional operator, algorithms and containers. (std::complex: complex_of_dual.cpp.)
 
 namespace test_dual_standard_library {
-
-using duet::dual;
-using duet::taylor;
-
 namespace {
+
+using duet::dual, duet::taylor;
 
 struct outer_tag;
 
@@ -72,8 +56,6 @@ std::vector<D> three_numbers() {
   const D x = variable<D>(2);
   return {x, x * x - 3, 1 / x};
 }
-
-} // namespace
 
 #define DUET_EVERY_NUMBER                                                                          \
   dual<double>, three, series, nested, nested_series, dual<float>, dual<long double>
@@ -361,4 +343,5 @@ TEST_CASE_TEMPLATE("standard library: valarrays", D, DUET_EVERY_NUMBER) {
   CHECK(is(std::valarray<D>(a[std::slice(0, 2, 2)])[1], 0.5, -0.25));
 }
 
+} // namespace
 } // namespace test_dual_standard_library

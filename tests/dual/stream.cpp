@@ -1,22 +1,17 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/dual/math.hpp>
-
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
+#include <duet/dual/math.hpp>
 
 #include <iomanip>
 #include <locale>
-#include <sstream>
-#include <string>
 
 namespace test_dual_stream {
-
-using duet::dual;
-using duet::taylor;
-
 namespace {
+
+using duet::dual, duet::taylor;
 
 struct outer_tag;
 
@@ -30,8 +25,6 @@ std::string printed(const D& x) {
 struct decimal_comma : std::numpunct<char> {
   char do_decimal_point() const override { return ','; }
 };
-
-} // namespace
 
 TEST_CASE("output stream: numbers are printed with their derivatives") {
   CHECK(printed(dual<double>(1.5, -2)) == "1.5[-2]");
@@ -81,4 +74,5 @@ TEST_CASE("input stream: a number that is read is a constant") {
   CHECK(nested == 4);
 }
 
+} // namespace
 } // namespace test_dual_stream

@@ -1,21 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
 
 // Singular points: values are never damaged, constants never poison gradients, and a genuine
 // singularity gives the IEEE answer.
 
 namespace test_dual_structural_zero {
-
-using duet::dual;
-using duet::taylor;
-
 namespace {
+
+using duet::dual, duet::taylor;
 
 struct outer_tag;
 
@@ -42,8 +37,6 @@ void check_pair(const pair& y, double value, double dx, double dp) {
     CHECK(y.partial(1) == dp);
   }
 }
-
-} // namespace
 
 TEST_CASE("structural zero: square root at 0") {
   CHECK(sqrt(variable(0)).value() == 0);
@@ -230,8 +223,6 @@ TEST_CASE("structural zero: arithmetic constants keep infinite values at every n
   CHECK((taylor<D, 2, outer_tag>(infinity) * 2).value().epsilon() == 0);
 }
 
-namespace {
-
 /// x is the last of N variables; the zeros of the others must survive its singularity.
 template <int N>
 void check_last_of() {
@@ -261,8 +252,6 @@ void check_last_of() {
   check(sqrt(last(0) * last(0)), 0, 0);
 }
 
-} // namespace
-
 TEST_CASE("structural zero: rows of any length keep their zeros") {
   check_last_of<2>();
   check_last_of<5>();
@@ -271,4 +260,5 @@ TEST_CASE("structural zero: rows of any length keep their zeros") {
   check_last_of<70>();
 }
 
+} // namespace
 } // namespace test_dual_structural_zero

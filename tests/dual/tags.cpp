@@ -1,20 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
-
-#include <doctest/doctest.h>
-
-#include <type_traits>
 
 // Tags distinguish the infinitesimals of nested differentiations.
 
 namespace test_dual_tags {
-
-using duet::derivative_tag;
-using duet::dual;
-using duet::screw_tag;
-
 namespace {
+
+using duet::derivative_tag, duet::dual, duet::screw_tag;
 
 struct my_tag;
 struct other_tag;
@@ -29,8 +24,6 @@ constexpr auto part_of(const dual<T, 1, DTag>& x) {
     return dual<below, 1, DTag>(part_of<Tag>(x.value()), part_of<Tag>(x.epsilon()));
   }
 }
-
-} // namespace
 
 // d/dx (x · d/dy (x + y)|₁)|₁ = 1. With one ε for both the result is 2, as in other libraries.
 TEST_CASE("tags: nested derivatives do not confuse their perturbations") {
@@ -74,4 +67,5 @@ TEST_CASE("tags: the screw's infinitesimal is outermost") {
   static_assert(is_outside<my_tag, other_tag>() != is_outside<other_tag, my_tag>());
 }
 
+} // namespace
 } // namespace test_dual_tags

@@ -1,29 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual_quaternion/cases.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/errors.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/norm.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-
 // N10–N16: dual numbers, vectors and quaternions.
 
 namespace test_dual_quaternion_algebra {
 
-using duet::conj;
-using duet::dual_conj;
-using duet::dual_part;
-using duet::make_dual_quaternion;
-using duet::make_dual_vector;
-using duet::point_conj;
-using duet::real_part;
-using duet_test::max_abs_difference;
-using duet_test::vector;
+using duet::conj, duet::dual_conj, duet::dual_part, duet::make_dual_quaternion,
+    duet::make_dual_vector, duet::point_conj, duet::real_part, duet_test::max_abs_difference,
+    duet_test::vector;
 
 using number = duet::screw_dual<double>;
 using quaternion = duet::quaternion<double>;

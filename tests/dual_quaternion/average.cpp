@@ -2,6 +2,7 @@
 
 #include "dual_quaternion/cases.hpp"
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/comparison/rotations.hpp>
 #include <duet/derivative/derivative.hpp>
@@ -9,24 +10,14 @@
 #include <duet/quaternion/average.hpp>
 #include <duet/quaternion/exponential.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
-
 // Means of rotations and poses, and their derivatives.
 
 namespace test_dual_quaternion_average {
+namespace {
 
-using duet::average;
-using duet::conj;
-using duet_test::max_abs_difference;
-using duet_test::vector;
+using duet::average, duet::conj, duet_test::max_abs_difference, duet_test::vector;
 using rotation = duet::quaternion<double>;
 using dual_quaternion = duet::dual_quaternion<double>;
-
-namespace {
 
 std::vector<dual_quaternion> some_poses(int count, double largest_angle) {
   duet_test::random_source random(11);
@@ -60,8 +51,6 @@ std::string message(const std::vector<Q>& q, const std::vector<double>& weights)
 double pose_difference(const dual_quaternion& a, const dual_quaternion& b) {
   return std::min(max_abs_difference(a, b), max_abs_difference(a, -b));
 }
-
-} // namespace
 
 TEST_CASE("average: the mean of two poses lies on the screw between them") {
   const auto p = some_poses(2, 1.5);
@@ -201,4 +190,5 @@ TEST_CASE("average: only ratios of weights matter, however large or small they a
   }
 }
 
+} // namespace
 } // namespace test_dual_quaternion_average

@@ -1,5 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/lanes.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
+
 #include <duet/dual_quaternion/distance.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
 #include <duet/dual_quaternion/pose.hpp>
@@ -7,22 +11,11 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 
-#include "support/lanes.hpp"
-#include "support/random.hpp"
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <type_traits>
-#include <vector>
-
 namespace test_dual_quaternion_batch {
+namespace {
 
 using namespace duet;
 using duet_test::check_lanes;
-
-namespace {
 
 constexpr double limit = 8;
 
@@ -45,8 +38,6 @@ std::vector<dual_quaternion<double>> displacements() {
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("batches: rigid motions agree with each lane") {
   const auto a = displacements();
@@ -136,4 +127,5 @@ TEST_CASE("batches: transformed points, lines, twists and Jacobians agree with e
   }
 }
 
+} // namespace
 } // namespace test_dual_quaternion_batch

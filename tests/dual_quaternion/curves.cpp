@@ -2,6 +2,7 @@
 
 #include "dual_quaternion/cases.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/screw.hpp>
@@ -9,24 +10,14 @@
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/exponential.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <vector>
-
 // Squad and Bézier curves, of poses and so of rotations; arcs of ScLERP.
 
 namespace test_dual_quaternion_curves {
-
-using duet::bezier;
-using duet::slerp_arc;
-using duet::squad;
-using duet::squad_control;
-using duet_test::max_abs_difference;
-using duet_test::vector;
-using dual_quaternion = duet::dual_quaternion<double>;
-
 namespace {
+
+using duet::bezier, duet::slerp_arc, duet::squad, duet::squad_control,
+    duet_test::max_abs_difference, duet_test::vector;
+using dual_quaternion = duet::dual_quaternion<double>;
 
 /// Poses along a smooth motion, signs aligned.
 std::vector<dual_quaternion> table() {
@@ -47,8 +38,6 @@ template <class D>
 duet::vector6<double> body_twist(const D& d) {
   return duet::twist(d.value, d.derivative, duet::frame::body);
 }
-
-} // namespace
 
 TEST_CASE("squad: passes through the poses with continuous velocity") {
   const auto p = table();
@@ -132,4 +121,5 @@ TEST_CASE("sclerp: takes the shorter arc, the longer arc or that of the signs") 
       a, duet::pose(duet::from_axis_angle(vector(1, 0, 0), 3.1415926), vector(1, 2, 3))));
 }
 
+} // namespace
 } // namespace test_dual_quaternion_curves

@@ -2,27 +2,18 @@
 
 #include "dual_quaternion/cases.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/distance.hpp>
 #include <duet/dual_quaternion/nearest.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <type_traits>
-
 // Distances of poses and of screw motions; poses as seven coordinates (N20, N21).
 
 namespace test_dual_quaternion_distance {
 
-using duet::screw_parameters;
-using duet_test::max_abs_difference;
-using duet_test::poses;
-using duet_test::vector;
+using duet::screw_parameters, duet_test::max_abs_difference, duet_test::poses, duet_test::vector;
 using dual_quaternion = duet::dual_quaternion<double>;
 
 TEST_CASE("distance: a metric, independent of the fixed frame") {

@@ -3,6 +3,7 @@
 #include "dual_quaternion/cases.hpp"
 #include "support/identical.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
@@ -10,23 +11,16 @@
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/exponential.hpp>
 
-#include <doctest/doctest.h>
 #include <unsupported/Eigen/MatrixFunctions>
-
-#include <cmath>
-#include <vector>
 
 // The Jacobians of the exponential in closed form, against AD, the matrix exponential and 50
 // digits.
 
 namespace test_dual_quaternion_exponential_jacobian {
-
-using duet::vector6;
-using duet_test::max_abs_difference;
-using duet_test::vector;
-using twist = vector6<double>;
-
 namespace {
+
+using duet::vector6, duet_test::max_abs_difference, duet_test::vector;
+using twist = vector6<double>;
 
 twist make_twist(const vector& v, const vector& w) {
   twist x;
@@ -52,8 +46,6 @@ template <class T>
 auto pose_of(const vector6<T>& x) {
   return duet::exp(duet::dual_vector<T>(duet::dual_vector_of(x) * 0.5));
 }
-
-} // namespace
 
 TEST_CASE("left_jacobian and right_jacobian: agree with rates of poses by AD") {
   for (const twist& x : twists()) {
@@ -151,4 +143,5 @@ TEST_CASE("coAd and coad: power is independent of the frame, coad is the rate of
   CHECK(max_abs_difference(rate.derivative, duet::coad(v)) < 1e-15);
 }
 
+} // namespace
 } // namespace test_dual_quaternion_exponential_jacobian

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual_quaternion/exponential_jacobian.hpp>
 #include <duet/dual_quaternion/pose.hpp>
@@ -9,15 +11,12 @@
 #include <duet/quaternion/exponential_jacobian.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
 // Axes, rotation vectors, velocities and matrices given as integers are those of real numbers.
 
 namespace test_dual_quaternion_integers {
+namespace {
 
 using namespace duet;
-
-namespace {
 
 const Eigen::Vector3i z(0, 0, 1), odd(1, -3, 2);
 const Eigen::Vector3d z_real(0, 0, 1), odd_real(1, -3, 2);
@@ -27,8 +26,6 @@ template <class A>
 bool same(const A& a, const A& b) {
   return a == b;
 }
-
-} // namespace
 
 TEST_CASE("integer axes and rotation vectors give the same values as real ones") {
   CHECK(same(from_axis_angle(z, 0.2), from_axis_angle(z_real, 0.2)));
@@ -91,4 +88,5 @@ TEST_CASE("integer screws and lines give the same values as real ones") {
   CHECK(same(pose(from_axis_angle(z, 1), moment), pose(from_axis_angle(z, 1), moment_real)));
 }
 
+} // namespace
 } // namespace test_dual_quaternion_integers

@@ -1,5 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/mixed_arguments.hpp"
+#include "support/test.hpp"
+
 #include <duet/dual_quaternion/distance.hpp>
 #include <duet/dual_quaternion/nearest.hpp>
 #include <duet/dual_quaternion/pose.hpp>
@@ -7,12 +10,6 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/quaternion/curves.hpp>
-
-#include <doctest/doctest.h>
-#include <support/mixed_arguments.hpp>
-
-#include <tuple>
-#include <type_traits>
 
 namespace test_dual_quaternion_mixed_arguments {
 

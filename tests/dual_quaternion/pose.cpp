@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "dual_quaternion/cases.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/errors.hpp>
 #include <duet/dual_quaternion/displacement.hpp>
@@ -9,21 +10,13 @@
 #include <duet/quaternion/three_vector.hpp>
 
 #include <Eigen/Geometry>
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <type_traits>
 
 // N17: rigid displacements of points, directions, lines and planes, against Eigen's isometries.
 
 namespace test_dual_quaternion_pose {
 
-using duet::conj;
-using duet::real_part;
-using duet_test::max_abs_difference;
-using duet_test::poses;
-using duet_test::vector;
+using duet::conj, duet::real_part, duet_test::max_abs_difference, duet_test::poses,
+    duet_test::vector;
 
 using dual_quaternion = duet::dual_quaternion<double>;
 
@@ -45,10 +38,8 @@ const vector direction(0.6, 0, -0.8);
 /// Three-vectors and displacements, used by forward kinematics, are constant expressions.
 namespace compiled {
 
-using duet::detail::displacement;
-using duet::detail::partially_constant_quaternion;
-using duet::detail::static_number;
-using duet::detail::three_vector;
+using duet::detail::displacement, duet::detail::partially_constant_quaternion,
+    duet::detail::static_number, duet::detail::three_vector;
 
 constexpr bool are_equal(const three_vector<double>& a, const three_vector<double>& b) {
   return a.x == b.x && a.y == b.y && a.z == b.z;

@@ -3,6 +3,7 @@
 #include "dual_quaternion/cases.hpp"
 #include "support/identical.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
@@ -11,25 +12,17 @@
 #include <duet/quaternion/rate.hpp>
 
 #include <boost/numeric/odeint.hpp>
-#include <doctest/doctest.h>
 #include <unsupported/Eigen/MatrixFunctions>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
 
 // Rigid motion against independent methods: matrix exponential and logarithm, numerical
 // integration, long products.
 
 namespace test_dual_quaternion_references {
+namespace {
 
-using duet_test::max_abs_difference;
-using duet_test::poses;
-using duet_test::vector;
+using duet_test::max_abs_difference, duet_test::poses, duet_test::vector;
 using dual_quaternion = duet::dual_quaternion<double>;
 using twist = duet::vector6<double>;
-
-namespace {
 
 double size_of(const duet::quaternion<double>& q) { return norm(q); }
 
@@ -48,8 +41,6 @@ Eigen::Matrix4d matrix_of(const twist& x) {
   m.topRightCorner<3, 1>() = x.head<3>();
   return m;
 }
-
-} // namespace
 
 TEST_CASE("exp and log: agree with those of 4×4 matrices") {
   for (const auto& a : poses()) {
@@ -136,4 +127,5 @@ TEST_CASE("products: the norm drifts little over a million, normalized restores 
   CHECK(std::abs(restored.epsilon()) <= 8 * 0x1p-53 * (1 + distance));
 }
 
+} // namespace
 } // namespace test_dual_quaternion_references

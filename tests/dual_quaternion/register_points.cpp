@@ -3,30 +3,20 @@
 #include "support/differences.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/dual_quaternion/register_points.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
 
 // Registration of points: derivatives against differences in 100 digits, poses against those that
 // made the points.
 
 namespace test_dual_quaternion_register_points {
-
-using duet::register_points;
-using duet::register_points_with_scale;
-using duet_test::error_to_third_order;
-using Eigen::Matrix3d;
-using Eigen::MatrixXd;
-using Eigen::Vector3d;
-using points = Eigen::Matrix<double, 3, 4>;
-
 namespace {
+
+using duet::register_points, duet::register_points_with_scale, duet_test::error_to_third_order,
+    Eigen::Matrix3d, Eigen::MatrixXd, Eigen::Vector3d;
+using points = Eigen::Matrix<double, 3, 4>;
 
 const points tetrahedron{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
 const points square{{1, 0, -1, 0}, {0, 1, 0, -1}, {0, 0, 0, 0}};
@@ -46,8 +36,6 @@ Eigen::Matrix<T, 3, 4> target(const points& from, const T& t, double size, bool 
   }
   return to;
 }
-
-} // namespace
 
 TEST_CASE("register_points: derivatives to third order for exact, noisy, planar, mirrored sets") {
   for (const points& from : {tetrahedron, square}) {
@@ -164,4 +152,5 @@ TEST_CASE("register_points: rejects sets that determine no rotation") {
   CHECK(message(square, infinite) == "duet: register_points: entry (1, 2) of A is not finite");
 }
 
+} // namespace
 } // namespace test_dual_quaternion_register_points

@@ -2,6 +2,7 @@
 
 #include "dual_quaternion/cases.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/comparison/compare.hpp>
 #include <duet/comparison/rotations.hpp>
@@ -11,22 +12,12 @@
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/exponential.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
 // Exponential, logarithm, ScLERP (N19) and screw parameters, with no special case for translations.
 
 namespace test_dual_quaternion_screw {
 
-using duet::conj;
-using duet::exp;
-using duet::sclerp;
-using duet::screw_kind;
-using duet::screw_parameters;
-using duet_test::max_abs_difference;
-using duet_test::poses;
-using duet_test::vector;
+using duet::conj, duet::exp, duet::sclerp, duet::screw_kind, duet::screw_parameters,
+    duet_test::max_abs_difference, duet_test::poses, duet_test::vector;
 
 using number = duet::screw_dual<double>;
 using dual_quaternion = duet::dual_quaternion<double>;

@@ -2,31 +2,21 @@
 
 #include "dual_quaternion/cases.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <tuple>
-
 // N18: twists in three frames, Ad and ad, and Jacobians with respect to poses and of poses.
 
 namespace test_dual_quaternion_twist {
-
-using duet::Ad;
-using duet::ad;
-using duet::twist;
-using duet::vector6;
-using duet_test::max_abs_difference;
-using duet_test::poses;
-using duet_test::vector;
-namespace frame = duet::frame;
-
 namespace {
+
+using duet::Ad, duet::ad, duet::twist, duet::vector6, duet_test::max_abs_difference,
+    duet_test::poses, duet_test::vector;
+namespace frame = duet::frame;
 
 const vector6<double> v_body = (vector6<double>() << 0.3, -1, 2, 0.5, 0.7, -0.2).finished();
 const vector point(0.7, -1.9, 0.4);
@@ -34,8 +24,6 @@ const vector point(0.7, -1.9, 0.4);
 duet::matrix3<double> hat(const vector& w) {
   return duet::ad<double>((vector6<double>() << 0, 0, 0, w).finished()).topLeftCorner<3, 3>();
 }
-
-} // namespace
 
 TEST_CASE("N18: twist agrees with the motion of rotation and translation in all frames") {
   // A(t): rotation exp(½ w t) q, translation p + u t + ½ a t².
@@ -258,4 +246,5 @@ TEST_CASE("accelerations: the classical one differs from the derivative of the s
         1e-15);
 }
 
+} // namespace
 } // namespace test_dual_quaternion_twist

@@ -73,8 +73,7 @@ struct arm {
   std::array<six<T>, N> columns, dcolumns; ///< [v; ω], v at the origin
 
   arm(const arm_table<N>& table, const std::array<T, N>& theta, const std::array<T, N>& dtheta) {
-    using std::cos;
-    using std::sin;
+    using std::cos, std::sin;
     t = dt = {T(0), T(0), T(0)};
     alpha = {T(1), T(0), T(0), T(0)};
     v3<T> v = t, w = t; // velocity at the origin and angular velocity of the preceding link

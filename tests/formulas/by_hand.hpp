@@ -88,9 +88,7 @@ template <class T>
 struct arc {
   T c, s, dc, ds;
   explicit arc(const T& square) {
-    using std::cos;
-    using std::sin;
-    using std::sqrt;
+    using std::cos, std::sin, std::sqrt;
     if (square < T(1e-12)) {
       // For smaller s the closed forms cancel; these sums are exact to 60 digits.
       c = s = dc = ds = T(0);
@@ -138,8 +136,7 @@ struct polar {
   v3<T> axis, daxis; ///< zero if there is no axis
   T length;          ///< norm of the vector part
   polar(const q4<T>& q, const q4<T>& dq) {
-    using std::atan2;
-    using std::sqrt;
+    using std::atan2, std::sqrt;
     const v3<T> v = vec(q);
     const v3<T> dv = vec(dq);
     length = sqrt(dot(v, v));
@@ -165,10 +162,7 @@ struct screw_displacement {
   v3<T> position, dposition;
   screw_displacement(const q4<T>& a, const v3<T>& ta, q4<T> b, const v3<T>& tb, const T& tau,
                      const T& dtau) {
-    using std::atan2;
-    using std::cos;
-    using std::sin;
-    using std::sqrt;
+    using std::atan2, std::cos, std::sin, std::sqrt;
     if (dot(a, b) < 0) {
       b = times(T(-1), b);
     }

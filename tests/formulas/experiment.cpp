@@ -36,8 +36,7 @@ struct euler_rates {
 
   euler_rates(const T& psi, const T& theta, const T& p, const T& t, const T& dpsi = T(0),
               const T& dtheta = T(0), const T& dp = T(0), const T& dt = T(0)) {
-    using std::cos;
-    using std::sin;
+    using std::cos, std::sin;
     const T c = cos(psi), s = sin(psi), k = cos(theta), z = sin(theta), none(0), one(1);
     a = {v3<T>{none, T(-s), T(c * k)}, {none, c, T(s * k)}, {one, none, T(-z)}};
     da = {v3<T>{none, T(-c * p), T(-s * k * p - c * z * t)},
@@ -148,8 +147,7 @@ formula angle_between_rows() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        using std::atan2;
-        using std::sqrt;
+        using std::atan2, std::sqrt;
         const unit<T> p(part<3>(x, 0), part<3>(d, 0)), q(part<3>(x, 3), part<3>(d, 3));
         const q4<T> relative = product(conj(p.q), q.q);
         const q4<T> drelative = plus(product(conj(p.dq), q.q), product(conj(p.q), q.dq));

@@ -28,8 +28,7 @@ namespace {
 /// log of a unit quaternion.
 template <class T>
 v3<T> half_rotation_vector(const q4<T>& q) {
-  using std::atan2;
-  using std::sqrt;
+  using std::atan2, std::sqrt;
   const T length = sqrt(dot(vec(q), vec(q)));
   return times(length > 0 ? T(atan2(length, q[0]) / length) : T(1), vec(q));
 }

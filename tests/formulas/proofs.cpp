@@ -7,6 +7,7 @@
 #include "formulas/labels.hpp"
 #include "formulas/parts.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual/taylor.hpp>
@@ -24,23 +25,11 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <map>
-#include <string>
-#include <vector>
-
 namespace duet_formulas {
 namespace {
 
 using namespace duet::expression;
-using duet::recorded;
-using duet::frame::body;
-using duet::frame::spatial;
+using duet::recorded, duet::frame::body, duet::frame::spatial;
 using Q = duet::quaternion<recorded>;
 using V = duet::vector3<recorded>;
 using D = duet::screw_dual<recorded>;

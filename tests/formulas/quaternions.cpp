@@ -101,10 +101,7 @@ formula power() {
       []<class T>(const numbers<T>& x) { return all<T>(pow(q_of(x, 0), x[4])); },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        using std::cos;
-        using std::log;
-        using std::pow;
-        using std::sin;
+        using std::cos, std::log, std::pow, std::sin;
         const polar<T> p(part<4>(x, 0), part<4>(d, 0));
         const T rho = x[4];
         const T size = pow(p.size, rho);
@@ -215,10 +212,7 @@ formula interpolation() {
       },
       []<class T>(const numbers<T>& x, const numbers<T>& d) {
         using namespace by_hand;
-        using std::atan2;
-        using std::cos;
-        using std::sin;
-        using std::sqrt;
+        using std::atan2, std::cos, std::sin, std::sqrt;
         const v3<T> zero{};
         const q4<T> a = unit<T>(part<3>(x, 0), zero).q;
         q4<T> b = unit<T>(part<3>(x, 3), zero).q;

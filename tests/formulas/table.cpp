@@ -6,26 +6,18 @@
 // has another row.
 
 #include "formulas/table.hpp"
-#include "support/identical.hpp"
-
 #include "formulas/labels.hpp"
+#include "support/identical.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/constants.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/expression/graph/is_equal.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <map>
 #include <set>
-#include <sstream>
 
 namespace {
 

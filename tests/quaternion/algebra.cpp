@@ -3,28 +3,20 @@
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
-#include <doctest/doctest.h>
-
-#include <sstream>
-#include <type_traits>
-
 // N1, N2, N3 and N6 over every kind of scalar.
 
 namespace test_quaternion_algebra {
-
-using duet::dual;
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::worst_error;
-namespace reference = duet_test::reference;
-
 namespace {
+
+using duet::dual, duet::quaternion, duet_test::random_source, duet_test::worst_error;
+namespace reference = duet_test::reference;
 
 struct outer;
 using nested = dual<dual<double>, 2, outer>;
@@ -79,8 +71,6 @@ bool same(const quaternion<T>& p, const quaternion<T>& q) {
 }
 
 constexpr quaternion<double> one(1, 0, 0, 0), i(0, 1, 0, 0), j(0, 0, 1, 0), k(0, 0, 0, 1);
-
-} // namespace
 
 // N1 at compile time: Hamilton's product.
 static_assert(i * i == -one && j * j == -one && k * k == -one && i * j * k == -one);
@@ -194,4 +184,5 @@ TEST_CASE("quaternion: components, assignment operators and text output") {
   CHECK(out.str() == "(1, 2, 3, 4)");
 }
 
+} // namespace
 } // namespace test_quaternion_algebra

@@ -1,5 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/lanes.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
+
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/euler.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -8,27 +12,10 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include "support/lanes.hpp"
-#include "support/random.hpp"
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
-
 namespace test_quaternion_batch {
-
-using duet::batch;
-using duet::dual;
-using duet::quaternion;
-using duet::vector3;
-using duet_test::check_lanes;
-
 namespace {
+
+using duet::batch, duet::dual, duet::quaternion, duet::vector3, duet_test::check_lanes;
 
 /// The lanes' sine and cosine may differ from the C library's in the last place each.
 constexpr double limit = 4;
@@ -75,8 +62,6 @@ std::vector<vector3<T>> vectors() {
   result[3] *= 1000;
   return result;
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("batches: exp, log and pow agree with each lane", T, double, dual<double>) {
   const auto q = orientations<T>();
@@ -249,4 +234,5 @@ TEST_CASE("batches: eight and sixteen lanes, in several registers, agree with ea
                   std::vector(single.rbegin(), single.rend()));
 }
 
+} // namespace
 } // namespace test_quaternion_batch

@@ -12,9 +12,7 @@
 
 namespace duet_test::closed_form {
 
-using duet::quaternion;
-using duet::stumpff;
-using duet::vector3;
+using duet::quaternion, duet::stumpff, duet::vector3;
 
 /// vec(e* ė) for e = exp(v): the right Jacobian at the rotation vector 2v, applied to v̇.
 /// J(r) = 1 − (1 − cos r)/r² [r]× + (r − sin r)/r³ [r]×² with r = 2|v|.

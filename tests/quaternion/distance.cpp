@@ -4,33 +4,23 @@
 #include "support/lanes.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/distance.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <tuple>
-#include <vector>
-
 // The angle between two rotations and its square.
 
 namespace test_quaternion_distance {
+namespace {
 
-using duet::distance;
-using duet::squared_distance;
-using duet_test::max_abs_difference;
-using std::numbers::pi;
+using duet::distance, duet::squared_distance, duet_test::max_abs_difference, std::numbers::pi;
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
 using matrix = duet::matrix3<double>;
 namespace frame = duet::frame;
-
-namespace {
 
 const vector axis(2.0 / 7, -3.0 / 7, 6.0 / 7);
 const quaternion start = duet::from_rotation_vector(vector(0.3, -1.2, 0.7));
@@ -43,8 +33,6 @@ double exact_distance(const quaternion& a, const quaternion& b) {
       sqrt(rotation.x() * rotation.x() + rotation.y() * rotation.y() + rotation.z() * rotation.z());
   return double(2 * atan2(sine, abs(rotation.w())));
 }
-
-} // namespace
 
 TEST_CASE("distance: equals the rotation angle for all signs of both quaternions") {
   for (const double angle : {0.0, 1e-200, 1e-12, 1e-4, 0.3, 1.0, 2.5, pi - 1e-9, pi}) {
@@ -155,4 +143,5 @@ TEST_CASE("distance: batches agree with each lane") {
                             a, b);
 }
 
+} // namespace
 } // namespace test_quaternion_distance

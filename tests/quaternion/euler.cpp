@@ -3,6 +3,7 @@
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/core/constants.hpp>
@@ -14,27 +15,14 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/LU>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <vector>
 
 // All twelve sequences of Euler angles.
 
 namespace test_quaternion_euler {
-
-using duet::euler_sequence;
-using duet::quaternion;
-using duet_test::random_source;
-
 namespace {
+
+using duet::euler_sequence, duet::quaternion, duet_test::random_source;
 
 using std::numbers::pi;
 
@@ -90,8 +78,6 @@ double defect(const quaternion<double>& q) {
   CHECK(in_range);
   return (product_of_elementary<S>(a, b, c) - rotation_matrix(normalized(q))).norm();
 }
-
-} // namespace
 
 TEST_CASE("from_euler: equals the product of elementary rotations in the order of the letters") {
   for_each_sequence([]<euler_sequence S>() {
@@ -151,15 +137,11 @@ TEST_CASE("euler: angles of any rotation lie in their ranges, also in and near g
   });
 }
 
-namespace {
-
 template <class T, euler_sequence S>
 std::array<T, 3> angles_along(const T& t, double b) {
   using std::sin;
   return {T(0.4 + 0.9 * t), T(b + 0.3 * sin(t)), T(-1.1 + t * t - 0.5 * t)};
 }
-
-} // namespace
 
 TEST_CASE("euler: derivatives agree with the inverse of euler_rate_matrix") {
   for_each_sequence([]<euler_sequence S>() {
@@ -186,8 +168,6 @@ TEST_CASE("euler: derivatives agree with the inverse of euler_rate_matrix") {
     }
   });
 }
-
-namespace {
 
 /// The angles by the entries of the rotation matrix, in 100 digits; NaN if
 /// undetermined.
@@ -269,8 +249,6 @@ void add_errors(duet_test::worst_error& worst, const quaternion<double>& input) 
   }
 }
 
-} // namespace
-
 TEST_CASE("euler: each angle is accurate to 8 ulp of itself in every sequence") {
   duet_test::worst_error in_double("euler"), in_float("float"), in_long_double("long double"),
       in_50_digits("50 digits");
@@ -350,4 +328,5 @@ TEST_CASE("euler: in gimbal lock values give the rotation and derivatives are Na
   CHECK(std::isnan(slope[0]));
 }
 
+} // namespace
 } // namespace test_quaternion_euler

@@ -3,6 +3,7 @@
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/derivative/derivative.hpp>
@@ -11,25 +12,17 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
 // P5: angular velocity from the rates of yaw ψ, pitch θ and roll φ, R = Rz(ψ) Ry(θ) Rx(φ).
 
 namespace test_quaternion_euler_rate {
-
-using duet_test::random_source;
-using duet_test::real_50;
-using duet_test::worst_error;
-
 namespace {
+
+using duet_test::random_source, duet_test::real_50, duet_test::worst_error;
 
 /// The matrix by hand, columns φ′, θ′, ψ′ as in the paper.
 template <class T>
 duet::matrix3<T> by_hand(const T& psi, const T& theta) {
-  using std::cos;
-  using std::sin;
+  using std::cos, std::sin;
   duet::matrix3<T> a;
   a << cos(psi) * cos(theta), -sin(psi), T(0), //
       sin(psi) * cos(theta), cos(psi), T(0),   //
@@ -56,8 +49,6 @@ duet::vector3<double> automatic(double psi, double theta, double phi, double psi
       0.0);
   return angular_velocity(q, q_dot, duet::frame::spatial);
 }
-
-} // namespace
 
 TEST_CASE("P5: euler_rate_matrix agrees with the hand-written matrix, AD and 50 digits") {
   random_source random(91);
@@ -102,8 +93,7 @@ TEST_CASE("P5: the printed matrix has -sin psi at (3, 1) and a wrong angular vel
 
 TEST_CASE("P5: the derivative of delta, A'{...} + A{...}'', agrees with AD") {
   const auto angles = [](const auto& u) {
-    using std::cos;
-    using std::sin;
+    using std::cos, std::sin;
     using T = std::decay_t<decltype(u)>;
     return duet::vector3<T>(T(0.3 + sin(u)), T(0.2 * u * u), T(cos(2 * u))); // φ, θ, ψ
   };
@@ -127,4 +117,5 @@ TEST_CASE("P5: the derivative of delta, A'{...} + A{...}'', agrees with AD") {
   CHECK((by_formula - by_quaternion).norm() <= 1e-14);
 }
 
+} // namespace
 } // namespace test_quaternion_euler_rate

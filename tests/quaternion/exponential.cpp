@@ -4,26 +4,18 @@
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 // N4: exp(w + v) = e^w (cos |v| + v sin |v|/|v|), against 100 digits.
 
 namespace test_quaternion_exponential {
-
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::worst_error;
-namespace reference = duet_test::reference;
-
 namespace {
+
+using duet::quaternion, duet_test::random_source, duet_test::worst_error;
+namespace reference = duet_test::reference;
 
 /// Vector parts of every size, and on both sides of the switches of the algorithm: s = |v|² = 1 and
 /// 9.8696, for s and, in derivatives, for 4s.
@@ -56,8 +48,6 @@ std::vector<quaternion<double>> inputs() {
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("N4: exp and its first derivative agree with 100 digits") {
   random_source random(2);
@@ -97,4 +87,5 @@ TEST_CASE("N4: exp of a vector equals exp of the pure quaternion") {
   CHECK(norm(duet::exp(v)) == doctest::Approx(1).epsilon(1e-15));
 }
 
+} // namespace
 } // namespace test_quaternion_exponential

@@ -1,5 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/lanes.hpp"
+#include "support/test.hpp"
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual/level.hpp>
 #include <duet/dual/second_dual.hpp>
@@ -7,23 +10,14 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/exponential.hpp>
 
-#include "support/lanes.hpp"
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 // exp(b v) by the universal functions of b and |v|² against the exponential of the product, whose
 // own tests are against many digits. The two share no formula for derivatives with respect to b.
 
 namespace test_quaternion_exponential_of_multiple {
+namespace {
 
 using namespace duet;
 using duet::detail::exp_of_multiple;
-
-namespace {
 
 /// Largest absolute value of all real numbers in x − y.
 template <class T>
@@ -62,8 +56,6 @@ void for_all(const F& f) {
     }
   }
 }
-
-} // namespace
 
 TEST_CASE("exp_of_multiple: derivatives with respect to the factor agree with exp of the product") {
   for_all([](double b, const vector3<double>& v, double scale) {
@@ -119,4 +111,5 @@ TEST_CASE("exp_of_multiple: batches with lanes on both sides of a switch agree")
   duet_test::check_lanes<4>(pose, 4, at);
 }
 
+} // namespace
 } // namespace test_quaternion_exponential_of_multiple

@@ -1,29 +1,19 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/stumpff.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/exponential_jacobian.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-
 // Rates of exp(x(t)) by the exponential's Jacobian, against Taylor numbers of 50 digits through exp
 // itself.
 
 namespace test_quaternion_exponential_rates {
-
-using duet::quaternion;
-using duet::taylor;
-using duet::vector3;
-using duet_test::real_50;
-
 namespace {
+
+using duet::quaternion, duet::taylor, duet::vector3, duet_test::real_50;
 
 constexpr int order = 5;
 
@@ -77,8 +67,6 @@ std::array<vector3<real_50>, order> reference(double size) {
   return result;
 }
 
-} // namespace
-
 TEST_CASE("half_body_rates: rates of exp(x(t)) agree with 50 digits up to beyond a full turn") {
   for (const double size :
        {0.0, 1e-300, 1e-9, 1e-3, 0.5, 0.9999, 1.0001, 1.5, 2.0, 3.0, 3.141592653589793, 3.2, 6.0}) {
@@ -117,4 +105,5 @@ TEST_CASE("stumpff_sequence: agrees with single Stumpff functions") {
   }
 }
 
+} // namespace
 } // namespace test_quaternion_exponential_rates

@@ -2,32 +2,19 @@
 
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <functional>
-#include <numbers>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 // Derivatives of exp, log and pow along a line, first to fourth, at and near the identity, half and
 // full turns: Taylor numbers and nested duals against 100 digits.
 
 namespace test_quaternion_higher_derivatives {
-
-using duet::dual;
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::worst_error;
-namespace reference = duet_test::reference;
-
 namespace {
+
+using duet::dual, duet::quaternion, duet_test::random_source, duet_test::worst_error;
+namespace reference = duet_test::reference;
 
 struct first;
 struct second;
@@ -124,8 +111,6 @@ std::vector<double> half_angles() {
   return result;
 }
 
-} // namespace
-
 TEST_CASE("exp: derivatives to fourth order agree with 100 digits") {
   random_source random(31);
   errors e("exp");
@@ -183,4 +168,5 @@ TEST_CASE("pow: derivatives to fourth order agree with 100 digits") {
   e.check({16, 16, 16, 16, 16});
 }
 
+} // namespace
 } // namespace test_quaternion_higher_derivatives

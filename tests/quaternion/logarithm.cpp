@@ -5,21 +5,16 @@
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/jacobian.hpp>
 #include <duet/quaternion/exponential.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
 
 // N4: log q = log |q| + û atan2(|q⃗|, q₀), against 100 digits.
 
 namespace test_quaternion_logarithm {
 
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::worst_error;
+using duet::quaternion, duet_test::random_source, duet_test::worst_error;
 namespace reference = duet_test::reference;
 
 TEST_CASE("N4: log and its first derivative agree with 100 digits") {

@@ -1,5 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/mixed_arguments.hpp"
+#include "support/test.hpp"
+
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/distance.hpp>
 #include <duet/quaternion/euler.hpp>
@@ -7,12 +10,6 @@
 #include <duet/quaternion/quaternion.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
-
-#include <doctest/doctest.h>
-#include <support/mixed_arguments.hpp>
-
-#include <array>
-#include <vector>
 
 namespace test_quaternion_mixed_arguments {
 

@@ -3,29 +3,20 @@
 #include "quaternion/hard_inputs.hpp"
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <string>
-#include <vector>
-
 // N3: |q|, q/|q| and q⁻¹, for |q| from 1e-140 to 1e140, with first and second derivatives, against
 // 100 digits.
 
 namespace test_quaternion_norm {
-
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::worst_error;
-namespace reference = duet_test::reference;
-
 namespace {
+
+using duet::quaternion, duet_test::random_source, duet_test::worst_error;
+namespace reference = duet_test::reference;
 
 reference::four exact_norm(const reference::four& q) { return {reference::length(q), 0, 0, 0}; }
 reference::four exact_direction(const reference::four& q) {
@@ -69,8 +60,6 @@ void check(const char* name, int degree, const F& f, const G& exact_f) {
     CHECK_MESSAGE(w <= 4, w);
   }
 }
-
-} // namespace
 
 TEST_CASE("N3: norm and its derivatives agree with 100 digits from 1e-140 to 1e140") {
   check(
@@ -120,4 +109,5 @@ TEST_CASE("N3: q times its inverse is 1, and the inverse of a unit quaternion is
   }
 }
 
+} // namespace
 } // namespace test_quaternion_norm

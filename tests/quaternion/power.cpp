@@ -5,21 +5,16 @@
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
 
 // N5: q^ρ = |q|^ρ (cos ρφ + û sin ρφ), against 100 digits.
 
 namespace test_quaternion_power {
 
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::worst_error;
+using duet::quaternion, duet_test::random_source, duet_test::worst_error;
 namespace reference = duet_test::reference;
 
 TEST_CASE("N5: pow and its derivatives by base and exponent agree with 100 digits") {

@@ -3,6 +3,7 @@
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
@@ -10,22 +11,14 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-
 // N7 and N8: rates of unit quaternions and angular velocities, in both frames.
 
 namespace test_quaternion_rate {
+namespace {
 
-using duet::quaternion;
-using duet::vector3;
-using duet_test::random_source;
-using duet_test::worst_error;
+using duet::quaternion, duet::vector3, duet_test::random_source, duet_test::worst_error;
 namespace frame = duet::frame;
 namespace reference = duet_test::reference;
-
-namespace {
 
 quaternion<double> random_rotation(random_source& random) {
   const auto d = random.direction<4>();
@@ -51,8 +44,6 @@ template <class M>
 Eigen::Matrix3d slope(const M& m) {
   return m.unaryExpr([](const auto& x) { return x.epsilon(); }).template cast<double>();
 }
-
-} // namespace
 
 TEST_CASE("N7: angular_velocity agrees with AD of the rotation matrix") {
   // ω̂^s = Ṙ Rᵀ and ω̂^b = Rᵀ Ṙ, by AD of the matrix alone.
@@ -191,4 +182,5 @@ TEST_CASE("N7: angular_velocity over Taylor numbers contains the angular acceler
   CHECK((by_ad.derivative - alpha).norm() <= 5e-14);
 }
 
+} // namespace
 } // namespace test_quaternion_rate

@@ -4,27 +4,19 @@
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-
 // Unit quaternions as rotations of vectors; axis and angle, rotation vectors, pairs of vectors.
 
 namespace test_quaternion_rotation {
-
-using duet::quaternion;
-using duet::vector3;
-using duet_test::random_source;
-using duet_test::worst_error;
-namespace reference = duet_test::reference;
-
 namespace {
+
+using duet::quaternion, duet::vector3, duet_test::random_source, duet_test::worst_error;
+namespace reference = duet_test::reference;
 
 using std::numbers::pi;
 
@@ -37,8 +29,6 @@ quaternion<double> random_rotation(random_source& random) {
   return normalized(quaternion<double>(d[0], d[1], d[2], d[3]));
 }
 quaternion<double> pure(const vector3<double>& v) { return {0, v}; }
-
-} // namespace
 
 TEST_CASE("rotate: the active rotation v -> q v q*") {
   const double root = std::sqrt(0.5);
@@ -200,4 +190,5 @@ TEST_CASE("from_two_vectors: first and second derivatives agree with the moving 
   }
 }
 
+} // namespace
 } // namespace test_quaternion_rotation

@@ -2,26 +2,18 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <string>
-
 // Rotation matrices and quaternions by every branch of Shepperd's method.
 
 namespace test_quaternion_rotation_matrix {
-
-using duet::from_rotation_matrix;
-using duet::matrix3;
-using duet::quaternion;
-using duet_test::random_source;
-
 namespace {
+
+using duet::from_rotation_matrix, duet::matrix3, duet::quaternion, duet_test::random_source;
 
 /// q or −q, whichever has a positive component `largest`.
 quaternion<double> with_positive(const quaternion<double>& q, int largest) {
@@ -47,8 +39,6 @@ void for_each_branch(const Visit& visit) {
     }
   }
 }
-
-} // namespace
 
 TEST_CASE("from_rotation_matrix: recovers the rotation in every branch") {
   for_each_branch([](const quaternion<double>& q, int largest) {
@@ -112,4 +102,5 @@ TEST_CASE("from_rotation_matrix: rejects other matrices with their defect and de
   CHECK(message(m) == "");
 }
 
+} // namespace
 } // namespace test_quaternion_rotation_matrix

@@ -3,26 +3,19 @@
 #include "quaternion/truth.hpp"
 #include "support/identical.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
-#include <limits>
-
 // N3, N4, N5, N9 over every kind of scalar, each at its own precision.
 
 namespace test_quaternion_scalars {
-
-using duet::dual;
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::real_50;
-namespace reference = duet_test::reference;
-
 namespace {
+
+using duet::dual, duet::quaternion, duet_test::random_source, duet_test::real_50;
+namespace reference = duet_test::reference;
 
 struct outer;
 using nested = dual<dual<double>, 2, outer>;
@@ -41,8 +34,6 @@ double distance(const quaternion<T>& q, const reference::four& exact) {
   return double(real_100(reference::length(reference::sum(reference::wide(widened(q)), exact, -1)) /
                          epsilon));
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("N3, N4, N5, N9: values agree over every scalar to its precision", T, float,
                    double, long double, dual<double>, dual<float, 3>, nested,
@@ -109,4 +100,5 @@ TEST_CASE("quaternions over different scalars have a common result type") {
   CHECK(pow(quaternion<float>(0.6F, 0.8F, 0, 0), 2).w() == doctest::Approx(-0.28).epsilon(1e-6));
 }
 
+} // namespace
 } // namespace test_quaternion_scalars

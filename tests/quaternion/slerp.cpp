@@ -4,29 +4,20 @@
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rate.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <numbers>
-#include <utility>
-#include <vector>
-
 // N9: A(τ) = A₁ (A₁* A₂)^τ, against 100 digits.
 
 namespace test_quaternion_slerp {
-
-using duet::quaternion;
-using duet_test::random_source;
-using duet_test::worst_error;
-namespace reference = duet_test::reference;
-
 namespace {
+
+using duet::quaternion, duet_test::random_source, duet_test::worst_error;
+namespace reference = duet_test::reference;
 
 quaternion<double> random_rotation(random_source& random) {
   const auto d = random.direction<4>();
@@ -50,8 +41,6 @@ std::vector<std::pair<quaternion<double>, quaternion<double>>> pairs() {
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("N9: slerp and its derivative with respect to the parameter agree with 100 digits") {
   random_source random(22);
@@ -160,4 +149,5 @@ TEST_CASE("slerp: the angular velocity is constant") {
   }
 }
 
+} // namespace
 } // namespace test_quaternion_slerp

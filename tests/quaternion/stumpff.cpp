@@ -2,27 +2,20 @@
 
 #include "support/identical.hpp"
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/dual/stumpff.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
 
 // Stumpff functions and their derivatives against 100 digits: errors at most 6e-16 on the scale
 // 1/(m+1), the bound of the m-th derivative of sin(x)/x; absolute for derivatives with respect to
 // √s.
 
 namespace test_quaternion_stumpff {
-
-using duet::stumpff;
-using duet_test::real_100;
-using duet_test::worst_error;
-
 namespace {
+
+using duet::stumpff, duet_test::real_100, duet_test::worst_error;
 
 /// 0 to 40, and both sides of the switches of the algorithm.
 std::vector<double> inputs() {
@@ -105,8 +98,6 @@ void check_derivatives() {
   }
 }
 
-} // namespace
-
 TEST_CASE("stumpff<0>: derivatives to fourth order agree with 100 digits") {
   check_derivatives<0>();
 }
@@ -120,4 +111,5 @@ TEST_CASE("stumpff<3>: derivatives to fourth order agree with 100 digits") {
   check_derivatives<3>();
 }
 
+} // namespace
 } // namespace test_quaternion_stumpff

@@ -38,8 +38,7 @@ template <class Wide>
 /// One unit is never smaller than the least denormal: below it nothing can be represented.
 template <class Real = double, class Wide>
 [[nodiscard]] double ulps_of_error(const Wide& error, const Wide& scale) {
-  using std::abs;
-  using std::max;
+  using std::abs, std::max;
   const Wide roundoff = Wide(std::numeric_limits<Real>::epsilon()) / 2;
   const Wide least = Wide(std::numeric_limits<Real>::denorm_min());
   const Wide unit = max(Wide(roundoff * abs(scale)), least);
