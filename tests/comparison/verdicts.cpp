@@ -10,7 +10,6 @@
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/interop/multiprecision.hpp>
 #include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 // Verdicts on formulas that are right, wrong, wrong at one point only, or badly rounded.
@@ -391,14 +390,6 @@ TEST_CASE("compare: the simplest input is chosen in the order 0, 1, 2, 3, … 9,
             .input == "x1 = 0, x2 = 1e-12");
 }
 
-TEST_CASE("compare: the same seed gives the same result") {
-  const auto slip = [](auto x) { return x; };
-  const auto run = [&] {
-    return compare("slip", slope_of_wave, slip, sampler(real_numbers{-3, 3}));
-  };
-  CHECK(to_text(run()) == to_text(run()));
-}
-
 TEST_CASE("compare: several arguments and results of any shape are supported") {
   const auto automatic = [](const auto& x, auto k) {
     return duet::gradient([k](const auto& v) { return k * v.dot(v); }, x).gradient;
@@ -412,27 +403,10 @@ TEST_CASE("compare: several arguments and results of any shape are supported") {
   CHECK(c.simplest->input == "v = (1, 0, 0), k = 2");
 }
 
-TEST_CASE("compare: mixed-up body and spatial angular velocity is detected") {
-  const auto automatic = [](const auto& phi, const auto& rate) {
-    const auto moving = [&](auto t) { return duet::from_rotation_vector((phi + t * rate).eval()); };
-    const auto [q, q_dot] = derivative(moving, 0);
-    return duet::angular_velocity(q, q_dot, duet::frame::spatial);
-  };
-  const auto body = [](const auto& phi, const auto& rate) {
-    const auto moving = [&](auto t) { return duet::from_rotation_vector((phi + t * rate).eval()); };
-    const auto [q, q_dot] = derivative(moving, 0);
-    return duet::angular_velocity(q, q_dot, duet::frame::body);
-  };
-  const comparison c = compare("frames", automatic, body,
-                               sampler(vectors<3>{2}, vectors<3>{1}).named("phi", "rate"));
-  CHECK(c.outcome == verdict::disagrees);
-  REQUIRE(c.simplest);
-  CHECK(c.simplest->input == "phi = (0, 0, 1), rate = (0, 1, 0)");
-}
-
 TEST_CASE("compare: results of different sizes throw invalid_input") {
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(compare(
+  DUET_CHECK_REFUSED(
+      "duet: compare \"sizes\": the automatic result has 2 components, the closed form 3",
+      compare(
           "sizes",
           [](auto x) {
             return std::array{x, x};
@@ -440,9 +414,7 @@ TEST_CASE("compare: results of different sizes throw invalid_input") {
           [](auto x) {
             return std::array{x, x, x};
           },
-          sampler(real_numbers{}))),
-      "duet: compare \"sizes\": the automatic result has 2 components, the closed form 3",
-      duet::invalid_input);
+          sampler(real_numbers{})));
 }
 
 TEST_CASE("compare: results of different shapes throw invalid_input") {
@@ -460,22 +432,19 @@ TEST_CASE("compare: results of different shapes throw invalid_input") {
   const auto judge = [](const auto& f, const auto& g) {
     return compare<double>("shapes", f, g, sampler(real_numbers{}), {.samples = 1});
   };
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(judge(as(three, four), as(four, three))),
+  DUET_CHECK_REFUSED(
       "duet: compare \"shapes\": the automatic result is 3 x 4, the closed form 4 x 3",
-      duet::invalid_input);
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(judge(as(three, four), as(twelve, one))),
+      judge(as(three, four), as(four, three)));
+  DUET_CHECK_REFUSED(
       "duet: compare \"shapes\": the automatic result is 3 x 4, the closed form 12 numbers",
-      duet::invalid_input);
+      judge(as(three, four), as(twelve, one)));
   const auto pair_with = [](const auto& f) {
     return [&f](auto x) { return std::pair{std::array{x, x}, f(x)}; };
   };
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(judge(pair_with(as(three, four)), pair_with(as(four, three)))),
+  DUET_CHECK_REFUSED(
       "duet: compare \"shapes\": the automatic result is 2 numbers and 3 x 4, the closed form 2 "
       "numbers and 4 x 3",
-      duet::invalid_input);
+      judge(pair_with(as(three, four)), pair_with(as(four, three))));
   const auto dynamic = [](auto x) { return Eigen::MatrixX<decltype(x)>::Constant(3, 4, x).eval(); };
   CHECK(judge(as(three, four), dynamic));
   CHECK(judge(as(one, four), as(four, one))); // a row is as good as a column

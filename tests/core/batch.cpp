@@ -84,8 +84,8 @@ TEST_CASE_TEMPLATE("batch: select takes each lane from its side", B, batch<doubl
   CHECK(all(select(x != x, never, count) == 2));
 }
 
-TEST_CASE_TEMPLATE("batch: functions equal those of the lanes", B, batch<double>, batch<double, 8>,
-                   batch<float, 16>, batch<long double, 2>) {
+TEST_CASE_TEMPLATE("batch: functions equal those of the lanes", B, batch<double>, batch<float, 16>,
+                   batch<long double, 2>) {
   const B x = counted<B>(0.2, 0.7 / B::lanes), y = counted<B>(-0.7, 0.3);
 #define DUET_CHECK_FUNCTION(f)                                                                     \
   check_lanes(                                                                                     \

@@ -7,14 +7,8 @@
 #include "../../examples/wheel_carrier/options.hpp"
 #include "fuzz/seeded_loop.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
 #include <exception>
 #include <iostream>
-#include <string>
-#include <vector>
 
 // Command lines of the examples: accepted options are within the ranges that --help states.
 

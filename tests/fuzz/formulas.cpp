@@ -7,13 +7,6 @@
 #include <duet/expression/graph/formula_text.hpp>
 #include <duet/expression/graph/read_formula.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 // Formulas: what is read can be evaluated, and its text is the same formula; errors are messages of
 // one line with a column.
 

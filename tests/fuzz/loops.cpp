@@ -4,15 +4,6 @@
 
 #include <duet/io/loop_file.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <fstream>
-#include <string>
-#include <vector>
-
 // Files of loops: numbers that are read are finite, errors are messages of one line.
 
 namespace test_fuzz_loops {

@@ -4,15 +4,6 @@
 
 #include <duet/io/mesh_file.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdio>
-#include <fstream>
-#include <string>
-#include <vector>
-
 // Surfaces: the result consists of triangles with finite vertices, no more than the file can
 // contain; errors are messages of one line. Files of other formats than STL and OBJ, which Assimp
 // reads, are trusted.

@@ -2,14 +2,13 @@
 #pragma once
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/text/csv.hpp>
 
-#include <cstddef>
-#include <stdexcept>
-#include <string>
+#include <cstdio>
+#include <fstream>
 #include <string_view>
-#include <vector>
 
 /// \file
 /// Tests of parsers with mutated inputs. Each file of this folder has `seeds()`, inputs that are

@@ -4,13 +4,6 @@
 
 #include <duet/io/srdf.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cstdio>
-#include <fstream>
-#include <string>
-#include <vector>
-
 // Pairs of links: the names that are read occur in the file, errors are messages of one line.
 
 namespace test_fuzz_srdf {

@@ -7,16 +7,6 @@
 #include <duet/io/table_file.hpp>
 #include <duet/spline/orientations.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdio>
-#include <fstream>
-#include <string>
-#include <vector>
-
 // Tables: loaded samples can be interpolated and are read back as written, in every format.
 
 namespace test_fuzz_tables {

@@ -6,15 +6,6 @@
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/io/recording.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdio>
-#include <fstream>
-#include <string>
-#include <vector>
-
 // Recorded motion: rows are in order, omitted rows are listed, and rows are read back as written.
 
 namespace test_fuzz_trajectories {

@@ -4,16 +4,7 @@
 
 #include <duet/io/urdf.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdio>
-#include <fstream>
-#include <string>
-#include <vector>
 
 // Robot descriptions: the result is a valid chain and tree, errors are messages of one line.
 

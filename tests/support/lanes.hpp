@@ -145,3 +145,7 @@ void check_lanes(const F& f, double limit, const std::vector<X>& x,
 }
 
 } // namespace duet_test
+
+/// The function of that name over four lanes, see `check_lanes`.
+#define DUET_CHECK_LANES(function, limit, ...)                                                     \
+  duet_test::check_lanes<4>([](const auto&... x) { return function(x...); }, limit, __VA_ARGS__)

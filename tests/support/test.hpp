@@ -25,3 +25,7 @@
 
 /// \file
 /// doctest and the headers of the standard library that most tests use.
+
+/// An expression throws invalid_input with this message.
+#define DUET_CHECK_REFUSED(message, ...)                                                           \
+  CHECK_THROWS_WITH_AS(static_cast<void>(__VA_ARGS__), message, duet::invalid_input)
