@@ -106,8 +106,7 @@ TEST_CASE("N16: is_unit checks both conditions, normalized restores them") {
 TEST_CASE("zero divisors: inverse and normalized reject them") {
   const dual_quaternion divisor =
       make_dual_quaternion(quaternion(0, 0, 0, 0), quaternion(1, 2, 3, 4));
-  CHECK_THROWS_WITH_AS(static_cast<void>(duet::inverse(divisor)),
-                       "duet: inverse: the quaternion is zero", duet::invalid_input);
+  DUET_CHECK_REFUSED("duet: inverse: the quaternion is zero", duet::inverse(divisor));
   CHECK_THROWS_AS(static_cast<void>(duet::normalized(divisor)), duet::invalid_input);
 }
 

@@ -118,27 +118,6 @@ TEST_CASE("average: minimises the sum of squares within a quarter turn of one ro
   }
 }
 
-TEST_CASE("average: pure translations have the mean of the translations") {
-  std::vector<dual_quaternion> p;
-  for (const vector& t : {vector(1, 2, 3), vector(-2, 0, 1), vector(4, 4, 2)}) {
-    p.push_back(duet::pose(rotation(1.0), t));
-  }
-  CHECK(max_abs_difference(duet::translation(average(p)), vector(1, 2, 2)) < 1e-15);
-}
-
-TEST_CASE("average: bi-invariant under rigid motions from the left and the right") {
-  const auto p = some_poses(7, 1.4);
-  const auto c = duet::pose(duet::from_rotation_vector(vector(2, -1, 0.4)), vector(3, 1, -2));
-  std::vector<dual_quaternion> left;
-  std::vector<dual_quaternion> right;
-  for (const auto& a : p) {
-    left.push_back(c * a);
-    right.push_back(a * c);
-  }
-  CHECK(pose_difference(average(left), c * average(p)) < 2e-14);
-  CHECK(pose_difference(average(right), average(p) * c) < 2e-14);
-}
-
 TEST_CASE("average: derivatives to third order agree with differences in 50 digits") {
   const auto p = some_poses(5, 1.2);
   const auto moving = [&]<class T>(const T& t) {

@@ -45,11 +45,11 @@ TEST_CASE("batches: rigid motions agree with each lane") {
   std::swap(b[0], b[3]);
   std::swap(b[1], b[7]);
   check_lanes<4>([](const auto& p, const auto& q) { return p * conj(q); }, limit, a, b);
-  check_lanes<4>([](const auto& p) { return log(p); }, limit, a);
+  DUET_CHECK_LANES(log, limit, a);
   check_lanes<4>([](const auto& p) { return pow(p, 0.4); }, limit, a);
   check_lanes<4>([](const auto& p, const auto& q) { return sclerp(p, q, 0.3); }, 2 * limit, a, b);
   check_lanes<4>([](const auto& p) { return normalized(3 * p); }, limit, a);
-  check_lanes<4>([](const auto& p) { return transform_matrix(p); }, limit, a);
+  DUET_CHECK_LANES(transform_matrix, limit, a);
   check_lanes<4>([](const auto& p) { return from_transform_matrix(transform_matrix(p)); }, limit,
                  a);
   check_lanes<4>([](const auto& p, const auto& q) { return twist(p, q, frame::hybrid); }, limit, a,
@@ -84,30 +84,26 @@ TEST_CASE("batches: transformed points, lines, twists and Jacobians agree with e
     lines.push_back(dual_vector_of(twists.back()));
     coordinates.push_back(pose_coordinates(p));
   }
-  check_lanes<4>([](const auto& p, const auto& x) { return transform_point(p, x); }, limit, a,
-                 points);
-  check_lanes<4>([](const auto& p, const auto& x) { return transform_direction(p, x); }, limit, a,
-                 points);
-  check_lanes<4>([](const auto& p, const auto& x) { return transform_line(p, x); }, limit, a,
-                 lines);
+  DUET_CHECK_LANES(transform_point, limit, a, points);
+  DUET_CHECK_LANES(transform_direction, limit, a, points);
+  DUET_CHECK_LANES(transform_line, limit, a, lines);
   check_lanes<4>([](const auto& p) { return dual_conj(p) * point_conj(p); }, limit, a);
-  check_lanes<4>([](const auto& p) { return translation(p); }, limit, a);
-  check_lanes<4>([](const auto& p) { return Ad(p); }, limit, a);
-  check_lanes<4>([](const auto& p) { return coAd(p); }, limit, a);
-  check_lanes<4>([](const auto& x) { return ad(x); }, limit, twists);
-  check_lanes<4>([](const auto& x) { return coad(x); }, limit, twists);
+  DUET_CHECK_LANES(translation, limit, a);
+  DUET_CHECK_LANES(Ad, limit, a);
+  DUET_CHECK_LANES(coAd, limit, a);
+  DUET_CHECK_LANES(ad, limit, twists);
+  DUET_CHECK_LANES(coad, limit, twists);
   check_lanes<4>([](const auto& x) { return exp(dual_vector_of(x)); }, limit, twists);
-  check_lanes<4>([](const auto& x) { return left_jacobian(x); }, limit, twists);
-  check_lanes<4>([](const auto& x) { return right_jacobian(x); }, limit, twists);
-  check_lanes<4>([](const auto& x) { return left_jacobian_inverse(x); }, 2 * limit, twists);
-  check_lanes<4>([](const auto& x) { return right_jacobian_inverse(x); }, 2 * limit, twists);
+  DUET_CHECK_LANES(left_jacobian, limit, twists);
+  DUET_CHECK_LANES(right_jacobian, limit, twists);
+  DUET_CHECK_LANES(left_jacobian_inverse, 2 * limit, twists);
+  DUET_CHECK_LANES(right_jacobian_inverse, 2 * limit, twists);
   check_lanes<4>([](const auto& p, const auto& x) { return pose_rate(p, x, frame::body); }, limit,
                  a, twists);
-  check_lanes<4>([](const auto& p) { return pose_coordinates(p); }, limit, a);
-  check_lanes<4>([](const auto& x) { return from_pose_coordinates(x); }, limit, coordinates);
-  check_lanes<4>([](const auto& p) { return pose_rate_matrix(p); }, limit, a);
-  check_lanes<4>([](const auto& p, const auto& x) { return pose_coordinates_rate(p, x); }, limit, a,
-                 twists);
+  DUET_CHECK_LANES(pose_coordinates, limit, a);
+  DUET_CHECK_LANES(from_pose_coordinates, limit, coordinates);
+  DUET_CHECK_LANES(pose_rate_matrix, limit, a);
+  DUET_CHECK_LANES(pose_coordinates_rate, limit, a, twists);
   check_lanes<4>([](const auto& p, const auto& q) { return squared_distance(p, q, 0.5); }, limit, a,
                  b);
   check_lanes<4>([](const auto& p, const auto& q) { return distance(p, q, 0.5); }, limit, a, b);

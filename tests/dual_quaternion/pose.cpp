@@ -136,9 +136,8 @@ TEST_CASE("transform_line and transform_plane: agree with transformed points") {
 TEST_CASE("from_transform_matrix: rejects matrices that are not rigid") {
   Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
   m(3, 0) = 0.5;
-  CHECK_THROWS_WITH_AS(static_cast<void>(duet::from_transform_matrix(m)),
-                       "duet: from_transform_matrix: the last row is 0.5 0 0 1 (expected 0 0 0 1)",
-                       duet::invalid_input);
+  DUET_CHECK_REFUSED("duet: from_transform_matrix: the last row is 0.5 0 0 1 (expected 0 0 0 1)",
+                     duet::from_transform_matrix(m));
   m(3, 0) = 0;
   m(0, 0) = 2;
   CHECK_THROWS_AS(static_cast<void>(duet::from_transform_matrix(m)), duet::invalid_input);
@@ -150,17 +149,15 @@ TEST_CASE("pose: accepts a rotation matrix and a translation") {
   const auto a = duet::pose(duet::rotation_matrix(q), t);
   CHECK(duet::transform_matrix(a).isApprox(duet::transform_matrix(duet::pose(q, t)), 1e-15));
   CHECK(duet::translation(a).isApprox(t, 1e-15));
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(duet::pose(Eigen::Matrix3d(2 * duet::rotation_matrix(q)), t)),
-      doctest::Contains("rotation"), duet::invalid_input);
+  DUET_CHECK_REFUSED(doctest::Contains("rotation"),
+                     duet::pose(Eigen::Matrix3d(2 * duet::rotation_matrix(q)), t));
 }
 
 TEST_CASE("pose: rejects a rotation that is not a unit quaternion") {
   const vector t(1, 2, 3);
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(duet::pose(duet::quaternion<double>(2), t)),
+  DUET_CHECK_REFUSED(
       "duet: pose: the rotation (2, 0, 0, 0) is not a unit quaternion (use normalized(q))",
-      duet::invalid_input);
+      duet::pose(duet::quaternion<double>(2), t));
   CHECK_THROWS_AS(static_cast<void>(duet::pose(duet::quaternion<double>(), t)),
                   duet::invalid_input);
   CHECK_THROWS_AS(static_cast<void>(duet::pose(duet::quaternion<double>(.707, .707, 0, 0), t)),

@@ -223,28 +223,5 @@ TEST_CASE("twist_between: its derivative at equal poses is the tangent") {
       1e-14);
 }
 
-TEST_CASE("accelerations: the classical one differs from the derivative of the spatial twist") {
-  // Uniform rotation about z of a body at distance 2: the origin of the body accelerates inwards.
-  const auto motion = [](auto t) {
-    using T = decltype(t);
-    return duet::pose(duet::from_rotation_vector(duet::vector3<T>(T(0), T(0), t)),
-                      duet::vector3<T>(2 * cos(t), 2 * sin(t), T(0)));
-  };
-  const auto twists = [&](auto frame_of_twist) {
-    return [=](auto t) {
-      const auto inner = [&](auto s) { return motion(s); };
-      const auto [pose, rate] = duet::derivative(inner, t);
-      return twist(pose, rate, frame_of_twist);
-    };
-  };
-  const double t = 0.8;
-  CHECK(duet::derivative<duet_test::shared_tag>(twists(frame::spatial), t).derivative.norm() <
-        1e-15);
-  const auto classical =
-      duet::derivative<duet_test::shared_tag>(twists(frame::hybrid), t).derivative;
-  CHECK(max_abs_difference(classical.head<3>(), vector(-2 * std::cos(t), -2 * std::sin(t), 0)) <
-        1e-15);
-}
-
 } // namespace
 } // namespace test_dual_quaternion_twist

@@ -1,22 +1,18 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "quaternion/truth.hpp"
 #include "support/random.hpp"
-#include "support/shared_tag.hpp"
 #include "support/test.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/exponential.hpp>
+#include <duet/dual/taylor.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
-// N1, N2, N3 and N6 over every kind of scalar.
+// N1, N2 and N3 over every kind of scalar.
 
 namespace test_quaternion_algebra {
 namespace {
 
-using duet::dual, duet::quaternion, duet_test::random_source, duet_test::worst_error;
-namespace reference = duet_test::reference;
+using duet::dual, duet::quaternion, duet_test::random_source;
 
 struct outer;
 using nested = dual<dual<double>, 2, outer>;
@@ -139,39 +135,6 @@ TEST_CASE_TEMPLATE("N1-N3: product, conjugate and norm obey the laws of the alge
     CHECK(same((p * 4) / 4, p));
     CHECK((p == p));
     CHECK_FALSE((p + quaternion<T>(T(1)) == p));
-  }
-}
-
-TEST_CASE("N1: the product agrees with 100 digits") {
-  random_source random(52);
-  worst_error worst("product");
-  for (int n = 0; n < 300; ++n) {
-    const auto random_quaternion = [&] {
-      const double size = n % 2 == 0 ? 1 : random.log_uniform(1e-70, 1e70);
-      const auto d = random.direction<4>();
-      return quaternion<double>(size * d[0], size * d[1], size * d[2], size * d[3]);
-    };
-    const auto p = random_quaternion();
-    const auto q = random_quaternion();
-    const auto exact = reference::product(reference::wide(p), reference::wide(q));
-    worst.add(reference::ulps(p * q, exact, reference::length(exact)), p, q);
-  }
-  CHECK_MESSAGE(worst <= 4, worst);
-}
-
-// The order matters: q ṗ would be wrong.
-TEST_CASE("N6: the derivative of a product is ṗq + pq̇, in this order") {
-  random_source random(53);
-  for (int n = 0; n < 20; ++n) {
-    const auto p = integer_quaternion<double>(random), p_dot = integer_quaternion<double>(random);
-    const auto q = integer_quaternion<double>(random), q_dot = integer_quaternion<double>(random);
-    const auto [y, dy] = duet::derivative<duet_test::shared_tag>(
-        [&](const auto& t) { return (p + t * p_dot) * (q + t * q_dot); }, 0.0);
-    CHECK(y == p * q);
-    CHECK(dy == p_dot * q + p * q_dot);
-    const auto ys =
-        duet::derivatives<2>([&](const auto& t) { return (p + t * p_dot) * (q + t * q_dot); }, 0.0);
-    CHECK(ys[2] == 2 * (p_dot * q_dot));
   }
 }
 

@@ -65,20 +65,19 @@ std::vector<vector3<T>> vectors() {
 
 TEST_CASE_TEMPLATE("batches: exp, log and pow agree with each lane", T, double, dual<double>) {
   const auto q = orientations<T>();
-  check_lanes<4>([](const auto& v) { return duet::exp(v); }, limit, vectors<T>());
-  check_lanes<4>([](const auto& a) { return log(a); }, limit, q);
+  DUET_CHECK_LANES(duet::exp, limit, vectors<T>());
+  DUET_CHECK_LANES(log, limit, q);
   check_lanes<4>([](const auto& a) { return pow(a, 2); }, limit, q);
   check_lanes<4>([](const auto& a) { return pow(a, 0.3); }, limit, q);
-  check_lanes<4>([](const auto& a, const auto& p) { return pow(a, p); }, limit, q,
-                 std::vector<T>{T(0.5), T(1), T(0), T(-1.7), T(3)});
+  DUET_CHECK_LANES(pow, limit, q, std::vector<T>{T(0.5), T(1), T(0), T(-1.7), T(3)});
 }
 
 TEST_CASE_TEMPLATE("batches: norm, normalized and inverse agree with each lane", T, double,
                    dual<double>) {
   const auto q = orientations<T>();
-  check_lanes<4>([](const auto& a) { return norm(a); }, limit, q);
-  check_lanes<4>([](const auto& a) { return normalized(a); }, limit, q);
-  check_lanes<4>([](const auto& a) { return inverse(a); }, limit, q);
+  DUET_CHECK_LANES(norm, limit, q);
+  DUET_CHECK_LANES(normalized, limit, q);
+  DUET_CHECK_LANES(inverse, limit, q);
   check_lanes<4>([](const auto& a, const auto& b) { return a * normalized(b) - conj(a); }, limit, q,
                  q);
 }
@@ -122,17 +121,16 @@ TEST_CASE_TEMPLATE("batches: rotations and their conversions agree with each lan
     unit.push_back(normalized(a));
     matrices.push_back(rotation_matrix(unit.back()));
   }
-  check_lanes<4>([](const auto& a) { return rotation_matrix(a); }, limit, unit);
-  check_lanes<4>([](const auto& m) { return duet::from_rotation_matrix(m); }, limit, matrices);
-  check_lanes<4>([](const auto& a) { return rotation_vector(a); }, limit, unit);
-  check_lanes<4>([](const auto& a, const auto& v) { return rotate(a, v); }, limit, unit,
-                 vectors<T>());
-  check_lanes<4>([](const auto& r) { return duet::from_rotation_vector(r); }, limit, vectors<T>());
-  check_lanes<4>([](const auto& a) { return duet::euler<duet::zyx>(a); }, limit, unit);
-  check_lanes<4>([](const auto& a) { return duet::euler<duet::zxz>(a); }, limit, unit);
-  check_lanes<4>([](const auto& v, const auto& w) { return duet::from_two_vectors(v, w); }, limit,
-                 std::vector<vector3<T>>{vectors<T>()[2], vectors<T>()[4], vectors<T>()[10]},
-                 std::vector<vector3<T>>{vectors<T>()[4], vectors<T>()[10], vectors<T>()[10]});
+  DUET_CHECK_LANES(rotation_matrix, limit, unit);
+  DUET_CHECK_LANES(duet::from_rotation_matrix, limit, matrices);
+  DUET_CHECK_LANES(rotation_vector, limit, unit);
+  DUET_CHECK_LANES(rotate, limit, unit, vectors<T>());
+  DUET_CHECK_LANES(duet::from_rotation_vector, limit, vectors<T>());
+  DUET_CHECK_LANES(duet::euler<duet::zyx>, limit, unit);
+  DUET_CHECK_LANES(duet::euler<duet::zxz>, limit, unit);
+  DUET_CHECK_LANES(duet::from_two_vectors, limit,
+                   std::vector<vector3<T>>{vectors<T>()[2], vectors<T>()[4], vectors<T>()[10]},
+                   std::vector<vector3<T>>{vectors<T>()[4], vectors<T>()[10], vectors<T>()[10]});
   check_lanes<4>(
       [](const auto& a, const auto& b) { return angular_velocity(a, b, duet::frame::body); }, limit,
       unit, unit);
@@ -155,7 +153,7 @@ TEST_CASE("batches: scalar functions over nested duals agree with each lane") {
 TEST_CASE("batches: structural zeros survive infinite slopes in each lane") {
   using D = dual<double, 2>;
   std::vector<D> x{D(0), D::variable(0, 1), D::variable(4, 0), D(1)};
-  check_lanes<4>([](const auto& a) { return sqrt(a); }, limit, x);
+  DUET_CHECK_LANES(sqrt, limit, x);
   check_lanes<4>([](const auto& a) { return 1 / a; }, limit, x);
   check_lanes<4>([](const auto& a) { return pow(a, 0.5); }, limit, x);
 }
@@ -192,13 +190,10 @@ TEST_CASE("batches: curves, Euler angles, rates and Jacobians of exp agree with 
   check_lanes<4>(
       [](const auto& a, const auto& b) { return duet::from_euler<duet::zyx>(a, b, 0.3); }, limit,
       angles, numbers);
-  check_lanes<4>(
-      [](const auto& a, const auto& b) { return duet::euler_rate_matrix<duet::zxz>(a, b); }, limit,
-      angles, numbers);
-  check_lanes<4>([](const auto& a, const auto& b) { return duet::printed_euler_rate_matrix(a, b); },
-                 limit, angles, numbers);
-  check_lanes<4>([](const auto& v, const auto& a) { return duet::from_axis_angle(v, a); }, limit,
-                 std::vector<vector3<double>>{{0, 0.6, 0.8}, {1, 0, 0}, {0, 0, -1}}, angles);
+  DUET_CHECK_LANES(duet::euler_rate_matrix<duet::zxz>, limit, angles, numbers);
+  DUET_CHECK_LANES(duet::printed_euler_rate_matrix, limit, angles, numbers);
+  DUET_CHECK_LANES(duet::from_axis_angle, limit,
+                   std::vector<vector3<double>>{{0, 0.6, 0.8}, {1, 0, 0}, {0, 0, -1}}, angles);
   check_lanes<4>([](const auto& a) { return quaternion_rate_matrix(a, duet::frame::body); }, limit,
                  q);
   check_lanes<4>(
@@ -206,12 +201,10 @@ TEST_CASE("batches: curves, Euler angles, rates and Jacobians of exp agree with 
       limit, q, vectors<double>());
   check_lanes<4>([](const auto& a, const auto& b) { return dot(a, b) + squared_norm(a); }, limit, q,
                  p);
-  check_lanes<4>([](const auto& r) { return duet::left_jacobian(r); }, limit, rotation_vectors);
-  check_lanes<4>([](const auto& r) { return duet::right_jacobian(r); }, limit, rotation_vectors);
-  check_lanes<4>([](const auto& r) { return duet::left_jacobian_inverse(r); }, 2 * limit,
-                 rotation_vectors);
-  check_lanes<4>([](const auto& r) { return duet::right_jacobian_inverse(r); }, 2 * limit,
-                 rotation_vectors);
+  DUET_CHECK_LANES(duet::left_jacobian, limit, rotation_vectors);
+  DUET_CHECK_LANES(duet::right_jacobian, limit, rotation_vectors);
+  DUET_CHECK_LANES(duet::left_jacobian_inverse, 2 * limit, rotation_vectors);
+  DUET_CHECK_LANES(duet::right_jacobian_inverse, 2 * limit, rotation_vectors);
 }
 
 TEST_CASE("batches: eight and sixteen lanes, in several registers, agree with each lane") {

@@ -61,20 +61,14 @@ void check(const char* name, int degree, const F& f, const G& exact_f) {
   }
 }
 
-TEST_CASE("N3: norm and its derivatives agree with 100 digits from 1e-140 to 1e140") {
-  check(
-      "norm", 1,
-      [](const auto& q) {
-        using T = typename std::decay_t<decltype(q)>::scalar_type;
-        return quaternion<T>(norm(q));
-      },
-      exact_norm);
-}
-TEST_CASE("N3: normalized and its derivatives agree with 100 digits from 1e-140 to 1e140") {
-  check(
-      "normalized", 0, [](const auto& q) { return normalized(q); }, exact_direction);
-}
-TEST_CASE("N3: inverse and its derivatives agree with 100 digits from 1e-140 to 1e140") {
+TEST_CASE("N3: norm, direction, inverse, their derivatives agree with 100 digits at any size") {
+  const auto norm_as_quaternion = [](const auto& q) {
+    using T = typename std::decay_t<decltype(q)>::scalar_type;
+    return quaternion<T>(norm(q));
+  };
+  check("norm", 1, norm_as_quaternion, exact_norm);
+  const auto direction = [](const auto& q) { return normalized(q); };
+  check("normalized", 0, direction, exact_direction);
   check(
       "inverse", -1, [](const auto& q) { return inverse(q); }, exact_inverse);
 }
@@ -94,19 +88,6 @@ TEST_CASE("norm and normalized: no overflow or underflow at the ends of the rang
         doctest::Approx(1.41421356e-30).epsilon(1e-6));
   CHECK(norm(quaternion<float>(0, 1e30F, 0, 1e30F)) ==
         doctest::Approx(1.41421356e30).epsilon(1e-6));
-}
-
-TEST_CASE("N3: q times its inverse is 1, and the inverse of a unit quaternion is its conjugate") {
-  random_source random(42);
-  for (int i = 0; i < 100; ++i) {
-    const auto d = random.direction<4>();
-    const double size = random.log_uniform(1e-140, 1e140);
-    const quaternion<double> q(size * d[0], size * d[1], size * d[2], size * d[3]);
-    CHECK(norm(q * inverse(q) - quaternion<double>(1)) <= 1e-15);
-    CHECK(norm(inverse(q) * q - quaternion<double>(1)) <= 1e-15);
-    const auto unit = normalized(q);
-    CHECK(norm(inverse(unit) - conj(unit)) <= 1e-15);
-  }
 }
 
 } // namespace

@@ -1,6 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "quaternion/hard_inputs.hpp"
 #include "quaternion/truth.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
@@ -70,8 +69,8 @@ TEST_CASE("from_axis_angle: rotates about an axis of any length and rejects the 
       CHECK(norm(duet::from_axis_angle(vector3<double>(length * n), angle) - expected) <= 1e-15);
     }
   }
-  CHECK_THROWS_WITH_AS(static_cast<void>(duet::from_axis_angle(vector3<double>(0, 0, 0), 1.0)),
-                       "duet: from_axis_angle: the axis is the zero vector", duet::invalid_input);
+  DUET_CHECK_REFUSED("duet: from_axis_angle: the axis is the zero vector",
+                     duet::from_axis_angle(vector3<double>(0, 0, 0), 1.0));
 
   // ω of a rotation about a fixed axis is that axis.
   const vector3<double> n(1, 2, 2);
@@ -99,8 +98,8 @@ TEST_CASE("rotation_vector: inverse of from_rotation_vector, equal for q and -q,
   CHECK(rotation_vector(quaternion<double>(0, 0, 1, 0)) == vector3<double>(0, pi, 0));
   CHECK(rotation_vector(quaternion<double>(0, 0, -1, 0)) == vector3<double>(0, -pi, 0));
   CHECK(rotation_vector(quaternion<double>(-1, 0, 0, 0)).norm() == 0);
-  CHECK_THROWS_WITH_AS(static_cast<void>(rotation_vector(quaternion<double>())),
-                       "duet: rotation_vector: the quaternion is zero", duet::invalid_input);
+  DUET_CHECK_REFUSED("duet: rotation_vector: the quaternion is zero",
+                     rotation_vector(quaternion<double>()));
 }
 
 TEST_CASE("rotation_vector: has derivatives everywhere except across a half turn") {

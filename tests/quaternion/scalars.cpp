@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "quaternion/truth.hpp"
-#include "support/identical.hpp"
 #include "support/random.hpp"
 #include "support/test.hpp"
 
@@ -78,26 +77,6 @@ TEST_CASE("log: values and derivatives near a full turn are correct in single pr
     const auto across = log(quaternion<D>(D(-1), D(0, 1.0F), D(length), D(0)));
     CHECK(across.x().epsilon() == doctest::Approx(3.14159265F / length - 1).epsilon(1e-5));
   }
-}
-
-// Constants with and without derivatives meet in one expression.
-TEST_CASE("quaternions over different scalars have a common result type") {
-  using D = dual<double>;
-  const quaternion<double> a(0.6, 0, 0.8, 0);
-  const quaternion<double> b(0.6, 0.8, 0, 0);
-  const D tau = D::variable(0.3);
-  const auto [value, rate] = [&] {
-    const auto q = slerp(a, b, tau);
-    static_assert(std::is_same_v<decltype(q), const quaternion<D>>);
-    return std::pair(widened(q), quaternion<double>(q.w().epsilon(), q.x().epsilon(),
-                                                    q.y().epsilon(), q.z().epsilon()));
-  }();
-  CHECK(distance(slerp(a, b, 0.3), reference::wide(value)) <= duet_test::if_fused(1));
-  CHECK(norm(rate - slerp(a, b, 0.3) * quaternion<double>(0, log(conj(a) * b).vec())) <= 1e-15);
-  CHECK(pow(a, tau) == pow(a, 0.3));
-  CHECK(norm(widened(slerp(a, quaternion<D>(b), 0.3)) - slerp(a, b, 0.3)) <=
-        duet_test::if_fused(4e-16));
-  CHECK(pow(quaternion<float>(0.6F, 0.8F, 0, 0), 2).w() == doctest::Approx(-0.28).epsilon(1e-6));
 }
 
 } // namespace
