@@ -1,6 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/multiprecision.hpp"
 #include "support/test.hpp"
 
 #include <duet/derivative/implicit_function.hpp>
@@ -83,57 +82,6 @@ TEST_CASE("implicit_solution: a tuple of number, rotation and vector as unknown"
     CHECK(std::abs(height - exact_height) <= tolerance);
     CHECK(norm(q - exact_q) <= tolerance);
     CHECK((slip - exact_slip).norm() <= tolerance);
-  }
-}
-
-// The angle of a crank a that carries a rod of length l to the height p, in 100 digits:
-// a sin φ + √(l² − a² cos² φ) = p, and the rotation of the crank is exp(½ φ e_z).
-TEST_CASE("implicit_solution: a crank agrees with 100 digits to third order") {
-  using duet_test::real_100;
-  static constexpr double a = 0.4, l = 1.1;
-  const auto height = [](const auto& s, const auto& c) {
-    using std::sqrt;
-    return a * s + sqrt(l * l - a * a * c * c);
-  };
-  const double p = 1.25;
-  const auto solved = implicit_function<3>(
-      [&](const auto& q, const auto& goal) {
-        const auto arm = rotate(q, vector3<double>(1, 0, 0));
-        // Two residuals keep the axis, the third is the height.
-        const auto axis = rotate(q, vector3<double>(0, 0, 1));
-        return duet::make_vector(axis[0], axis[1], height(arm[1], arm[0]) - goal);
-      },
-      duet::from_axis_angle(vector3<double>(0, 0, 1), 0.3), p);
-  const auto angle = [&](const real_100& goal) {
-    real_100 x = 0.5;
-    for (int i = 0; i < 200; ++i) { // the secant through nearby points, by hand
-      const auto f = [&](const real_100& y) {
-        return real_100(
-            real_100(a) * sin(y) +
-            sqrt(real_100(l) * real_100(l) - real_100(a) * real_100(a) * cos(y) * cos(y)) - goal);
-      };
-      const real_100 h("1e-45");
-      const real_100 step = f(x) * h / (f(x + h) - f(x));
-      x -= step;
-      if (abs(step) < real_100("1e-95")) {
-        break;
-      }
-    }
-    return x;
-  };
-  const auto check = [&](const auto& component, const auto& exact_of) {
-    for (int k = 0; k <= 3; ++k) {
-      const real_100 exact = duet_test::central_difference(
-          [&](const real_100& goal) { return real_100(exact_of(real_100(angle(goal) / 2))); }, p, k,
-          0.1);
-      const double error = double(abs(real_100(component(solved[std::size_t(k)]) - exact)));
-      CHECK(error <= 1e-14 * (1 + std::abs(double(exact))));
-    }
-  };
-  check([](const auto& q) { return q.w(); }, [](const real_100& x) { return real_100(cos(x)); });
-  check([](const auto& q) { return q.z(); }, [](const real_100& x) { return real_100(sin(x)); });
-  for (const auto& q : solved) {
-    CHECK(std::abs(q.x()) + std::abs(q.y()) <= 1e-14);
   }
 }
 

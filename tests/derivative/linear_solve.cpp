@@ -63,20 +63,6 @@ TEST_CASE("solve: dynamic sizes give the same results") {
   }
 }
 
-TEST_CASE("solve: agrees with elimination over duals") {
-  for (const auto& p : problems(12)) {
-    CAPTURE(p.name);
-    const auto a = seeded<dual<double>, Dynamic, Dynamic>(p.a, p.a_slope);
-    const auto b = seeded<dual<double>, Dynamic, 1>(p.b, p.b_slope);
-    const auto x = solve(a, b);
-    const auto unrolled = a.fullPivLu().solve(b).eval();
-    for (int i = 0; i < 12; ++i) {
-      CHECK(std::abs(x[i].epsilon() - unrolled[i].epsilon()) <=
-            1e-12 * (1 + p.x().norm() + p.x_slope().norm()));
-    }
-  }
-}
-
 // A x‴ = −3A′x″, A x″ = b″ − 2A′x′ with A″ = 0, b″ = 0.
 TEST_CASE("solve: higher orders by Taylor numbers and nested duals") {
   using series = taylor<double, 3>;
@@ -163,20 +149,6 @@ TEST_CASE("solve: scalars and shapes of A and b may differ") {
                        Eigen::Matrix<double, 1, 2>(2, 8));
   CHECK(l(0, 1).value() == 2);
   CHECK(l(0, 1).epsilon() == -0.5L);
-}
-
-TEST_CASE("solve: works inside a differentiated function") {
-  const auto f = [](const auto& p) {
-    using T = std::decay_t<decltype(p[0])>;
-    Eigen::Matrix<T, 3, 3> a;
-    a << p[0], p[1], 0.0, p[1], 3.0, 0.0, 0.0, 0.0, 1.0;
-    return solve(a, Eigen::Vector3d(1, 2, 4));
-  };
-  // x = ((3 − 2q)/(3p − q²), (2p − q)/(3p − q²), 4)
-  const auto [x, J] = duet::jacobian(f, Eigen::Vector2d(2, 1));
-  CHECK((x - Eigen::Vector3d(0.2, 0.6, 4)).norm() <= 1e-16);
-  const Eigen::Matrix<double, 3, 2> expected{{-0.12, -0.32}, {0.04, 0.04}, {0, 0}};
-  CHECK((J - expected).norm() <= 1e-15);
 }
 
 TEST_CASE("solve: partials of variables without influence are zero") {

@@ -130,25 +130,6 @@ TEST_CASE("derivative: integer and single-precision arguments are accepted") {
   CHECK(directional_derivative([](auto x) { return x * x; }, 3, 2).derivative == 12);
 }
 
-// Lazy types return garbage or do not compile here.
-TEST_CASE("derivative: auto, the conditional operator and lambdas with two returns work") {
-  const auto f = [](auto x) {
-    auto square = x * x;
-    auto twice = square + square;
-    return x > 0 ? twice : 0.0 * x;
-  };
-  CHECK(derivative(f, 3.0).derivative == 12);
-  CHECK(derivative(f, -3.0).derivative == 0);
-  const auto g = [](auto x) {
-    if (x > 0) {
-      return x * x;
-    }
-    return -x;
-  };
-  CHECK(derivative(g, 3.0).derivative == 6);
-  CHECK(derivative(g, -3.0).derivative == -1);
-}
-
 TEST_CASE("directional_derivative: equals the Jacobian times the direction") {
   const auto f = [](const auto& x) { return duet::make_vector(x[0] * x[1], sin(x[0])); };
   const Eigen::Vector2d x(0.5, 2), v(3, -1);
@@ -162,9 +143,8 @@ TEST_CASE("directional_derivative: equals the Jacobian times the direction") {
   CHECK(directional_derivative([](auto t) { return t * t; }, 3.0, 0.5).derivative == 3);
 
   const Eigen::VectorXd longer = Eigen::VectorXd::Ones(3);
-  CHECK_THROWS_WITH_AS(static_cast<void>(directional_derivative<shared_tag>(f, x, longer)),
-                       "duet: directional_derivative: the point has 2 components, the direction 3",
-                       duet::invalid_input);
+  DUET_CHECK_REFUSED("duet: directional_derivative: the point has 2 components, the direction 3",
+                     directional_derivative<shared_tag>(f, x, longer));
 }
 
 TEST_CASE("refers_elsewhere: distinguishes owning types from references and expressions") {

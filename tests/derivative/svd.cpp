@@ -185,19 +185,6 @@ TEST_CASE(
   CHECK(nearest_rotation(Eigen::Matrix<double, 1, 1>(-2)) == MatrixXd::Identity(1, 1));
 }
 
-TEST_CASE("nearest_rotation: at the identity its derivative is the skew part") {
-  const auto f = [](const auto& x) {
-    using T = std::decay_t<decltype(x[0])>;
-    Eigen::Matrix<T, 3, 3> a = Eigen::Matrix<T, 3, 3>::Identity();
-    a(0, 1) += x[0];
-    a(2, 2) += x[1];
-    const auto r = nearest_rotation(a);
-    return duet::make_vector(r(0, 1), r(1, 0), r(2, 2));
-  };
-  const auto [value, j] = duet::jacobian(f, Eigen::Vector2d(0, 0));
-  CHECK(j == Eigen::Matrix<double, 3, 2>{{.5, 0}, {-.5, 0}, {0, 0}});
-}
-
 TEST_CASE("nearest_rotation: throws if the nearest rotation is not unique") {
   const std::string several =
       "duet: nearest_rotation: the nearest rotation is not unique: the smallest two singular "
