@@ -4,8 +4,6 @@
 
 #include <duet/dual/math.hpp>
 
-#include <complex>
-
 // Numbers are compared, classified and limited by their values.
 
 namespace test_dual_comparison {
@@ -75,55 +73,6 @@ TEST_CASE("dual: numeric limits follow the precision") {
   CHECK(std::numeric_limits<dual<float>>::epsilon().value() == 0x1p-23F);
   CHECK(std::numeric_limits<dual<long double, 2>>::digits ==
         std::numeric_limits<long double>::digits);
-}
-
-TEST_CASE("dual: algorithms of the standard library keep derivatives") {
-  using D = dual<double>;
-  D x(1, 10);
-  D y(2, 20);
-  std::swap(x, y);
-  CHECK(x.value() == 2);
-  CHECK(x.epsilon() == 20);
-  CHECK(y.epsilon() == 10);
-  swap(x, y);
-  CHECK(x.epsilon() == 10);
-  CHECK(std::max(x, y).epsilon() == 20);
-  CHECK(std::min(x, y).epsilon() == 10);
-  CHECK(std::clamp(D(3, 30), x, y).epsilon() == 20);
-  CHECK(std::clamp(D(1.5, 30), x, y).epsilon() == 30);
-
-  std::vector<D> row{D(3, 1), D(1, 2), D(2, 4)};
-  const D sum = std::accumulate(row.begin(), row.end(), D(0));
-  CHECK(sum.value() == 6);
-  CHECK(sum.epsilon() == 7);
-  const D square = std::inner_product(row.begin(), row.end(), row.begin(), D(0));
-  CHECK(square.value() == 14);
-  CHECK(square.epsilon() == 2 * (3 * 1 + 1 * 2 + 2 * 4));
-  std::sort(row.begin(), row.end());
-  CHECK(row[0].epsilon() == 2);
-  CHECK(row[2].epsilon() == 1);
-  CHECK(std::midpoint(1.0, 2.0) == 1.5); // only arithmetic types; listed so that nobody wonders
-
-  std::array<dual<double, 7>, 2> packed{dual<double, 7>::variable(1, 3), 2};
-  std::swap(packed[0], packed[1]);
-  CHECK(packed[1].partial(3) == 1);
-  CHECK(packed[0].partial(3) == 0);
-}
-
-TEST_CASE("std::complex of dual: multiplication and division") {
-  using D = dual<double>;
-  using C = std::complex<D>;
-  const C z(D(1, 1), D(2, 0)); // (1 + 2i) + ε
-  const C square = z * z;      // −3 + 4i, derivative 2z
-  CHECK(square.real().value() == -3);
-  CHECK(square.imag().value() == 4);
-  CHECK(square.real().epsilon() == 2);
-  CHECK(square.imag().epsilon() == 4);
-  const C one = z / z;
-  CHECK(one.real().value() == 1);
-  CHECK(one.real().epsilon() == 0);
-  CHECK(one.imag().epsilon() == 0);
-  CHECK(norm(z).epsilon() == 2);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/identical.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 #include "support/test.hpp"
@@ -51,21 +52,6 @@ moving_pair random_pair(random_source& random) {
   const C dz = number();
   const C w = number();
   return {z, dz, w, number()};
-}
-
-/// Along z(t) an analytic f has the velocity f′(z) ż: the dual number over the complex numbers is
-/// the same thing in the other nesting.
-template <class F>
-void check_analytic(F f) {
-  random_source random(3);
-  for (int k = 0; k < 100; ++k) {
-    const moving_pair p = random_pair(random);
-    const Z y = f(p.a);
-    const auto exact = f(dual<C>(p.z, p.dz));
-    const double scale = std::abs(exact.value()) + std::abs(exact.epsilon());
-    CHECK(near(value(y), exact.value(), scale));
-    CHECK(near(velocity(y), exact.epsilon(), scale));
-  }
 }
 
 TEST_CASE("std::complex of dual: arithmetic") {
@@ -142,20 +128,6 @@ TEST_CASE("std::complex of dual: the modulus neither overflows nor underflows ea
   CHECK(near(small, 5e-200, 0.6 + 1.6, 2.2));
   CHECK(abs(Z()) == 0);
   CHECK(abs(Z()).epsilon() == 0); // a constant
-}
-
-TEST_CASE("std::complex of dual: analytic functions agree with the dual of complex") {
-  check_analytic([](const auto& z) { return exp(z); });
-  check_analytic([](const auto& z) { return log(z); });
-  check_analytic([](const auto& z) { return sqrt(z); });
-  check_analytic([](const auto& z) { return sin(z); });
-  check_analytic([](const auto& z) { return cos(z); });
-  check_analytic([](const auto& z) { return tan(z); });
-  check_analytic([](const auto& z) { return sinh(z); });
-  check_analytic([](const auto& z) { return cosh(z); });
-  check_analytic([](const auto& z) { return tanh(z); });
-  check_analytic([](const auto& z) { return pow(z, 3); });
-  check_analytic([](const auto& z) { return pow(z, z); });
 }
 
 TEST_CASE("std::complex of dual: drivers differentiate complex results") {
@@ -314,9 +286,7 @@ std::array<C, 4> derivatives_of(const std::complex<nested>& y) {
   return result;
 }
 
-bool identical(double a, double b) {
-  return a != a ? b != b : a == b && std::signbit(a) == std::signbit(b);
-}
+using duet_test::identical;
 bool identical(const C& a, const C& b) {
   return identical(a.real(), b.real()) && identical(a.imag(), b.imag());
 }

@@ -89,20 +89,6 @@ TEST_CASE("Eigen geometry over dual: Transform") {
   CHECK(near(slopes(affine.matrix().topLeftCorner<3, 3>().eval()), rate));
 }
 
-TEST_CASE("Eigen geometry over dual: products of vectors") {
-  const DVector a(D(1, 1), 2, 3);
-  const DVector b(4, D(5, -1), 6);
-  const Vector3d x(1, 2, 3);
-  const Vector3d y(4, 5, 6);
-  const Vector3d dx(1, 0, 0);
-  const Vector3d dy(0, -1, 0);
-  CHECK(slopes(a.cross(b).eval()) == dx.cross(y) + x.cross(dy));
-  CHECK(a.dot(b).epsilon() == dx.dot(y) + x.dot(dy));
-  const Vector3d unit = x.normalized();
-  CHECK(near(slopes(a.normalized()), ((dx - unit * unit.dot(dx)) / x.norm()).eval()));
-  CHECK(a.unitOrthogonal().dot(a).epsilon() == doctest::Approx(0).epsilon(1e-15));
-}
-
 // Members that the page "With Eigen" lists as right: zeros, equal values, identity, half turns.
 /// Members of Eigen at structured inputs that move with t.
 template <class T>

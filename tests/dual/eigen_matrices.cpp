@@ -16,8 +16,6 @@ using duet::dual, duet::screw_tag, duet::taylor, Eigen::Dynamic;
 template <class D, int Rows, int Columns>
 using matrix = Eigen::Matrix<D, Rows, Columns>;
 
-struct outer_tag;
-
 /// The slope of every entry.
 template <class M>
 auto slopes(const M& m) {

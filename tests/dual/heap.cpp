@@ -3,6 +3,8 @@
 // Eigen asserts where it allocates; operator new is counted here.
 #define EIGEN_RUNTIME_NO_MALLOC
 
+#include "support/allocations.hpp"
+
 #include <duet/dual/eigen_traits.hpp>
 
 #include <Eigen/Cholesky>
@@ -11,22 +13,9 @@
 #include <Eigen/QR>
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <new>
-
 using duet::dual, duet::taylor;
 
 namespace {
-
-long allocations = 0;
-
-void* allocate(std::size_t size) {
-  ++allocations;
-  if (void* p = std::malloc(size)) {
-    return p;
-  }
-  throw std::bad_alloc();
-}
 
 struct outer_tag;
 
@@ -50,24 +39,17 @@ D solutions(const D& x) {
 
 /// Allocations of f(x), which must be finite.
 template <class F, class D>
-long allocations_of(F f, const D& x) {
-  const long before = allocations;
+std::size_t allocations_of(F f, const D& x) {
+  const std::size_t before = duet_test::allocations;
   Eigen::internal::set_is_malloc_allowed(false);
   const D y = f(x);
   Eigen::internal::set_is_malloc_allowed(true);
-  const long after = allocations;
+  const std::size_t after = duet_test::allocations;
   CHECK(isfinite(y));
   return after - before;
 }
 
 } // namespace
-
-void* operator new(std::size_t size) { return allocate(size); }
-void* operator new[](std::size_t size) { return allocate(size); }
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete[](void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
-void operator delete[](void* p, std::size_t) noexcept { std::free(p); }
 
 TEST_CASE_TEMPLATE("functions of fixed size: no heap allocation", D, dual<double>, dual<double, 7>,
                    taylor<double, 3>, dual<dual<double>, 1, outer_tag>) {
@@ -80,7 +62,7 @@ TEST_CASE("solvers of fixed size: no heap allocation") {
 }
 
 TEST_CASE("allocation counter: counts an allocation") {
-  const long before = allocations;
+  const std::size_t before = duet_test::allocations;
   ::operator delete(::operator new(8)); // a new-expression may be optimised away
-  CHECK(allocations == before + 1);
+  CHECK(duet_test::allocations == before + 1);
 }

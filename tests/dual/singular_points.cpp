@@ -225,12 +225,13 @@ TEST_CASE("singular points: functions of one variable") {
   DUET_ROWS_1(exp(x), {{800}, infinity, {infinity}}, {{-800}, 0, {0}});
   DUET_ROWS_1(sin(x), {{infinity}, nan, {nan}});
   DUET_ROWS_1(tan(x), {{infinity}, nan, {nan}});
-  DUET_ROWS_1(asin(x), {{1}, pi / 2, {infinity}});
+  DUET_ROWS_1(asin(x), {{1}, pi / 2, {infinity}}, {{-1}, -pi / 2, {infinity}});
   DUET_ROWS_1(acos(x), {{1}, 0, {-infinity}}, {{2}, nan, {nan}});
   DUET_ROWS_1(atan(x), {{infinity}, pi / 2, {0}});
   DUET_ROWS_1(tanh(x), {{800}, 1, {0}});
   DUET_ROWS_1(acosh(x), {{1}, 0, {infinity}});
-  DUET_ROWS_1(atanh(x), {{1}, infinity, {infinity}}, {{2}, nan, {-1.0 / 3}});
+  DUET_ROWS_1(atanh(x), {{1}, infinity, {infinity}}, {{-1}, -infinity, {infinity}},
+              {{2}, nan, {-1.0 / 3}});
   DUET_ROWS_1(erf(x), {{800}, 1, {0}});
   DUET_ROWS_1(tgamma(x), {{0}, infinity, {-infinity}});
   DUET_ROWS_1(lgamma(x), {{0}, infinity, {-infinity}});

@@ -1,10 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/identical.hpp"
 #include "support/test.hpp"
 
 #include <duet/dual/math.hpp>
 
-#include <bit>
 #include <ranges>
 #include <set>
 #include <valarray>
@@ -22,7 +22,6 @@ struct outer_tag;
 using three = dual<double, 3>;
 using series = taylor<double, 3>;
 using nested = dual<dual<double>, 1, outer_tag>;
-using nested_series = taylor<dual<double>, 2, outer_tag>;
 
 template <class D>
 D variable(duet::real_type_t<D> x) {
@@ -57,8 +56,7 @@ std::vector<D> three_numbers() {
   return {x, x * x - 3, 1 / x};
 }
 
-#define DUET_EVERY_NUMBER                                                                          \
-  dual<double>, three, series, nested, nested_series, dual<float>, dual<long double>
+#define DUET_EVERY_NUMBER dual<double>, three, series, nested, dual<float>
 
 TEST_CASE_TEMPLATE("standard library: numbers are regular, ordered and swappable", D,
                    DUET_EVERY_NUMBER) {
@@ -205,9 +203,6 @@ TEST_CASE("standard library: midpoints equal those of <numeric> bit by bit") {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double inputs[] = {0,      -0.0,  1,       -1,       0.1,      3e-17,     5e-324,
                            1e-310, 1e308, 1.5e308, -1.5e308, infinity, -infinity, std::nan("")};
-  const auto identical = [](double a, double b) {
-    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) || (a != a && b != b);
-  };
   for (const double a : inputs) {
     for (const double b : inputs) {
       CAPTURE(a);
@@ -215,14 +210,14 @@ TEST_CASE("standard library: midpoints equal those of <numeric> bit by bit") {
       const double exact = std::midpoint(a, b);
       using pair = dual<double, 2>;
       const pair y = midpoint(pair::variable(a, 0), pair::variable(b, 1));
-      CHECK(identical(y.value(), exact));
+      CHECK(duet_test::identical(y.value(), exact));
       CHECK(y.partial(0) == 0.5);
       CHECK(y.partial(1) == 0.5);
       const series z = midpoint(series::variable(a), series(b));
-      CHECK(identical(z.value(), exact));
+      CHECK(duet_test::identical(z.value(), exact));
       CHECK(z.coefficient(1) == 0.5);
       CHECK(z.coefficient(2) == 0);
-      CHECK(identical(midpoint(nested(a), nested(b)).value().value(), exact));
+      CHECK(duet_test::identical(midpoint(nested(a), nested(b)).value().value(), exact));
       CHECK(midpoint(pair(a), pair(b)).partial(1) == 0);
     }
   }

@@ -21,78 +21,38 @@ using pair = dual<double, 2>;
 
 D variable(double x) { return D::variable(x); }
 pair first(double x) { return pair::variable(x, 0); }
-pair second(double x) { return pair::variable(x, 1); }
-
-/// value, ∂/∂x, ∂/∂p
-void check_pair(const pair& y, double value, double dx, double dp) {
-  CHECK(y.value() == value);
-  if (std::isnan(dx)) {
-    CHECK(std::isnan(y.partial(0)));
-  } else {
-    CHECK(y.partial(0) == dx);
-  }
-  if (std::isnan(dp)) {
-    CHECK(std::isnan(y.partial(1)));
-  } else {
-    CHECK(y.partial(1) == dp);
-  }
-}
-
-TEST_CASE("structural zero: square root at 0") {
-  CHECK(sqrt(variable(0)).value() == 0);
-  CHECK(sqrt(variable(0)).epsilon() == infinity);
-  CHECK(sqrt(first(0)).partial(0) == infinity);
-  CHECK(sqrt(first(0)).partial(1) == 0);
-  CHECK(sqrt(D(0)).epsilon() == 0);
-  CHECK((sqrt(pair(0)) * first(3)).partial(0) == 0);
-  const auto norm = [](const pair& x, const pair& y) { return sqrt(x * x + y * y); };
-  CHECK(norm(first(0), second(0)).value() == 0);
-  CHECK(cbrt(variable(0)).epsilon() == infinity);
-  CHECK(cbrt(D(0)).epsilon() == 0);
-}
-
-// f ^ g with both variable: the nine cases.
-TEST_CASE("structural zero: power of two variables") {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const double log2 = std::log(2.0);
-  check_pair(pow(first(2), second(3)), 8, 12, 8 * log2);  // 1: f > 0
-  check_pair(pow(first(0), second(2)), 0, 0, 0);          // 2: f = 0, g > 1
-  check_pair(pow(first(0), second(1)), 0, 1, 0);          // 3: f = 0, g = 1
-  check_pair(pow(first(0), second(0.5)), 0, infinity, 0); // 4: f = 0, 0 < g < 1
-  check_pair(pow(first(0), second(0)), 1, 0, -infinity);  // 5: f = 0, g = 0: jumps in g
-  CHECK(pow(first(0), second(-1)).value() == infinity);   // 6: f = 0, g < 0
-  CHECK_FALSE(std::isfinite(pow(first(0), second(-1)).partial(0)));
-  check_pair(pow(first(-2), pair(2)), 4, -4, 0);          // 7: f < 0, g an integer constant
-  check_pair(pow(first(-2), second(3)), -8, 12, nan);     // 8: f < 0, g an integer but variable
-  CHECK(std::isnan(pow(first(-2), second(0.5)).value())); // 9: f < 0, g not an integer
-}
 
 TEST_CASE("structural zero: power with constants") {
-  CHECK(pow(variable(0), 0).value() == 1);
-  CHECK(pow(variable(0), 0).epsilon() == 0);
-  CHECK(pow(variable(0), 0.).epsilon() == 0);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), log2 = std::log(2.0);
+  struct row {
+    double base;
+    int exponent;
+    double value, by_base, by_exponent;
+  };
+  for (const row& r : {row{0, 0, 1, 0, -infinity},
+                       {0, 1, 0, 1, 0},
+                       {0, 2, 0, 0, 0},
+                       {0, 3, 0, 0, 0},
+                       {2, 3, 8, 12, 8 * log2},
+                       {-2, 2, 4, -4, nan},
+                       {-2, -1, -0.5, -0.25, nan},
+                       {1, 0, 1, 0, 0}}) {
+    CAPTURE(r.base);
+    CAPTURE(r.exponent);
+    const D x = variable(r.base);
+    for (const D& y : {pow(x, r.exponent), pow(x, double(r.exponent)), pow(x, D(r.exponent))}) {
+      CHECK(y.value() == r.value);
+      CHECK(y.epsilon() == r.by_base);
+    }
+    const D z = pow(int(r.base), variable(r.exponent));
+    CHECK(z.value() == r.value);
+    CHECK((z.epsilon() == r.by_exponent || (std::isnan(z.epsilon()) && std::isnan(r.by_exponent))));
+    CHECK(pow(int(r.base), D(r.exponent)).epsilon() == 0);
+  }
   CHECK(pow(variable(0), -0.).epsilon() == 0);
   CHECK(pow(variable(infinity), 0.).epsilon() == 0);
-  CHECK(pow(variable(0), .5).value() == 0);
-  CHECK(pow(variable(0), .5).epsilon() == infinity);
-  CHECK(pow(D(0), .5).epsilon() == 0);
-  CHECK(pow(first(0), .5).partial(1) == 0);
-  CHECK(pow(variable(0), 1).epsilon() == 1);
-  CHECK(pow(variable(0), 2).epsilon() == 0);
-  CHECK(pow(variable(-2), 2).value() == 4);
-  CHECK(pow(variable(-2), 2).epsilon() == -4);
-  CHECK(pow(variable(-2), 2.).epsilon() == -4);
-  CHECK(pow(variable(-2), D(2)).epsilon() == -4);
-  CHECK(pow(variable(-2), -1).epsilon() == -0.25);
-  CHECK(std::isnan(pow(variable(-2), .5).value()));
-  CHECK(pow(2, variable(3)).value() == 8);
-  CHECK(pow(2, variable(3)).epsilon() == 8 * std::log(2.0));
-  CHECK(pow(0, variable(3)).value() == 0);
-  CHECK(pow(0, variable(3)).epsilon() == 0);
   CHECK(pow(1, variable(infinity)).epsilon() == 0);
-  CHECK(pow(-2, variable(2)).value() == 4);
-  CHECK(std::isnan(pow(-2, variable(2)).epsilon()));
-  CHECK(pow(-2, D(2)).epsilon() == 0);
+  CHECK(pow(first(0), .5).partial(1) == 0);
 }
 
 TEST_CASE("structural zero: higher derivatives of powers at 0") {
@@ -120,36 +80,10 @@ TEST_CASE("structural zero: higher derivatives of powers at 0") {
   CHECK_FALSE(std::isfinite(pow(nested(D(0, 1)), nested(D(1), 1)).epsilon().epsilon()));
 }
 
-TEST_CASE("structural zero: hypot and atan2 at the origin") {
-  CHECK(hypot(variable(0), 0).value() == 0);
-  CHECK(hypot(D(0), 0).epsilon() == 0);
+TEST_CASE("structural zero: hypot of three and atan2 at the origin") {
   CHECK(hypot(D(0), D(0), D(0)).epsilon() == 0);
-  CHECK(std::isnan(hypot(variable(0), 0).epsilon()));
-  CHECK(hypot(variable(0), 2).epsilon() == 0);
   CHECK(hypot(variable(0), D(0), 2).epsilon() == 0);
-  CHECK(atan2(variable(0), 0).value() == 0);
-  CHECK(atan2(D(0), 0).epsilon() == 0);
-  CHECK(atan2(D(0), D(0)).epsilon() == 0);
-  CHECK(std::isnan(atan2(variable(0), 0).epsilon()));
   CHECK(atan2(pair(0), pair(0)).partial(1) == 0);
-  CHECK(atan2(variable(0), 2).epsilon() == 0.5);
-  CHECK(atan2(variable(0), -2).epsilon() == -0.5);
-}
-
-TEST_CASE("structural zero: inverse functions at the ends of their domains") {
-  CHECK(acos(variable(1)).value() == 0);
-  CHECK(acos(variable(1)).epsilon() == -infinity);
-  CHECK(acos(D(1)).epsilon() == 0);
-  CHECK(asin(variable(-1)).epsilon() == infinity);
-  CHECK(asin(D(-1)).epsilon() == 0);
-  CHECK(acosh(variable(1)).epsilon() == infinity);
-  CHECK(acosh(D(1)).epsilon() == 0);
-  CHECK(atanh(variable(1)).epsilon() == infinity);
-  CHECK(atanh(D(-1)).epsilon() == 0);
-  CHECK(log(variable(0)).value() == -infinity);
-  CHECK(log(variable(0)).epsilon() == infinity);
-  CHECK(log(D(0)).epsilon() == 0);
-  CHECK(log1p(D(-1)).epsilon() == 0);
 }
 
 TEST_CASE("structural zero: saturated functions are flat to every order") {
@@ -169,18 +103,6 @@ TEST_CASE("structural zero: saturated functions are flat to every order") {
     CHECK(exp(constant).coefficient(k) == 0);
     CHECK(sin(taylor<double, 4>(infinity)).coefficient(k) == 0);
   }
-}
-
-TEST_CASE("structural zero: division by zero") {
-  CHECK((1 / variable(0)).value() == infinity);
-  CHECK((1 / variable(0)).epsilon() == -infinity);
-  CHECK((1 / D(0)).epsilon() == 0);
-  CHECK((D(1) / 0).epsilon() == 0);
-  CHECK((variable(1) / 0).epsilon() == infinity);
-  CHECK((first(1) / pair(0)).partial(1) == 0);
-  CHECK((first(1) / pair(0)).partial(0) == infinity);
-  CHECK((taylor<double, 3>(1) / taylor<double, 3>(0)).coefficient(3) == 0);
-  CHECK((1 / taylor<double, 3>(0)).coefficient(2) == 0);
 }
 
 TEST_CASE("structural zero: parts that do not depend on the inner variable stay finite") {

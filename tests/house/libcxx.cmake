@@ -11,7 +11,7 @@ file(MAKE_DIRECTORY ${folder})
 set(lines "#include \"support/main.cpp\"\n")
 foreach(test IN ITEMS
     core/chars core/number_text core/parallel_for core/text_rows
-    dual/algebra dual/exceptions dual/function_values derivative/vectors
+    dual/algebra dual/exceptions dual/second_dual derivative/vectors
     quaternion/distance quaternion/rotation_matrix dual_quaternion/algebra dual_quaternion/pose
     spline/evaluate spline/interpolate)
   string(APPEND lines "#include \"${test}.cpp\"\n")
