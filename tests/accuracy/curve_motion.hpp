@@ -6,11 +6,7 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/spline/motion.hpp>
 
-#include <cstddef>
 #include <cstdio>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 /// \file
 /// Motions of curves as lists of numbers: four for a rotation, eight for a pose with the real part

@@ -8,11 +8,6 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 // Curves with known coefficients, a control element and increments or a polynomial segment: values,
 // derivatives, and velocity, acceleration and jerk in all frames.
 

@@ -7,11 +7,6 @@
 
 #include <duet/spline/fit.hpp>
 
-#include <cstddef>
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 // Fitted curves: distance of their motion from that of the curve with the smallest sum of squares.
 
 namespace duet_test::accuracy {

@@ -2,8 +2,6 @@
 
 #include "accuracy/inputs.hpp"
 
-#include <string>
-
 namespace duet_test::accuracy {
 namespace {
 

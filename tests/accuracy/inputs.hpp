@@ -4,11 +4,6 @@
 #include "accuracy/probe.hpp"
 #include "support/random.hpp"
 
-#include <array>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 /// \file
 /// Rotations and poses at which formulas may fail, rounded once from 100 digits.
 

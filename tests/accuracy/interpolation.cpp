@@ -7,13 +7,6 @@
 
 #include <duet/spline/interpolate.hpp>
 
-#include <cmath>
-#include <cstddef>
-#include <stdexcept>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 // Interpolating curves with all end conditions: distance of their motion from that of the curve of
 // the definition. Only poses are tested: rotations are their real parts, by the same equations.
 

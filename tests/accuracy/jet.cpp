@@ -2,8 +2,6 @@
 
 #include "accuracy/jet.hpp"
 
-#include <algorithm>
-
 namespace duet_test::accuracy {
 
 const jet_shape* jet_shape::current = nullptr;

@@ -4,8 +4,6 @@
 #include "accuracy/probe.hpp"
 #include "accuracy/rotation_functions.hpp"
 
-#include <utility>
-
 // Second derivatives along two directions at once, the mixed ones among them.
 
 namespace duet_test::accuracy {

@@ -3,9 +3,6 @@
 
 #include "accuracy/jet.hpp"
 
-#include <array>
-#include <cstddef>
-
 /// \file
 /// Definitions of the tested functions, as functions of lists of numbers.
 

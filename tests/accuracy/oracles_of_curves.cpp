@@ -2,11 +2,6 @@
 
 #include "accuracy/oracles_of_curves.hpp"
 
-#include <algorithm>
-#include <stdexcept>
-#include <string>
-#include <utility>
-
 namespace duet_test::accuracy::oracle {
 
 namespace {

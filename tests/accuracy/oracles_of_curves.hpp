@@ -4,9 +4,6 @@
 #include "accuracy/jet.hpp"
 #include "accuracy/probe.hpp"
 
-#include <cstddef>
-#include <vector>
-
 /// \file
 /// Curves by their definitions, over rotations or, with ε, over poses; and interpolating
 /// curves by the equations of their definition alone, solved to at least 60 digits.

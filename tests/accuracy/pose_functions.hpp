@@ -10,13 +10,6 @@
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <utility>
-#include <vector>
-
 /// \file
 /// Functions of dual quaternions as functions of lists of numbers. A pose has eight numbers, real
 /// part first, a twist [v; ω] six.

@@ -5,10 +5,6 @@
 #include "support/random.hpp"
 #include "support/ulp.hpp"
 
-#include <algorithm>
-#include <limits>
-#include <type_traits>
-
 namespace duet_test::accuracy {
 
 namespace {

@@ -7,12 +7,6 @@
 #include <duet/dual/second_dual.hpp>
 #include <duet/dual/taylor.hpp>
 
-#include <array>
-#include <cstddef>
-#include <functional>
-#include <string>
-#include <vector>
-
 /// \file
 /// Errors of functions of the library relative to oracles in 100 digits: the rows of
 /// docs/reference/accuracy.md.

@@ -11,10 +11,6 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 /// \file
 /// Functions of quaternions as functions of lists of numbers, four for a quaternion.
 

@@ -3,8 +3,6 @@
 #include "accuracy/probe.hpp"
 #include "accuracy/rotation_functions.hpp"
 
-#include <utility>
-
 // Quaternions: exponential, logarithm, powers, interpolation, rotations in all their forms, Euler
 // angles, Jacobians and angular velocities, with derivatives to the fourth order.
 

@@ -9,9 +9,6 @@
 
 #include <Eigen/Geometry>
 
-#include <array>
-#include <cmath>
-
 // N10–N16: dual numbers, dual vectors, dual quaternions.
 
 namespace duet_formulas {

@@ -11,11 +11,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <utility>
-
 // P5–P7: measures of the experiment with the wheel carrier.
 
 namespace by_hand {

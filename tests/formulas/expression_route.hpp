@@ -10,10 +10,6 @@
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 
-#include <cstddef>
-#include <tuple>
-#include <utility>
-
 /// \file
 /// Rows of the table as expressions.
 

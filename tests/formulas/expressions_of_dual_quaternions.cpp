@@ -11,9 +11,6 @@
 #include <duet/expression/vector.hpp>
 #include <duet/expression/velocity.hpp>
 
-#include <tuple>
-#include <vector>
-
 // N10–N21 as expressions.
 
 namespace duet_formulas {

@@ -15,13 +15,6 @@
 #include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>
 
-#include <array>
-#include <cstddef>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 // P1–P4 and the four arms as expressions.
 
 namespace duet_formulas {

@@ -19,11 +19,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
-
 // N22–N25 as expressions. The system of six equations in B is solved by numbers, its derivative by
 // the equations: x = Jᵀy with J x = V gives ẋ = J̇ᵀy + Jᵀẏ, J ẋ = V̇ − J̇x.
 

@@ -10,9 +10,6 @@
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/vector.hpp>
 
-#include <tuple>
-#include <vector>
-
 // N1–N9 as expressions.
 
 namespace duet_formulas {

@@ -2,19 +2,10 @@
 #pragma once
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/math.hpp>
-#include <duet/expression/graph/formula_graph.hpp>
-#include <duet/expression/graph/trace.hpp>
 #include <duet/interop/multiprecision.hpp>
-
-#include <cstddef>
-#include <functional>
-#include <limits>
-#include <string>
-#include <tuple>
-#include <utility>
-#include <vector>
 
 /// \file
 /// A formula of the documents by four methods: duet over duals, Taylor numbers and nested duals, an
@@ -42,25 +33,6 @@ struct bounds {
   double expression = slope; ///< bound of both for the formula as an expression
 };
 
-using traced_row = duet::expression::formula_graph;
-
-/// A function of x and d as a formula.
-template <class F>
-traced_row trace_row(const F& f, int size) {
-  using duet::recorded;
-  traced_row g;
-  numbers<recorded> x, d;
-  for (auto* each : {&x, &d}) {
-    const auto& input = g.add_input(
-        {.name = each == &x ? "x" : "d", .kind = duet::expression::shape::matrix, .rows = size});
-    for (const int node : input.nodes) {
-      each->emplace_back(g.operations(), node);
-    }
-  }
-  duet::expression::detail::add_outputs(g, "y", f(x, d));
-  return g;
-}
-
 /// One row of the table.
 struct formula {
   std::string label;
@@ -82,8 +54,6 @@ struct formula {
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> dual;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> taylor;
   std::function<numbers<double>(const numbers<double>&, const numbers<double>&)> nested;
-  /// Both as formulas of x and a direction d: duet's value and derivative, and the closed form.
-  std::function<std::pair<traced_row, traced_row>(int size)> traced;
 };
 
 /// A row by a further method: an expression over symbols, which the compiler differentiates.
@@ -129,11 +99,21 @@ private:
       slopes_;
 };
 
+/// Values of all, then first derivatives of all, and so on, by f(part) = {value, derivative, …}.
+template <class T, class F>
+numbers<double> listed(const numbers<T>& y, const F& f) {
+  numbers<double> result;
+  for (std::size_t k = 0; k < f(y[0]).size(); ++k) {
+    for (const T& part : y) {
+      result.push_back(f(part)[k]);
+    }
+  }
+  return result;
+}
+
 /// `library` and `closed` are templates over the scalar: library(x) → f(x) with duet, and
 /// closed(x, ẋ) → f and ∂f/∂x ẋ written out.
-///
-/// \tparam IsTraced  false for functions of double and dual numbers alone, which are not traced
-template <bool IsTraced = true, class Library, class Closed>
+template <class Library, class Closed>
 formula make_formula(std::string label, std::string text, std::string function, std::string header,
                      std::vector<argument> arguments, const Library& library, const Closed& closed,
                      bounds limits = {},
@@ -157,54 +137,17 @@ formula make_formula(std::string label, std::string text, std::string function, 
       s.push_back(first(x[i], d[i]));
     }
     const numbers<first> y = library(s);
-    numbers<double> result;
-    for (const first& part : y) {
-      result.push_back(part.value());
-    }
-    for (const first& part : y) {
-      result.push_back(part.epsilon());
-    }
-    return result;
+    return listed(y, [](const first& part) { return std::array{part.value(), part.epsilon()}; });
   };
-  if constexpr (IsTraced) {
-    f.traced = [library, closed](int size) {
-      using duet::recorded;
-      using moving = duet::dual<recorded, 1, duet::derivative_tag<struct inner>>;
-      const auto by_duals = [&](const numbers<recorded>& x, const numbers<recorded>& d) {
-        numbers<moving> s;
-        for (std::size_t i = 0; i < x.size(); ++i) {
-          s.push_back(moving(x[i], d[i]));
-        }
-        const numbers<moving> y = library(s);
-        numbers<recorded> result;
-        for (const moving& part : y) {
-          result.push_back(part.value());
-        }
-        for (const moving& part : y) {
-          result.push_back(part.epsilon());
-        }
-        return result;
-      };
-      return std::pair{trace_row(by_duals, size), trace_row(closed, size)};
-    };
-  }
   f.nested = [library](const numbers<double>& x, const numbers<double>& d) {
     numbers<second> s;
     for (std::size_t i = 0; i < x.size(); ++i) {
       s.push_back(second(first(x[i], d[i]), first(d[i], 0)));
     }
     const numbers<second> y = library(s);
-    numbers<double> result;
-    for (const second& part : y) {
-      result.push_back(part.value().value());
-    }
-    for (const second& part : y) {
-      result.push_back(part.value().epsilon());
-    }
-    for (const second& part : y) {
-      result.push_back(part.epsilon().epsilon());
-    }
-    return result;
+    return listed(y, [](const second& part) {
+      return std::array{part.value().value(), part.value().epsilon(), part.epsilon().epsilon()};
+    });
   };
   f.taylor = [library](const numbers<double>& x, const numbers<double>& d) {
     numbers<series> s;
@@ -212,13 +155,9 @@ formula make_formula(std::string label, std::string text, std::string function, 
       s.push_back(x[i] + d[i] * series::variable(0));
     }
     const numbers<series> y = library(s);
-    numbers<double> result;
-    for (int k = 0; k <= 2; ++k) {
-      for (const series& part : y) {
-        result.push_back(part.derivative(k));
-      }
-    }
-    return result;
+    return listed(y, [](const series& part) {
+      return std::array{part.derivative(0), part.derivative(1), part.derivative(2)};
+    });
   };
   return f;
 }

@@ -12,14 +12,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <iterator>
-#include <string>
-#include <utility>
-#include <vector>
-
 // P1–P4, and the four arms.
 
 namespace by_hand {
@@ -161,7 +153,7 @@ duet::cumulative_bspline<double> curve_through(const std::vector<duet::quaternio
 
 /// Control rotations are constant, only u varies.
 formula cumulative_curve() {
-  auto f = make_formula<false>(
+  auto f = make_formula(
       "P2", R"(Q(u) = q_0\prod_i \exp(\omega_i\tilde B_i(u)),\; \omega^b(u))", "cumulative_bspline",
       "spline/cumulative_bspline.hpp",
       {rotation_vector, rotation_vector, rotation_vector, rotation_vector, argument::fraction},
@@ -181,7 +173,7 @@ formula cumulative_curve() {
 
 /// P3 and P4: Q′ or Q″.
 formula rate_of_curve(std::size_t order) {
-  auto f = make_formula<false>(
+  auto f = make_formula(
       order == 1 ? "P3" : "P4",
       order == 1
           ? R"(Q' = Q\,w,\; w \leftarrow e_j^*we_j + \tilde B_j'\omega_j)"

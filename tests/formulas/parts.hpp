@@ -6,8 +6,6 @@
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/quaternion/quaternion.hpp>
 
-#include <cstddef>
-
 /// \file
 /// Conversion between rows of numbers and arguments of duet's functions.
 

@@ -13,11 +13,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <utility>
-
 // N22–N25: motion planning, with the table of a Panda.
 
 namespace by_hand {

@@ -10,8 +10,6 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <cmath>
-
 // N1–N9: quaternions.
 
 namespace duet_formulas {

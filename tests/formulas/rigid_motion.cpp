@@ -12,9 +12,6 @@
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <array>
-#include <cmath>
-
 // N17–N21: rigid motion.
 
 namespace duet_formulas {

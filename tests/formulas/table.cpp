@@ -12,12 +12,10 @@
 
 #include <duet/core/constants.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/expression/graph/is_equal.hpp>
 
 #include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <set>
 
 namespace {
 
@@ -291,25 +289,6 @@ std::string row_of(const expression_route& e) {
 }
 
 } // namespace
-
-// Value and derivative of these rows are those of the closed form by algebra, for all inputs.
-// Closed forms of the others branch on values.
-TEST_CASE("formulas: rows that are proved") {
-  const std::set<std::string> provable = {"N1",  "N2",  "N3",  "N6",  "N7",  "N8", "N10",
-                                          "N11", "N12", "N13", "N14", "N15", "N16"};
-  std::set<std::string> proved;
-  for (const auto& rows : {quaternion_formulas(), dual_formulas(), rigid_motion_formulas()}) {
-    for (const formula& f : rows) {
-      if (provable.count(f.label) > 0) {
-        CAPTURE(f.label);
-        const auto [by_duals, closed] = f.traced(int(inputs_of(f)[0].size()));
-        CHECK(is_equal(by_duals, closed).verdict == duet::expression::equality::proved);
-        proved.insert(f.label);
-      }
-    }
-  }
-  CHECK(proved == provable);
-}
 
 TEST_CASE("formulas: every formula is within its bounds of 50 digits and is in the table") {
   std::ifstream file(DUET_FORMULAS_PAGE);

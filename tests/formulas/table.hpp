@@ -3,8 +3,6 @@
 
 #include "formulas/formula.hpp"
 
-#include <vector>
-
 /// \file
 /// All rows of the table.
 
