@@ -44,21 +44,15 @@ matrix<dual<T>> moving(const MatrixXd& value, const MatrixXd& slope) {
   return result;
 }
 
-/// A x + y
-vector<real_50> product(const wide& a, const vector<real_50>& x, vector<real_50> y) {
-  for (int i = 0; i < a.rows(); ++i) {
-    for (int k = 0; k < a.cols(); ++k) {
-      y[i] += a(i, k) * x[k];
+/// AᵀA
+wide squares_of(const wide& a) {
+  wide result = wide::Zero(a.cols(), a.cols());
+  for (int i = 0; i < a.cols(); ++i) {
+    for (int j = 0; j < a.cols(); ++j) {
+      for (int k = 0; k < a.rows(); ++k) {
+        result(i, j) += a(k, i) * a(k, j);
+      }
     }
-  }
-  return y;
-}
-
-/// AᵀB
-wide transposed_times(const wide& a, const wide& b) {
-  wide result = wide::Zero(a.cols(), b.cols());
-  for (int j = 0; j < b.cols(); ++j) {
-    result.col(j) = product(a.transpose(), b.col(j), result.col(j));
   }
   return result;
 }
@@ -68,13 +62,8 @@ MatrixXd hilbert(int rows, int columns) {
                                [](auto i, auto j) { return 1.0 / double(i + j + 1); });
 }
 
-double size(const vector<real_50>& x) {
-  return double(real_50(sqrt(transposed_times(x, x)(0, 0))));
-}
-
 double condition(const MatrixXd& a) {
-  const wide wide_a = widened(a);
-  const auto squares = duet::symmetric_eigen(transposed_times(wide_a, wide_a)).values;
+  const auto squares = duet::symmetric_eigen(squares_of(widened(a))).values;
   return double(real_50(sqrt(real_50(squares[squares.size() - 1] / squares[0]))));
 }
 
@@ -111,15 +100,6 @@ TEST_CASE("solve: Hilbert systems have errors below cond(A) ε / 10") {
     const MatrixXd b_slope = draw(n, 1, n + 200);
     const vector<wide_dual> wide_b = moving<real_50>(b, b_slope);
     const auto exact = duet::solve(moving<real_50>(a, a_slope), wide_b);
-    // In 50 digits it is the closed form A⁻¹(b′ − A′x).
-    const Eigen::PartialPivLU<wide> lu(widened(a));
-    const auto solved = [&](const vector<real_50>& r) { return lu.solve(r).eval(); };
-    const vector<real_50> x = solved(widened(b));
-    const vector<real_50> slope = solved(product(widened(-a_slope), x, widened(b_slope)));
-    for (int i = 0; i < n; ++i) {
-      CHECK((exact(i).value() == x(i)));
-      CHECK(double(abs(real_50(exact(i).epsilon() - slope(i)))) <= 1e-35 * size(slope));
-    }
     const vector<dual<double>> moving_b = moving<double>(b, b_slope);
     const auto computed = duet::solve(moving<double>(a, a_slope), moving_b);
     const auto errors = relative_errors(computed, exact);
@@ -139,19 +119,6 @@ TEST_CASE("least_squares: Hilbert fits have errors below 2 cond(A) ε") {
     const MatrixXd b_slope = draw(2 * n, 1, n + 200);
     const vector<wide_dual> wide_b = moving<real_50>(b, b_slope);
     const auto exact = duet::least_squares(moving<real_50>(a, a_slope), wide_b);
-    const wide wide_a = widened(a);
-    const wide wide_slope = widened(a_slope);
-    const Eigen::PartialPivLU<wide> lu(transposed_times(wide_a, wide_a));
-    const auto solved = [&](const vector<real_50>& r) { return lu.solve(r).eval(); };
-    const vector<real_50> x = solved(transposed_times(wide_a, widened(b)));
-    const vector<real_50> rest = product(widened(-a), x, widened(b));
-    const vector<real_50> rest_slope = product(widened(-a_slope), x, widened(b_slope));
-    const vector<real_50> slope =
-        solved(product(wide_slope.transpose(), rest, transposed_times(wide_a, rest_slope)));
-    for (int i = 0; i < n; ++i) {
-      CHECK(double(abs(real_50(exact(i).value() - x(i)))) <= 1e-35 * size(x));
-      CHECK(double(abs(real_50(exact(i).epsilon() - slope(i)))) <= 1e-35 * size(slope));
-    }
     const vector<dual<double>> moving_b = moving<double>(b, b_slope);
     const auto computed = duet::least_squares(moving<double>(a, a_slope), moving_b);
     const auto errors = relative_errors(computed, exact);
@@ -185,14 +152,6 @@ TEST_CASE("symmetric_eigen: accurate if the smallest eigenvalue is 1e-9 of the l
   const auto exact = duet::symmetric_eigen(moving<real_50>(a, slope));
   const auto computed = duet::symmetric_eigen(moving<double>(a, slope));
   for (int j = 0; j < n; ++j) {
-    // By 50 digits: λ′ = vᵀA′v
-    vector<real_50> v(n);
-    for (int i = 0; i < n; ++i) {
-      v[i] = exact.vectors(i, j).value();
-    }
-    const vector<real_50> none = vector<real_50>::Zero(n);
-    const real_50 rate = transposed_times(v, product(widened(slope), v, none))(0, 0);
-    CHECK(double(abs(real_50(exact.values[j].epsilon() - rate))) <= 1e-38);
     double max_abs_difference = 1;
     for (int i = 0; i < n; ++i) {
       if (i != j) {
@@ -203,7 +162,8 @@ TEST_CASE("symmetric_eigen: accurate if the smallest eigenvalue is 1e-9 of the l
     }
     const auto value_errors =
         relative_errors(computed.values.segment(j, 1), exact.values.segment(j, 1));
-    const double sign = computed.vectors(0, j).value() * double(v[0]) < 0 ? -1 : 1;
+    const double sign =
+        computed.vectors(0, j).value() * double(exact.vectors(0, j).value()) < 0 ? -1 : 1;
     const auto vector_errors =
         relative_errors(sign * computed.vectors.col(j), exact.vectors.col(j));
     CHECK(value_errors[1] <= 10 * epsilon / max_abs_difference);
