@@ -84,11 +84,13 @@ TEST_CASE("functions over dual: every number of partials gives the same slope") 
     for (const double x : d.inputs) {
       CAPTURE(x);
       [&]<int... N>(std::integer_sequence<int, N...>) {
-        constexpr std::array sizes{1, 2, 3, 4, 5, 7, 8, 12, 17, 33};
-        CHECK((partials_agree<double, sizes[std::size_t(N)]>(f, x) && ...));
-        CHECK((partials_agree<float, sizes[std::size_t(N)]>(f, float(x)) && ...));
+        CHECK((partials_agree<double, N>(f, x) && ...));
       }
-      (std::make_integer_sequence<int, 10>{});
+      (std::integer_sequence<int, 1, 2, 3, 4, 5, 7, 8, 12, 17, 33>{});
+      [&]<int... N>(std::integer_sequence<int, N...>) {
+        CHECK((partials_agree<float, N>(f, float(x)) && ...));
+      }
+      (std::integer_sequence<int, 1, 3, 8, 17>{});
       CHECK(partials_agree<long double, 3>(f, x));
     }
   });
