@@ -168,13 +168,6 @@ template <class Visit>
 void for_each_function(Visit&& visit) {
   visit("exp", [](const auto& z) { return std::exp(z); });
   visit("log", [](const auto& z) { return std::log(z); });
-  visit("log10", []<class T>(const std::complex<T>& z) {
-    if constexpr (std::is_same_v<T, R>) {
-      return CR(std::log(z) / log(R(10)));
-    } else {
-      return std::log10(z);
-    }
-  });
   visit("sqrt", [](const auto& z) { return std::sqrt(z); });
   visit("sin", [](const auto& z) { return std::sin(z); });
   visit("cos", [](const auto& z) { return std::cos(z); });
@@ -182,54 +175,38 @@ void for_each_function(Visit&& visit) {
   visit("sinh", [](const auto& z) { return std::sinh(z); });
   visit("cosh", [](const auto& z) { return std::cosh(z); });
   visit("tanh", [](const auto& z) { return std::tanh(z); });
-  visit("asin", []<class T>(const std::complex<T>& z) {
-    if constexpr (std::is_same_v<T, R>) {
-      const CR i(R(0), R(1)), one(R(1));
-      return CR(-i * std::log(i * z + std::sqrt(one - z) * std::sqrt(one + z)));
-    } else {
-      return std::asin(z);
-    }
-  });
-  visit("acos", []<class T>(const std::complex<T>& z) {
-    if constexpr (std::is_same_v<T, R>) {
-      const CR i(R(0), R(1)), one(R(1));
-      return CR(-i * std::log(z + i * std::sqrt(one - z) * std::sqrt(one + z)));
-    } else {
-      return std::acos(z);
-    }
-  });
-  visit("atan", []<class T>(const std::complex<T>& z) {
-    if constexpr (std::is_same_v<T, R>) {
-      const CR i(R(0), R(1)), one(R(1));
-      return CR(i / CR(R(2)) * (std::log(one - i * z) - std::log(one + i * z)));
-    } else {
-      return std::atan(z);
-    }
-  });
-  visit("asinh", []<class T>(const std::complex<T>& z) {
-    if constexpr (std::is_same_v<T, R>) {
-      const CR i(R(0), R(1)), one(R(1));
-      return CR(std::log(z + std::sqrt(one + i * z) * std::sqrt(one - i * z)));
-    } else {
-      return std::asinh(z);
-    }
-  });
-  visit("acosh", []<class T>(const std::complex<T>& z) {
-    if constexpr (std::is_same_v<T, R>) {
-      const CR one(R(1));
-      return CR(std::log(z + std::sqrt(z - one) * std::sqrt(z + one)));
-    } else {
-      return std::acosh(z);
-    }
-  });
-  visit("atanh", []<class T>(const std::complex<T>& z) {
-    if constexpr (std::is_same_v<T, R>) {
-      const CR one(R(1));
-      return CR((std::log(one + z) - std::log(one - z)) / CR(R(2)));
-    } else {
-      return std::atanh(z);
-    }
-  });
+  // In 100 digits by logarithms.
+  const CR i(R(0), R(1)), one(R(1)), two(R(2));
+  const auto visit_inverse = [&](const std::string& name, const auto& wide, const auto& f) {
+    visit(name, [=]<class T>(const std::complex<T>& z) {
+      if constexpr (std::is_same_v<T, R>) {
+        return CR(wide(z));
+      } else {
+        return f(z);
+      }
+    });
+  };
+  visit_inverse(
+      "log10", [=](const CR& z) { return log(z) / log(R(10)); },
+      [](const auto& z) { return std::log10(z); });
+  visit_inverse(
+      "asin", [=](const CR& z) { return -i * log(i * z + sqrt(one - z) * sqrt(one + z)); },
+      [](const auto& z) { return std::asin(z); });
+  visit_inverse(
+      "acos", [=](const CR& z) { return -i * log(z + i * sqrt(one - z) * sqrt(one + z)); },
+      [](const auto& z) { return std::acos(z); });
+  visit_inverse(
+      "atan", [=](const CR& z) { return i / two * (log(one - i * z) - log(one + i * z)); },
+      [](const auto& z) { return std::atan(z); });
+  visit_inverse(
+      "asinh", [=](const CR& z) { return log(z + sqrt(one + i * z) * sqrt(one - i * z)); },
+      [](const auto& z) { return std::asinh(z); });
+  visit_inverse(
+      "acosh", [=](const CR& z) { return log(z + sqrt(z - one) * sqrt(z + one)); },
+      [](const auto& z) { return std::acosh(z); });
+  visit_inverse(
+      "atanh", [=](const CR& z) { return (log(one + z) - log(one - z)) / two; },
+      [](const auto& z) { return std::atanh(z); });
   // (Of 100 digits libc++ has powers of two complex numbers only.)
   const auto power = []<class T, class X, class P>(std::type_identity<T>, const X& x, const P& p) {
     if constexpr (std::is_same_v<T, R>) {
