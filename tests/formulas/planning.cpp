@@ -132,48 +132,6 @@ bool is_regular(const numbers<double>& x) {
   return sum > 0 && sum < 100 && joints_of(x).cwiseAbs().maxCoeff() < 7;
 }
 
-formula least_rates() {
-  return make_formula(
-      "N22", R"(\dot\Theta = B\dot\gamma,\; B = J^\top(JJ^\top)^{-1}J_2)", "resolved_rate_matrix",
-      "motion/resolved_motion.hpp", {vector, vector, number, vector, argument::quaternion},
-      []<class T>(const numbers<T>& x) {
-        duet::vector7<T> rate;
-        rate << v_of(x, 7), x[10], x[11], x[12], x[13];
-        const Eigen::Matrix<T, 7, 1> y = duet::resolved_rate_matrix(robot, joints_of(x)) * rate;
-        return as_numbers(y);
-      },
-      []<class T>(const numbers<T>& x, const numbers<T>& d) {
-        using namespace by_hand;
-        const panda<T> a(panda_table, part<7>(x, 0), part<7>(d, 0));
-        const auto [y, dy] =
-            resolved(a, part<3>(x, 7), part<4>(x, 10), part<3>(d, 7), part<4>(d, 10));
-        return row<T>(y, dy);
-      },
-      of_least_rates, is_regular);
-}
-
-formula joint_step() {
-  return make_formula(
-      "N23", R"(\Theta(t+h) = \Theta(t) + \beta B\,(\gamma(t+h) - \gamma(t)))", "resolved_step",
-      "motion/resolved_motion.hpp", {vector, vector, number, rotation_vector, vector},
-      []<class T>(const numbers<T>& x) {
-        return as_numbers(
-            duet::resolved_step(robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .5));
-      },
-      []<class T>(const numbers<T>& x, const numbers<T>& d) {
-        using namespace by_hand;
-        const auto [y, dy] =
-            stepped(part<7>(x, 0), part<7>(d, 0), unit<T>(part<3>(x, 7), part<3>(d, 7)),
-                    part<3>(x, 10), part<3>(d, 10), T(0.5));
-        return row<T>(y, dy);
-      },
-      of_least_rates,
-      [](const numbers<double>& x) {
-        return is_regular(x) &&
-               std::abs(dot(unit_of(x, 7), duet::rotation(robot.pose(joints_of(x))))) > 1e-3;
-      });
-}
-
 formula planning_step() {
   auto f = make_formula(
       "N24",
@@ -210,45 +168,80 @@ formula planning_step() {
   return f;
 }
 
-/// Note 1 of N25: two poses of a path.
-formula steps_along_path() {
-  return make_formula(
-      "N25",
-      R"(\Theta_{k+1} = \Theta_k + \beta B\,(\gamma_{k+1} - \gamma(A(\Theta_k))),\; k = 0, 1)",
-      "resolved_step", "motion/resolved_motion.hpp",
-      {vector, vector, number, rotation_vector, vector, rotation_vector, vector},
-      []<class T>(const numbers<T>& x) {
-        const auto midway =
-            duet::resolved_step(robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .25);
-        return as_numbers(
-            duet::resolved_step(robot, midway, duet::pose(unit_of(x, 13), v_of(x, 16)), .25));
-      },
-      []<class T>(const numbers<T>& x, const numbers<T>& d) {
-        using namespace by_hand;
-        std::pair theta(part<7>(x, 0), part<7>(d, 0));
-        for (const std::size_t i : {7, 13}) {
-          theta = stepped(theta.first, theta.second, unit<T>(part<3>(x, i), part<3>(d, i)),
-                          part<3>(x, i + 3), part<3>(d, i + 3), T(0.25));
-        }
-        return row<T>(theta.first, theta.second);
-      },
-      of_least_rates,
-      [](const numbers<double>& x) {
-        const auto is_clear = [&](const numbers<double>& theta, std::size_t i) {
-          return is_regular(theta) &&
-                 std::abs(dot(unit_of(x, i), duet::rotation(robot.pose(joints_of(theta))))) > 1e-3;
-        };
-        return is_clear(x, 7) &&
-               is_clear(as_numbers(duet::resolved_step(
-                            robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .25)),
-                        13);
-      });
-}
-
 } // namespace
 
 std::vector<formula> planning_formulas() {
-  return {least_rates(), joint_step(), planning_step(), steps_along_path()};
+  return {
+      make_formula(
+          "N22", R"(\dot\Theta = B\dot\gamma,\; B = J^\top(JJ^\top)^{-1}J_2)",
+          "resolved_rate_matrix", "motion/resolved_motion.hpp",
+          {vector, vector, number, vector, argument::quaternion},
+          []<class T>(const numbers<T>& x) {
+            duet::vector7<T> rate;
+            rate << v_of(x, 7), x[10], x[11], x[12], x[13];
+            const Eigen::Matrix<T, 7, 1> y = duet::resolved_rate_matrix(robot, joints_of(x)) * rate;
+            return as_numbers(y);
+          },
+          []<class T>(const numbers<T>& x, const numbers<T>& d) {
+            using namespace by_hand;
+            const panda<T> a(panda_table, part<7>(x, 0), part<7>(d, 0));
+            const auto [y, dy] =
+                resolved(a, part<3>(x, 7), part<4>(x, 10), part<3>(d, 7), part<4>(d, 10));
+            return row<T>(y, dy);
+          },
+          of_least_rates, is_regular),
+      make_formula(
+          "N23", R"(\Theta(t+h) = \Theta(t) + \beta B\,(\gamma(t+h) - \gamma(t)))", "resolved_step",
+          "motion/resolved_motion.hpp", {vector, vector, number, rotation_vector, vector},
+          []<class T>(const numbers<T>& x) {
+            return as_numbers(duet::resolved_step(robot, joints_of(x),
+                                                  duet::pose(unit_of(x, 7), v_of(x, 10)), .5));
+          },
+          []<class T>(const numbers<T>& x, const numbers<T>& d) {
+            using namespace by_hand;
+            const auto [y, dy] =
+                stepped(part<7>(x, 0), part<7>(d, 0), unit<T>(part<3>(x, 7), part<3>(d, 7)),
+                        part<3>(x, 10), part<3>(d, 10), T(0.5));
+            return row<T>(y, dy);
+          },
+          of_least_rates,
+          [](const numbers<double>& x) {
+            return is_regular(x) &&
+                   std::abs(dot(unit_of(x, 7), duet::rotation(robot.pose(joints_of(x))))) > 1e-3;
+          }),
+      planning_step(), // Note 1 of N25: two poses of a path.
+      make_formula(
+          "N25",
+          R"(\Theta_{k+1} = \Theta_k + \beta B\,(\gamma_{k+1} - \gamma(A(\Theta_k))),\; k = 0, 1)",
+          "resolved_step", "motion/resolved_motion.hpp",
+          {vector, vector, number, rotation_vector, vector, rotation_vector, vector},
+          []<class T>(const numbers<T>& x) {
+            const auto midway = duet::resolved_step(robot, joints_of(x),
+                                                    duet::pose(unit_of(x, 7), v_of(x, 10)), .25);
+            return as_numbers(
+                duet::resolved_step(robot, midway, duet::pose(unit_of(x, 13), v_of(x, 16)), .25));
+          },
+          []<class T>(const numbers<T>& x, const numbers<T>& d) {
+            using namespace by_hand;
+            std::pair theta(part<7>(x, 0), part<7>(d, 0));
+            for (const std::size_t i : {7, 13}) {
+              theta = stepped(theta.first, theta.second, unit<T>(part<3>(x, i), part<3>(d, i)),
+                              part<3>(x, i + 3), part<3>(d, i + 3), T(0.25));
+            }
+            return row<T>(theta.first, theta.second);
+          },
+          of_least_rates,
+          [](const numbers<double>& x) {
+            const auto is_clear = [&](const numbers<double>& theta, std::size_t i) {
+              return is_regular(theta) &&
+                     std::abs(dot(unit_of(x, i), duet::rotation(robot.pose(joints_of(theta))))) >
+                         1e-3;
+            };
+            return is_clear(x, 7) &&
+                   is_clear(as_numbers(duet::resolved_step(
+                                robot, joints_of(x), duet::pose(unit_of(x, 7), v_of(x, 10)), .25)),
+                            13);
+          })};
 }
 
 } // namespace duet_formulas
