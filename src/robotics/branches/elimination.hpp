@@ -121,21 +121,10 @@ public:
     }
     arm_.col(0) -= goal.col(0);
     const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 14, 8>> factors(goal.rightCols<8>());
-    const auto& r = factors.matrixQR();
-    // One reflection at a time: Eigen's blocked application takes longer to compile.
-    Eigen::Matrix<double, 27, 1> workspace;
-    for (Eigen::Index k = 0; k < 8; ++k) {
-      arm_.bottomRows(14 - k).applyHouseholderOnTheLeft(r.col(k).tail(13 - k), factors.hCoeffs()[k],
-                                                        workspace.data());
-    }
-    const auto& order = factors.colsPermutation().indices();
-    for (Eigen::Index k = 8; k-- > 0;) {
-      auto row = eliminated_.row(order[k]) = arm_.row(k);
-      for (Eigen::Index j = k + 1; j < 8; ++j) {
-        row -= r(k, j) * eliminated_.row(order[j]);
-      }
-      row /= r(k, k);
-    }
+    arm_.applyOnTheLeft(factors.householderQ().adjoint());
+    eliminated_ =
+        factors.colsPermutation() *
+        factors.matrixR().topRows<8>().triangularView<Eigen::Upper>().solve(arm_.topRows<8>());
   }
 
   /// Matrix at an angle θ₃. Columns: cos θ₄/2, sin θ₄/2, cos 3θ₄/2, sin 3θ₄/2, or 1, d₄, d₄², d₄³,
@@ -187,25 +176,13 @@ public:
     companion.topRows<12>() << matrix::Zero(), matrix::Identity();
     companion.bottomLeftCorner<12, 12>() = -lu.solve(constant);
     companion.bottomRightCorner<12, 12>() = -2 * lu.solve(linear);
-    const Eigen::RealSchur<Eigen::Matrix<double, 24, 24>> schur(companion, false);
-    const auto& t = schur.matrixT();
+    const Eigen::EigenSolver<Eigen::Matrix<double, 24, 24>> solver(companion, false);
     zeros result;
     const auto pivots = lu.matrixLU().diagonal().cwiseAbs().eval();
     result.regularity = pivots.minCoeff() / pivots.maxCoeff();
-    const auto add = [&](Eigen::Index i, complex x) {
-      const complex i_x(-x.imag(), x.real());
-      result.values[std::size_t(i)] = std::polar(1., start) * (1. + i_x) / (1. - i_x);
-    };
     for (Eigen::Index i = 0; i < 24; ++i) {
-      if (i + 1 < 24 && t(i + 1, i) != 0) {
-        const double half = (t(i, i) - t(i + 1, i + 1)) / 2,
-                     height = std::sqrt(std::abs(half * half + t(i + 1, i) * t(i, i + 1)));
-        add(i, {t(i + 1, i + 1) + half, height});
-        add(i + 1, {t(i + 1, i + 1) + half, -height});
-        ++i;
-      } else {
-        add(i, t(i, i));
-      }
+      const complex i_x = complex(0, 1) * solver.eigenvalues()[i];
+      result.values[std::size_t(i)] = std::polar(1., start) * (1. + i_x) / (1. - i_x);
     }
     return result;
   }
