@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <limits>
 #include <numbers>
@@ -61,7 +60,7 @@ struct goal_equations {
 struct scaled_goal {
   double length;                  ///< the planner's unit of length
   std::optional<tip_pose> target; ///< pose, in the planner's unit
-  const goal_view* other;         ///< if there is no pose, in the user's unit
+  const goal_view& other;         ///< if there is no pose, in the user's unit
 
   [[nodiscard]] twist_constraint constraint(const tip_pose& tip) const {
     if (target) {
@@ -69,7 +68,7 @@ struct scaled_goal {
       return {gram_matrix::Identity(), e, e};
     }
     twist_constraint x =
-        other->constraint(to_dual_quaternion({tip.rotation, length * tip.translation}));
+        other.constraint(to_dual_quaternion({tip.rotation, length * tip.translation}));
     x.lower.head<3>() /= length;
     x.upper.head<3>() /= length;
     x.matrix.topRightCorner<3, 3>() /= length;
@@ -84,8 +83,8 @@ struct scaled_goal {
     }
     const three_vector<double> first = length * reach.first;
     const double max_distance = (reach.links + reach.travel + reach.tool) * (1 + 1e-12);
-    return reach.has_joints && other->distance_from &&
-           other->distance_from(first.eigen()) / length > max_distance + tolerance.translation;
+    return reach.has_joints && other.distance_from &&
+           other.distance_from(first.eigen()) / length > max_distance + tolerance.translation;
   }
   /// Sets the equations: all six components of the twist to a pose; of other goals M J Δ = e, where
   /// rows within their bounds impose no equation.
@@ -582,21 +581,19 @@ public:
 
   /// \param name  callable that returns the name of the goal for messages
   /// \throws invalid_input if the goal or the objective is nan at every configuration evaluated
-  template <class Goal, class Name>
-  [[nodiscard]] inverse_kinematics_result operator()(const Goal& of, const Name& name) const {
-    scaled_goal goal{model_.length, {}, nullptr};
+  template <class Name>
+  [[nodiscard]] inverse_kinematics_result operator()(const goal_view& of, const Name& name) const {
+    scaled_goal goal{model_.length, {}, of};
     solution_list known;
-    if constexpr (std::same_as<Goal, goal_view>) {
-      goal.other = &of;
-    } else {
-      goal.target = model_.scaled_pose(normalized(of));
+    if (of.pose != nullptr) {
+      goal.target = model_.scaled_pose(normalized(*of.pose));
       if (preferences_.objective && is_algebraic(model_.chain(), 6)) {
-        known = solutions_within_limits(model_.chain(), of, options_.tolerance);
+        known = solutions_within_limits(model_.chain(), *of.pose, options_.tolerance);
       }
     }
     const bool is_choosy = !preferences_.is_empty() && !goal.is_beyond(model_.reach, tolerance_);
     const attempt x = is_choosy ? preferred(goal, known) : search_(goal);
-    if (is_choosy || std::same_as<Goal, goal_view>) {
+    if (is_choosy || of.pose == nullptr) {
       require_numbers(x, name);
     }
     return {model_.joints_within_limits(x.joints), model_.unscaled_error(x.residual), x.iterations,
@@ -717,12 +714,15 @@ private:
   inverse_kinematics_search<Capacity> search_;
 };
 
-/// Solutions of goals of one type: poses, or those with constraints of their own.
-template <class Goal>
-void solve_all(const chain_view& chain, std::span<const Goal> goals,
-               const Eigen::Ref<const Eigen::VectorXd>& start,
-               std::span<inverse_kinematics_result> out, const inverse_kinematics_options& options,
-               const execution& how, const solution_preferences& preferences, bool is_one) {
+} // namespace
+
+DUET_ABI_BEGIN
+
+void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
+                 const Eigen::Ref<const Eigen::VectorXd>& start,
+                 std::span<inverse_kinematics_result> out,
+                 const inverse_kinematics_options& options, const execution& how,
+                 const solution_preferences& preferences, bool is_one) {
   require(goals.size() == out.size(), "duet: inverse_kinematics: ", goals.size(),
           " goals, but room for ", out.size(), " results");
   with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
@@ -732,38 +732,14 @@ void solve_all(const chain_view& chain, std::span<const Goal> goals,
       return is_one ? one : "goal " + std::to_string(i);
     };
     for (std::size_t i = 0; i < goals.size(); ++i) {
-      if constexpr (std::same_as<Goal, goal_view>) {
-        if (goals[i].check) {
-          goals[i].check(name_of(i, "the region"));
-        }
-      } else {
-        require_pose(goals[i], "inverse_kinematics", name_of(i));
+      if (goals[i].check) {
+        goals[i].check(name_of(i, goals[i].pose != nullptr ? "the goal" : "the region"));
       }
     }
     parallel_for(
         goals.size(), [&](std::size_t i) { out[i] = search(goals[i], [&] { return name_of(i); }); },
         how);
   });
-}
-
-} // namespace
-
-DUET_ABI_BEGIN
-
-void solve_poses(const chain_view& chain, std::span<const dual_quaternion<double>> goals,
-                 const Eigen::Ref<const Eigen::VectorXd>& start,
-                 std::span<inverse_kinematics_result> out,
-                 const inverse_kinematics_options& options, const execution& how,
-                 const solution_preferences& preferences, bool is_one) {
-  solve_all(chain, goals, start, out, options, how, preferences, is_one);
-}
-
-void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
-                 const Eigen::Ref<const Eigen::VectorXd>& start,
-                 std::span<inverse_kinematics_result> out,
-                 const inverse_kinematics_options& options, const execution& how,
-                 const solution_preferences& preferences, bool is_one) {
-  solve_all(chain, goals, start, out, options, how, preferences, is_one);
 }
 
 DUET_ABI_END

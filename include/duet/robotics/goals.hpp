@@ -140,14 +140,19 @@ DUET_ABI_BEGIN
 /// \throws invalid_input for a region that contains no pose
 void require_goal(const task_space_region& region, const std::string& name);
 
-/// View of a goal of any type.
+/// View of a goal of any type: a pose, or a goal with a constraint of its own.
 struct goal_view {
+  const dual_quaternion<double>* pose = nullptr; ///< null for other goals
   std::function<twist_constraint(const dual_quaternion<double>&)> constraint;
   /// Lower bound of the distance of tips at the goal from a point; empty if the goal has none.
   std::function<double(const vector3<double>&)> distance_from;
-  /// Throws invalid_input for a region that contains no pose; empty for other goals.
+  /// Throws invalid_input for what is not a pose and for a region that contains no pose; empty for
+  /// other goals.
   std::function<void(const std::string& name)> check;
 
+  goal_view(const dual_quaternion<double>& goal)
+      : pose(&goal),
+        check([&goal](const auto& name) { require_pose(goal, "inverse_kinematics", name); }) {}
   template <TipGoal G>
   goal_view(const G& goal) : constraint([&goal](const auto& tip) { return goal.constraint(tip); }) {
     if constexpr (requires(const vector3<double>& point) { goal.distance_from(point); }) {

@@ -76,14 +76,7 @@ struct solution_preferences {
   [[nodiscard]] bool is_empty() const { return !objective && around == nullptr; }
 };
 
-/// Solutions of poses, out[i] for goals[i]; messages name the goals by number, if `is_one` the
-/// goal.
-void solve_poses(const chain_view& chain, std::span<const dual_quaternion<double>> goals,
-                 const Eigen::Ref<const Eigen::VectorXd>& start,
-                 std::span<inverse_kinematics_result> out,
-                 const inverse_kinematics_options& options, const execution& how,
-                 const solution_preferences& preferences, bool is_one);
-/// Solutions of partial goals.
+/// Solutions, out[i] for goals[i]; messages name the goals by number, if `is_one` the goal.
 void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
                  const Eigen::Ref<const Eigen::VectorXd>& start,
                  std::span<inverse_kinematics_result> out,
@@ -102,6 +95,27 @@ template <class C, class Objective, class Scene>
       "that returns a number");
   require_objective(objective, chain.size());
   return {objective_view::of<C::joints>(objective), scene_of(around)};
+}
+
+template <class C, class Start, class Objective, class Scene>
+[[nodiscard]] inverse_kinematics_result solve_one(const C& chain, const goal_view& goal,
+                                                  const Start& start,
+                                                  const inverse_kinematics_options& options,
+                                                  const Objective& objective, const Scene& around) {
+  inverse_kinematics_result result;
+  const auto preferences = preferences_of(chain, objective, around);
+  solve_goals(chain, {&goal, 1}, start_of(chain, start), {&result, 1}, options, one_core,
+              preferences, true);
+  return result;
+}
+
+template <class C, class Goals, class Start, class Objective, class Scene>
+void solve_many(const C& chain, const Goals& goals, const Start& start,
+                std::span<inverse_kinematics_result> out, const inverse_kinematics_options& options,
+                const execution& how, const Objective& objective, const Scene& around) {
+  const std::vector<goal_view> views(std::ranges::begin(goals), std::ranges::end(goals));
+  const auto preferences = preferences_of(chain, objective, around);
+  solve_goals(chain, views, start_of(chain, start), out, options, how, preferences, false);
 }
 
 DUET_ABI_END
@@ -137,11 +151,7 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
 inverse_kinematics(const C& chain, const dual_quaternion<double>& goal, const Start& start,
                    const inverse_kinematics_options& options = {}, const Objective& objective = {},
                    const Scene& around = {}) {
-  inverse_kinematics_result result;
-  const auto preferences = detail::preferences_of(chain, objective, around);
-  detail::solve_poses(chain, {&goal, 1}, detail::start_of(chain, start), {&result, 1}, options,
-                      one_core, preferences, true);
-  return result;
+  return detail::solve_one(chain, goal, start, options, objective, around);
 }
 
 /// Inverse kinematics for partial goals: joint coordinates within the limits of a chain at which
@@ -169,12 +179,7 @@ template <SerialChain C, TipGoal G, VectorLike Start, class Objective = no_objec
 inverse_kinematics(const C& chain, const G& goal, const Start& start,
                    const inverse_kinematics_options& options = {}, const Objective& objective = {},
                    const Scene& around = {}) {
-  inverse_kinematics_result result;
-  const detail::goal_view view(goal);
-  const auto preferences = detail::preferences_of(chain, objective, around);
-  detail::solve_goals(chain, {&view, 1}, detail::start_of(chain, start), {&result, 1}, options,
-                      one_core, preferences, true);
-  return result;
+  return detail::solve_one(chain, goal, start, options, objective, around);
 }
 
 /// Inverse kinematics of many partial goals: out[i] = inverse_kinematics(chain, goals[i], start,
@@ -193,10 +198,7 @@ void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
                         std::span<inverse_kinematics_result> out,
                         const inverse_kinematics_options& options = {}, execution how = one_core,
                         const Objective& objective = {}, const Scene& around = {}) {
-  const std::vector<detail::goal_view> views(std::ranges::begin(goals), std::ranges::end(goals));
-  const auto preferences = detail::preferences_of(chain, objective, around);
-  detail::solve_goals(chain, views, detail::start_of(chain, start), out, options, how, preferences,
-                      false);
+  detail::solve_many(chain, goals, start, out, options, how, objective, around);
 }
 
 /// Inverse kinematics of many poses: out[i] = inverse_kinematics(chain, goals[i], start, options,
@@ -209,9 +211,7 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
                         const Start& start, std::span<inverse_kinematics_result> out,
                         const inverse_kinematics_options& options = {}, execution how = one_core,
                         const Objective& objective = {}, const Scene& around = {}) {
-  const auto preferences = detail::preferences_of(chain, objective, around);
-  detail::solve_poses(chain, goals, detail::start_of(chain, start), out, options, how, preferences,
-                      false);
+  detail::solve_many(chain, goals, start, out, options, how, objective, around);
 }
 
 DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result)
