@@ -92,39 +92,35 @@ private:
     return q;
   }
 
-  /// Poses of all links: two configurations are the same if all links have the same poses.
-  [[nodiscard]] std::vector<Eigen::Matrix<double, 7, 1>>
-  link_poses(const Eigen::VectorXd& q) const {
-    std::vector<Eigen::Matrix<double, 7, 1>> result;
-    for (const dual_quaternion<double>& a : of_.tree().poses(q)) {
-      const quaternion<double> r = rotation(a);
-      const vector3<double> t = translation(a) / of_.length();
-      result.push_back({r.w(), r.x(), r.y(), r.z(), t[0], t[1], t[2]});
+  /// Poses of all links, (w, x, y, z, t) as columns: two configurations are the same if all links
+  /// have the same poses.
+  using poses = Eigen::Matrix<double, 7, Eigen::Dynamic>;
+
+  [[nodiscard]] poses link_poses(const Eigen::VectorXd& q) const {
+    const auto all = of_.tree().poses(q);
+    poses result(7, Eigen::Index(all.size()));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const quaternion<double> r = rotation(all[i]);
+      result.col(Eigen::Index(i)) << r.w(), r.x(), r.y(), r.z(), translation(all[i]) / of_.length();
     }
     return result;
   }
-  [[nodiscard]] static bool are_same(const std::vector<Eigen::Matrix<double, 7, 1>>& a,
-                                     const std::vector<Eigen::Matrix<double, 7, 1>>& b) {
+  [[nodiscard]] static bool are_same(const poses& a, const poses& b) {
     constexpr double rounding = 1e-6; // singular configurations are known to half the digits
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      const double rotation_error = std::min((a[i].head<4>() - b[i].head<4>()).norm(),
-                                             (a[i].head<4>() + b[i].head<4>()).norm());
-      if (rotation_error > rounding || (a[i].tail<3>() - b[i].tail<3>()).norm() > rounding) {
-        return false;
-      }
-    }
-    return true;
+    const auto r = a.topRows<4>(), s = b.topRows<4>();
+    return (r - s).colwise().norm().cwiseMin((r + s).colwise().norm()).maxCoeff() <= rounding &&
+           (a - b).bottomRows<3>().colwise().norm().maxCoeff() <= rounding;
   }
 
   void add(assembly_search_result& result, const Eigen::VectorXd& q) {
-    const auto poses = link_poses(q);
-    for (std::size_t i = 0; i < known_poses_.size(); ++i) {
-      if (are_same(poses, known_poses_[i])) {
-        ++result.positions[i].hits;
-        return;
-      }
+    const poses all = link_poses(q);
+    const auto known = std::find_if(known_poses_.begin(), known_poses_.end(),
+                                    [&](const poses& other) { return are_same(all, other); });
+    if (known != known_poses_.end()) {
+      ++result.positions[std::size_t(known - known_poses_.begin())].hits;
+      return;
     }
-    known_poses_.push_back(poses);
+    known_poses_.push_back(all);
     assembly_configuration configuration{q, 0, 1, true};
     const Eigen::MatrixXd j = columns(unit_jacobian(of_, q), free_);
     const Eigen::VectorXd s = rank_revealing_svd(j).s;
@@ -139,19 +135,16 @@ private:
 
   [[nodiscard]] static bool comes_first(const assembly_configuration& a,
                                         const assembly_configuration& b) {
-    for (Eigen::Index i = 0; i < a.coordinates.size(); ++i) {
-      if (std::abs(a.coordinates[i] - b.coordinates[i]) > 1e-6) {
-        return a.coordinates[i] < b.coordinates[i];
-      }
-    }
-    return false;
+    const Eigen::VectorXd &p = a.coordinates, &q = b.coordinates;
+    return std::lexicographical_compare(p.begin(), p.end(), q.begin(), q.end(),
+                                        [](double x, double y) { return y - x > 1e-6; });
   }
 
   const closed_chain_mechanism& of_;
   Eigen::VectorXd at_;
   std::vector<int> free_;
   periodic_coordinates periodic_;
-  std::vector<std::vector<Eigen::Matrix<double, 7, 1>>> known_poses_;
+  std::vector<poses> known_poses_;
 };
 
 /// Search around a configuration. Lengths are relative to that of the mechanism.
@@ -301,12 +294,12 @@ void closed_chain_mechanism::measure() {
     include_length(loop.second.offset);
     length_ = std::max(length_, loop.length);
   }
-  units_ = Eigen::VectorXd::Ones(size());
-  Eigen::Index i = 0;
   for (const tree_joint& each : tree_.joints()) {
     include_length(each.motion.origin);
   }
   length_ = length_ > 0 && std::isfinite(length_) ? length_ : 1;
+  units_ = Eigen::VectorXd::Ones(size());
+  Eigen::Index i = 0;
   for (const tree_joint& each : tree_.joints()) {
     if (each.mimic) {
       continue;

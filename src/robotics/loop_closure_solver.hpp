@@ -3,7 +3,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
-#include <duet/dual/taylor.hpp>
+#include <duet/derivative/derivative.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/kinematics/tree_table.hpp>
@@ -131,11 +131,7 @@ struct periodic_coordinates {
 /// The columns of a matrix at these indices.
 [[nodiscard]] inline Eigen::MatrixXd columns(const Eigen::MatrixXd& of,
                                              const std::vector<int>& these) {
-  Eigen::MatrixXd result(of.rows(), Eigen::Index(these.size()));
-  for (std::size_t i = 0; i < these.size(); ++i) {
-    result.col(Eigen::Index(i)) = of.col(these[i]);
-  }
-  return result;
+  return of(Eigen::seqN(0, of.rows()), these);
 }
 
 /// Damped least squares (Levenberg–Marquardt method) for F(q) = 0.
@@ -197,46 +193,24 @@ private:
   double damping_ = 1e-2;
 };
 
-/// Scalar for second derivatives of the equations.
-using along_line = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
-
-/// The quadratic forms wᵀ ∂²F(K v, K v) in v, a symmetric matrix for each column w, from F along
-/// the lines of single columns of K and of sums of two: 2 b(u, v) = b(u + v, u + v) − b(u, u) −
-/// b(v, v).
+/// The quadratic forms wᵀ ∂²F(K v, K v) in v, a symmetric matrix for each column w, from the
+/// derivatives of ∂F/∂q along the columns of K.
 ///
 /// \param columns  K, each row per unit of its coordinate
 [[nodiscard]] inline std::vector<Eigen::MatrixXd> quadratic_forms(const closed_chain_mechanism& of,
                                                                   const Eigen::VectorXd& q,
                                                                   const Eigen::MatrixXd& w,
                                                                   const Eigen::MatrixXd& columns) {
-  const Eigen::Index n = columns.cols();
-  std::vector<Eigen::MatrixXd> result(std::size_t(w.cols()), Eigen::MatrixXd(n, n));
-  const auto second = [&](const Eigen::VectorXd& direction) {
-    Eigen::Matrix<along_line, Eigen::Dynamic, 1> x(q.size());
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      x[i] = q[i] + of.units()[i] * direction[i] * along_line::variable(0);
-    }
-    const auto f = of.residuals(x);
-    Eigen::VectorXd all(f.size());
-    for (Eigen::Index i = 0; i < f.size(); ++i) {
-      all[i] = f[i].derivative(2);
-    }
-    return Eigen::VectorXd(w.transpose() * all);
-  };
-  for (Eigen::Index j = 0; j < n; ++j) {
-    for (Eigen::Index i = 0; i <= j; ++i) {
-      const Eigen::VectorXd along =
-          i == j ? second(columns.col(j)) : second(columns.col(i) + columns.col(j));
-      for (std::size_t k = 0; k < result.size(); ++k) {
-        result[k](i, j) = along[Eigen::Index(k)];
-      }
-    }
-  }
-  for (Eigen::MatrixXd& form : result) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      for (Eigen::Index i = 0; i < j; ++i) {
-        form(j, i) = form(i, j) = (form(i, j) - form(i, i) - form(j, j)) / 2;
-      }
+  const Eigen::MatrixXd directions = of.units().asDiagonal() * columns;
+  std::vector<Eigen::MatrixXd> result(std::size_t(w.cols()),
+                                      Eigen::MatrixXd(columns.cols(), columns.cols()));
+  for (Eigen::Index j = 0; j < columns.cols(); ++j) {
+    const auto along = [&]<class T>(const T& t) {
+      return of.constraint_jacobian((q.cast<T>() + t * directions.col(j).cast<T>()).eval());
+    };
+    const Eigen::MatrixXd rates = w.transpose() * derivative(along, 0.).derivative * directions;
+    for (std::size_t k = 0; k < result.size(); ++k) {
+      result[k].col(j) = rates.row(Eigen::Index(k)).transpose();
     }
   }
   return result;

@@ -6,6 +6,7 @@
 #include <duet/core/random_source.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
+#include <duet/dual/taylor.hpp>
 #include <duet/kinematics/closed_loop.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
@@ -609,7 +610,7 @@ Eigen::MatrixXd driven_motion::solver(const Eigen::VectorXd& q) const {
 }
 
 void driven_motion::require_accelerations() const {
-  using T = detail::along_line;
+  using T = taylor<double, 2, derivative_tag<closed_chain_mechanism>>;
   for (const int drive : drives_) {
     Eigen::Matrix<T, Eigen::Dynamic, 1> q = start_.cast<T>();
     q[drive] = T::variable(start_[drive]);
