@@ -18,6 +18,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,6 +37,10 @@ constexpr const char* known_columns =
     "known columns are u (tau, t, time, timestamp; sec and nanosec), x y z (tx, px, p_x, p_RS_R_x "
     "...) and qw qx qy qz (q_w, q_RS_w ...), with units as in `t [s]`; Euler angles need "
     "`euler_columns`";
+
+[[nodiscard]] bool is_any(std::string_view text, std::initializer_list<std::string_view> of) {
+  return std::find(of.begin(), of.end(), text) != of.end();
+}
 
 /// Characters that separate the parts of a name.
 constexpr std::string_view name_separators = "._/";
@@ -84,7 +89,7 @@ private:
 
   /// Column that the name denotes; also sets the kind of a time and its unit.
   [[nodiscard]] table_column meaning() {
-    if (name == "u" || name == "tau") {
+    if (is_any(name, {"u", "tau"})) {
       return table_column::u;
     }
     is_of_ros = name == "%time" || name == "field_header_stamp";
@@ -96,18 +101,16 @@ private:
       return table_column::u;
     }
     const std::size_t cut = name.rfind('_');
-    const std::string last = cut == std::string::npos ? name : name.substr(cut + 1);
-    const std::string before = cut == std::string::npos ? "" : name.substr(0, cut);
-    if ((last == "s" || last == "ms" || last == "us" || last == "ns") && is_time(before) &&
-        unit.empty()) {
+    const std::string last = name.substr(cut + 1), // npos + 1 is 0
+        before = cut == std::string::npos ? "" : name.substr(0, cut);
+    if (is_any(last, {"s", "ms", "us", "ns"}) && is_time(before) && unit.empty()) {
       unit = last; // timestamp_ns
       is_a_time = true;
       return table_column::u;
     }
     if (unit.empty() && (name == last || is_time(before) || before.ends_with("_stamp"))) {
-      is_seconds = last == "sec" || last == "secs";
-      is_a_time = is_seconds || last == "nanosec" || last == "nanosecs" || last == "nsec" ||
-                  last == "nsecs";
+      is_seconds = is_any(last, {"sec", "secs"});
+      is_a_time = is_seconds || is_any(last, {"nanosec", "nanosecs", "nsec", "nsecs"});
       is_measured = before.ends_with("header_stamp");
       if (is_a_time) {
         return is_seconds ? table_column::u : table_column::nanosec;
@@ -133,7 +136,7 @@ private:
   }
 
   [[nodiscard]] static bool is_time(const std::string& text) {
-    return text == "t" || text == "time" || text == "timestamp" || text == "stamp";
+    return is_any(text, {"t", "time", "timestamp", "stamp"});
   }
 };
 
@@ -291,10 +294,9 @@ private:
   }
 
   [[nodiscard]] static bool is_unit_of(const euler_columns& angles, const std::string& unit) {
-    return unit.empty() ||
-           (angles.unit() == angle_unit::degree
-                ? unit == "deg" || unit == "degree" || unit == "degrees" || unit == "\u00b0"
-                : unit == "rad" || unit == "radian" || unit == "radians");
+    return angles.unit() == angle_unit::degree
+               ? is_any(unit, {"", "deg", "degree", "degrees", "\u00b0"})
+               : is_any(unit, {"", "rad", "radian", "radians"});
   }
 
   /// Problem with the header: missing columns, or units of angles other than the given one.
@@ -429,31 +431,25 @@ struct row_format {
   std::string remark;       ///< assumptions about the format, empty if there were none
 };
 
-/// Unit of time that no header names.
-struct guessed_time_unit {
-  std::size_t digits; ///< unit is 10^−digits s
-  std::string name;   ///< name of the unit, empty for seconds
+/// Name of the unit 10^−digits s of times, empty for seconds.
+[[nodiscard]] std::string name_of_time_unit(std::size_t digits) {
+  return digits == 9   ? "nanoseconds"
+         : digits == 6 ? "microseconds"
+         : digits == 3 ? "milliseconds"
+                       : "";
+}
 
-  explicit guessed_time_unit(std::size_t digits_of_second)
-      : digits(digits_of_second), name(digits == 9   ? "nanoseconds"
-                                       : digits == 6 ? "microseconds"
-                                       : digits == 3 ? "milliseconds"
-                                                     : "") {}
-  /// Guesses the unit of times from the years 1973 to 5138. A number with a fraction is in seconds,
-  /// except one from 1e17 to 1e20, so that files of times in seconds keep their unit when they are
-  /// written and read again.
-  explicit guessed_time_unit(std::string_view cell)
-      : guessed_time_unit(digits_of(std::abs(parse_number(cell).value_or(0)))) {}
-
-private:
-  [[nodiscard]] static std::size_t digits_of(double size) {
-    return size >= 1e20                              ? 0
-           : size >= 1e17                            ? 9
-           : size < 1e11 || size != std::floor(size) ? 0
-           : size >= 1e14                            ? 6
-                                                     : 3;
-  }
-};
+/// Digits of the unit of times that no header names, guessed from the years 1973 to 5138. A number
+/// with a fraction is in seconds, except one from 1e17 to 1e20, so that files of times in seconds
+/// keep their unit when they are written and read again.
+[[nodiscard]] std::size_t guessed_digits(std::string_view cell) {
+  const double size = std::abs(parse_number(cell).value_or(0));
+  return size >= 1e20                              ? 0
+         : size >= 1e17                            ? 9
+         : size < 1e11 || size != std::floor(size) ? 0
+         : size >= 1e14                            ? 6
+                                                   : 3;
+}
 
 /// Number of digits of a unit of time in a header: 9 for ns, 0 for s.
 ///
@@ -590,15 +586,16 @@ private:
 
   /// Reads one time a line, in the unit of a header if there is one.
   void read_times() {
-    std::optional<guessed_time_unit> unit;
+    std::optional<std::size_t> digits; // of the unit
+    std::string guessed_unit;
     for_each_line(times_path_, [&](std::size_t line, std::string_view text) {
       split_cells(split_line(text).text, cells_);
       if (cells_.empty()) {
         return;
       }
-      if (!unit && are_words(cells_)) {
+      if (!digits && are_words(cells_)) {
         const std::string name = column_name(cells_[0]).unit;
-        unit.emplace(name.empty() ? 0 : digits_of_time_unit(times_path_, line, name));
+        digits = name.empty() ? 0 : digits_of_time_unit(times_path_, line, name);
         return;
       }
       double number = 0;
@@ -610,12 +607,13 @@ private:
         raise(file_error(times_path_, line,
                          "1 numbers expected, got " + std::to_string(cells_.size())));
       }
-      if (!unit) {
-        unit.emplace(cells_[0]);
-        times_remark_ = unit->name.empty() ? "" : "; times read as " + unit->name;
+      if (!digits) {
+        digits = guessed_digits(cells_[0]);
+        guessed_unit = name_of_time_unit(*digits);
+        times_remark_ = guessed_unit.empty() ? "" : "; times read as " + guessed_unit;
       }
-      require_integer(times_path_, line, "time", number, times_remark_.empty() ? "" : unit->name);
-      times_.push_back({line, file_time(cells_[0], unit->digits)});
+      require_integer(times_path_, line, "time", number, guessed_unit);
+      times_.push_back({line, file_time(cells_[0], *digits)});
     });
     if (times_.empty()) {
       raise(file_error(times_path_, "holds no rows"));
@@ -634,7 +632,7 @@ private:
 
   /// Layout of a first row of numbers: TUM's or EuRoC's, empty for others.
   [[nodiscard]] std::optional<table_layout> usual_layout(bool has_commas) const {
-    if (cells_.size() != 8 || (has_commas && guessed_time_unit(cells_[0]).digits != 9)) {
+    if (cells_.size() != 8 || (has_commas && guessed_digits(cells_[0]) != 9)) {
       return std::nullopt;
     }
     table_layout result;
@@ -679,14 +677,13 @@ private:
     if (header.has_time && !header.is_seconds && unit.empty()) {
       const std::string_view first = header.at[0] < cells_.size() ? cells_[header.at[0]] : "";
       const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
-      const guessed_time_unit guess =
-          header.is_euroc || is_of_ros ? guessed_time_unit(9) : guessed_time_unit(first);
-      result.digits = guess.digits;
-      result.guessed_unit = guess.name;
-      if (!guess.name.empty()) {
+      result.digits = header.is_euroc || is_of_ros ? 9 : guessed_digits(first);
+      result.guessed_unit = name_of_time_unit(result.digits);
+      if (result.digits > 0) {
         result.remark = header.is_euroc ? "a EuRoC file: timestamps in nanoseconds"
-                        : is_of_ros     ? header.names[0] + " as rostopic writes it, in nanoseconds"
-                                        : "timestamps of this size are taken for " + guess.name;
+                        : is_of_ros
+                            ? header.names[0] + " as rostopic writes it, in nanoseconds"
+                            : "timestamps of this size are taken for " + result.guessed_unit;
       }
     } else if (header.has_time && !header.is_seconds) {
       result.digits = digits_of_time_unit(path_, line, unit);
