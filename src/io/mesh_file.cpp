@@ -24,8 +24,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <fstream>
-#include <ios>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -373,17 +371,6 @@ std::vector<std::array<double, 3>> read_imported_mesh(const std::string& path, c
 
 #endif
 
-/// \throws file_error if a file cannot be read, or is too large
-void require_readable(const std::string& path, std::size_t max_megabytes) {
-  std::ifstream in;
-  if (const std::string error_message = open_input(path, in); !error_message.empty()) {
-    raise(file_error(path, error_message));
-  }
-  if (in.seekg(0, std::ios::end).tellg() > std::streamoff(max_megabytes << 20U)) {
-    raise(file_error(path, "has more than " + std::to_string(max_megabytes) + " MB"));
-  }
-}
-
 } // namespace
 } // namespace duet::detail
 
@@ -399,7 +386,7 @@ triangle_mesh read_mesh(const std::string& path) {
   if (ending == ".stl" || ending == ".obj") {
     result.vertices = detail::triangle_file(path, max_megabytes).read(ending);
   } else {
-    detail::require_readable(path, max_megabytes);
+    static_cast<void>(detail::whole_content(path, max_megabytes)); // Assimp's errors say less
     result.vertices = detail::read_imported_mesh(path, ending, max_megabytes);
   }
   if (result.vertices.empty()) {
