@@ -190,7 +190,7 @@ int lost_near_goal(const task& t, random_source& random) {
   int lost = 0;
   const detail::branches_of_chain branches(t.arm, t.goal);
   const detail::branches_of_chain nearby(t.arm, moved * t.goal);
-  for (auto x : detail::branch_search(nearby.loop()).answer().solutions) {
+  for (auto x : detail::solutions_of(nearby.loop()).solutions) {
     if (detail::close_loop(branches.loop(), x.theta)) {
       const auto solution = branches(x);
       const bool is_regular =

@@ -117,14 +117,11 @@ all_inverse_kinematics_result all_inverse_kinematics(const chain_view& chain,
   detail::require_algebraic(chain, 6, "all_inverse_kinematics");
   detail::require_pose(goal, "all_inverse_kinematics", "the goal");
   const detail::branches_of_chain branches(chain, goal);
-  const detail::branch_search search(branches.loop());
-  all_inverse_kinematics_result result;
-  result.complex_solutions = search.answer().complex_solutions;
-  result.method = search.method();
-  result.is_complete = search.answer().is_complete;
-  result.solutions.reserve(search.answer().solutions.size());
-  for (const detail::loop_solution& x : search.answer().solutions) {
-    auto solution = branches(x, search.answer().coupled_pair);
+  const detail::loop_solution_set all = detail::solutions_of(branches.loop());
+  all_inverse_kinematics_result result{{}, all.complex_solutions, all.method, all.is_complete};
+  result.solutions.reserve(all.solutions.size());
+  for (const detail::loop_solution& x : all.solutions) {
+    auto solution = branches(x, all.coupled_pair);
     if (branches.is_new(solution, result.solutions)) {
       result.solutions.push_back(std::move(solution));
     } else {

@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace duet::detail {
@@ -460,6 +461,7 @@ struct parallel_prismatic {
       result.solutions.push_back({theta, each.multiplicity});
     }
   }
+  result.method = solution_method::two_prismatic;
   result.is_complete = all.is_complete && result.solutions.empty();
   const double second_factor =
       dot(pair.loop.joints[0].axis, pair.loop.joints[pair.second].axis) > 0 ? -1 : 1;
@@ -486,14 +488,15 @@ struct parallel_prismatic {
   return a.is_revolute && b.is_revolute && is_on(a.axis, b.axis);
 }
 
-} // namespace
-
+/// Solutions of the loop that begins with joint number `first` as a loop of the type `Form`;
+/// nothing if none is found and coordinates are undetermined.
 template <class Form, class... Rest>
-bool branch_search::solve(solution_method method, int first, const loop_equation& loop,
-                          const Rest&... rest) {
+[[nodiscard]] std::optional<loop_solution_set>
+solved(solution_method method, int first, const loop_equation& loop, const Rest&... rest) {
   constexpr int max_solutions = std::same_as<Form, three_prismatic_loop> ? 2 : 8;
   constexpr double rounding = 1e-13, nearby = .01;
-  const bool is_determined = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
+  loop_solution_set result{.complex_solutions = max_solutions, .method = method};
+  result.is_complete = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
     const closure_error closure(loop, theta);
     if (closure.twist.norm() > rounding * closure.size) { // near a singularity
       six_coordinates refined = theta;
@@ -509,64 +512,28 @@ bool branch_search::solve(solution_method method, int first, const loop_equation
       solution.theta[Eigen::Index(i)] =
           loop.joints[std::size_t(k)].is_revolute ? wrap_angle(theta[k]) : theta[k];
     }
-    answer_.solutions.push_back(solution);
-    answer_.complex_solutions -= multiplicity;
+    result.solutions.push_back(solution);
+    result.complex_solutions -= multiplicity;
   });
-  if (!is_determined && answer_.solutions.empty()) {
-    answer_.complex_solutions = 0;
-    return false;
+  if (!result.is_complete && result.solutions.empty()) {
+    return {};
   }
-  method_ = method;
-  answer_.complex_solutions = std::max(0, answer_.complex_solutions + max_solutions);
-  answer_.is_complete = is_determined;
-  return true;
+  result.complex_solutions = std::max(0, result.complex_solutions);
+  return result;
 }
 
-branch_search::branch_search(const loop_equation& loop) {
-  search(loop);
-  const bool is_certain = answer_.solutions.empty() && is_beyond_reach(loop),
-             is_general = method_ == solution_method::elimination || // search near the goal, too
-                          method_ == solution_method::two_prismatic;
-  if (answer_.solutions.empty() && !is_certain && !is_general) {
-    search_near_goal(loop);
-  }
-  // `two_prismatic` detects permanent self-motion itself.
-  if (method_ != solution_method::two_prismatic) {
-    answer_.is_complete = is_certain || (answer_.is_complete && !is_always_singular(loop));
-  }
-}
-
-/// Searches for solutions with slightly displaced goals: round-off may have made a double solution
-/// complex, and with a nearby goal it is complex or two real ones.
-void branch_search::search_near_goal(const loop_equation& loop) {
-  constexpr int attempts = 6;
-  constexpr double displacement = 1e-7;
-  for (int k = 0; k < attempts && answer_.solutions.empty(); ++k) {
-    branch_search nearby;
-    nearby.search(with_disturbed_goal(loop, displacement, std::uint64_t(k) + 1));
-    for (loop_solution x : nearby.answer_.solutions) {
-      answer_.is_complete = false;
-      if (answer_.solutions.empty() && close_loop(loop, x.theta)) {
-        answer_.solutions.push_back(x);
-        answer_.complex_solutions = std::max(0, answer_.complex_solutions - x.multiplicity);
-      }
-    }
-  }
-}
-
-void branch_search::search(const loop_equation& loop) {
+/// Solutions by the method that suits the geometry of the loop.
+[[nodiscard]] loop_solution_set solved_by_geometry(const loop_equation& loop) {
   const auto& joints = loop.joints;
   const auto prismatic_count = std::count_if(joints.begin(), joints.end(),
                                              [](const loop_joint& j) { return !j.is_revolute; });
   if (prismatic_count == 3) {
-    solve<three_prismatic_loop>(solution_method::three_prismatic, 0, loop);
-    return;
+    return solved<three_prismatic_loop>(solution_method::three_prismatic, 0, loop)
+        .value_or(loop_solution_set{});
   }
   if (prismatic_count == 2) {
     const auto pair = parallel_prismatic_of(loop);
-    answer_ = pair ? solve_parallel_prismatic(*pair) : solve_two_prismatic(loop);
-    method_ = solution_method::two_prismatic;
-    return;
+    return pair ? solve_parallel_prismatic(*pair) : solve_two_prismatic(loop);
   }
   const auto from = [&](int first) {
     loop_equation result = loop;
@@ -578,18 +545,46 @@ void branch_search::search(const loop_equation& loop) {
   for (std::size_t i = 0; i < 4 && prismatic_count == 0; ++i) {
     const loop_joint &a = joints[i], &b = joints[i + 1], &c = joints[i + 2];
     const int first = int(i), after = (first + 3) % 6;
+    std::optional<loop_solution_set> result;
     if (const auto centre = common_point(a, b, c)) {
       const vector3d in_loop = after == 0 ? *centre : inverse_pose(loop.closing).point(*centre);
-      if (solve<spherical_loop>(solution_method::spherical_wrist, after, from(after), in_loop)) {
-        return;
-      }
+      result =
+          solved<spherical_loop>(solution_method::spherical_wrist, after, from(after), in_loop);
     } else if (are_parallel(a, b) && are_parallel(b, c)) {
-      if (solve<planar_loop>(solution_method::parallel_axes, first, from(first))) {
-        return;
+      result = solved<planar_loop>(solution_method::parallel_axes, first, from(first));
+    }
+    if (result) {
+      return std::move(*result);
+    }
+  }
+  return eliminated(loop);
+}
+
+} // namespace
+
+loop_solution_set solutions_of(const loop_equation& loop) {
+  loop_solution_set result = solved_by_geometry(loop);
+  if (result.method == solution_method::two_prismatic) {
+    return result; // which detects permanent self-motion itself
+  }
+  const bool is_certain = result.solutions.empty() && is_beyond_reach(loop);
+  // Round-off may have made a double solution complex: with a goal nearby it is complex or two real
+  // ones. Elimination searches near the goal, too.
+  constexpr int attempts = 6;
+  constexpr double displacement = 1e-7;
+  const bool is_near = !is_certain && result.method != solution_method::elimination;
+  for (int k = 0; is_near && k < attempts && result.solutions.empty(); ++k) {
+    const auto nearby = with_disturbed_goal(loop, displacement, std::uint64_t(k) + 1);
+    for (loop_solution x : solved_by_geometry(nearby).solutions) {
+      result.is_complete = false;
+      if (result.solutions.empty() && close_loop(loop, x.theta)) {
+        result.solutions.push_back(x);
+        result.complex_solutions = std::max(0, result.complex_solutions - x.multiplicity);
       }
     }
   }
-  answer_ = eliminated(loop);
+  result.is_complete = is_certain || (result.is_complete && !is_always_singular(loop));
+  return result;
 }
 
 DUET_ABI_END

@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <Eigen/QR>
 
 #include <algorithm>
 #include <array>
@@ -410,18 +411,15 @@ private:
     set(2, gamma);
     set(3, angle_of(conj(rotation_product(b.axis, beta, c.axis, gamma)) * rest, d.axis));
     const closure_error closure(loop_, result);
-    const auto linear_part = [](const auto& x) { return Eigen::Vector3d(x.template head<3>()); };
-    const auto direction = [&](std::size_t k) {
-      return linear_part(closure.jacobian.col(Eigen::Index(prismatic_[k])));
-    };
     // Component of the closure error in the plane of both axes. If these are parallel nothing is
     // finite, which `close_loop` rejects as an initial guess.
-    const Eigen::Vector3d first = direction(0), second = direction(1),
-                          remaining = linear_part(closure.twist);
-    const Eigen::Vector3d across = first.cross(second);
-    const double square = across.squaredNorm();
-    result[Eigen::Index(prismatic_[0])] = remaining.cross(second).dot(across) / square;
-    result[Eigen::Index(prismatic_[1])] = first.cross(remaining).dot(across) / square;
+    Eigen::Matrix<double, 3, 2> directions;
+    for (int k = 0; k < 2; ++k) {
+      directions.col(k) = closure.jacobian.col(Eigen::Index(prismatic_[std::size_t(k)])).head<3>();
+    }
+    const Eigen::Vector2d travel = directions.householderQr().solve(closure.twist.head<3>());
+    result[Eigen::Index(prismatic_[0])] = travel[0];
+    result[Eigen::Index(prismatic_[1])] = travel[1];
     return result;
   }
 
@@ -730,7 +728,9 @@ loop_solution_set eliminated(const loop_equation& loop) {
 }
 
 loop_solution_set solve_two_prismatic(const loop_equation& loop) {
-  return solve_general_loop<two_prismatic>(loop);
+  loop_solution_set result = solve_general_loop<two_prismatic>(loop);
+  result.method = solution_method::two_prismatic;
+  return result;
 }
 
 DUET_ABI_END

@@ -32,37 +32,6 @@ namespace {
 using seven_coordinates = Eigen::Matrix<double, 7, 1>;
 using seven_columns = Eigen::Matrix<double, 6, 7>;
 
-/// Arm of seven joints, and the goal of its tip (end effector).
-class redundant_arm {
-public:
-  redundant_arm(const chain_view& chain, const dual_quaternion<double>& to)
-      : goal(to_tip_pose(to)), chain_(chain), model_(chain), scaled_goal_(model_.scaled_pose(to)) {}
-
-  tip_pose goal;
-
-  /// Characteristic length.
-  [[nodiscard]] double size() const { return model_.length; }
-  [[nodiscard]] bool is_revolute(int joint) const {
-    return model_.is_rotational[std::size_t(joint)];
-  }
-  /// Pose error of the tip, and the Jacobian; lengths relative to the arm's size.
-  [[nodiscard]] six_coordinates tip_error(const seven_coordinates& x,
-                                          seven_columns& jacobian) const {
-    const auto state = model_.at(model_.joints(x));
-    jacobian = state.jacobian;
-    return error_twist(state.tip, scaled_goal_);
-  }
-  /// Axes of the other joints, with one fixed at a coordinate.
-  [[nodiscard]] chain_screws axes_without(int fixed, double value) const {
-    return chain_screws(chain_, seven_coordinates(value * seven_coordinates::Unit(fixed)), fixed);
-  }
-
-private:
-  known_size_view<7> chain_;
-  planning_model<8> model_;
-  tip_pose scaled_goal_;
-};
-
 /// Consecutive points of a curve, or a sample of a component of another dimension.
 struct traced_curve {
   std::vector<seven_coordinates> points;
@@ -79,7 +48,8 @@ struct self_motion_tolerance {
   static constexpr double same_rough = 1e-4; ///< distance where the Jacobian is singular
 };
 
-/// Self-motion set M = {θ : the tip is at the goal}, with angles modulo full turns.
+/// Self-motion set M = {θ : the tip is at the goal} of an arm of seven joints, with angles modulo
+/// full turns.
 ///
 /// At a regular point M is a curve along the Jacobian's null space. If the null space has more
 /// dimensions, M may still be a curve (two that coincide, as for a straight elbow), curves that
@@ -88,28 +58,48 @@ class self_motion_set {
 public:
   using null_space = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, 7>;
 
-  explicit self_motion_set(const redundant_arm& arm) : arm_(arm) {}
+  self_motion_set(const chain_view& chain, const dual_quaternion<double>& goal)
+      : chain_(chain), model_(chain), goal_(to_tip_pose(goal)),
+        scaled_goal_(model_.scaled_pose(goal)), unit_(model_.unit.head<7>()) {}
+
+  [[nodiscard]] bool is_revolute(int joint) const {
+    return model_.is_rotational[std::size_t(joint)];
+  }
+  /// All solutions of the other six joints with one joint fixed, and whether there are no others.
+  [[nodiscard]] solution_list slice(int fixed, double value) const {
+    const chain_screws axes(chain_, seven_coordinates(value * seven_coordinates::Unit(fixed)),
+                            fixed);
+    const loop_solution_set all = solutions_of(axes.loop_to(goal_));
+    solution_list result{{}, all.is_complete};
+    for (const loop_solution& x : all.solutions) {
+      seven_coordinates theta;
+      for (int i = 0, k = 0; i < 7; ++i) {
+        theta[i] = i == fixed ? value : x.theta[k] * (is_revolute(i) ? 1 : axes.size);
+        k += i != fixed;
+      }
+      result.joints.emplace_back(theta);
+    }
+    return result;
+  }
 
   /// Difference b − a, rotation angles by the shorter arc; lengths relative to the arm's size.
   [[nodiscard]] seven_coordinates difference(const seven_coordinates& b,
                                              const seven_coordinates& a) const {
-    seven_coordinates d = b - a;
+    seven_coordinates d = (b - a).cwiseQuotient(unit_);
     for (int i = 0; i < 7; ++i) {
-      d[i] = arm_.is_revolute(i) ? wrap_angle(d[i]) : d[i] / arm_.size();
+      d[i] = is_revolute(i) ? wrap_angle(d[i]) : d[i];
     }
     return d;
   }
 
-  [[nodiscard]] seven_coordinates moved(seven_coordinates x, const seven_coordinates& d) const {
-    for (int i = 0; i < 7; ++i) {
-      x[i] += arm_.is_revolute(i) ? d[i] : arm_.size() * d[i];
-    }
-    return x;
+  [[nodiscard]] seven_coordinates moved(const seven_coordinates& x,
+                                        const seven_coordinates& d) const {
+    return x + d.cwiseProduct(unit_);
   }
 
   [[nodiscard]] double error(const seven_coordinates& x) const {
     seven_columns j;
-    return arm_.tip_error(x, j).norm();
+    return tip_error(x, j).norm();
   }
 
   /// Point of M that damped least squares (Levenberg–Marquardt) leads to from an initial guess. If
@@ -128,7 +118,7 @@ public:
     for (int k = 0; k < iterations && since < (min_error < self_motion_tolerance::on_set ? 2 : 8);
          ++k) {
       seven_columns j;
-      const six_coordinates e = arm_.tip_error(x, j);
+      const six_coordinates e = tip_error(x, j);
       const double size = e.norm();
       ++since;
       if (size < .9 * min_error) {
@@ -154,7 +144,7 @@ public:
   /// Orthonormal basis of the Jacobian's null space.
   [[nodiscard]] null_space kernel(const seven_coordinates& x) const {
     seven_columns j;
-    static_cast<void>(arm_.tip_error(x, j));
+    static_cast<void>(tip_error(x, j));
     // The product of the singular values gives a bound on the smallest: the mean square of the
     // others is not below their geometric mean. If it is far from 0 normal equations suffice.
     constexpr double regular = 1e-3;
@@ -227,7 +217,7 @@ public:
     seven_coordinates x;
     for (int i = 0; i < 7; ++i) {
       const double part = 2 * random() - 1;
-      x[i] = part * (arm_.is_revolute(i) ? std::numbers::pi : arm_.size());
+      x[i] = part * (is_revolute(i) ? std::numbers::pi : unit_[i]);
     }
     return projected(x, std::numeric_limits<double>::infinity());
   }
@@ -236,7 +226,18 @@ private:
   using square = Eigen::Matrix<double, 7, 7>;
   using decomposition = Eigen::JacobiSVD<square>;
 
-  const redundant_arm& arm_;
+  /// Pose error of the tip, and the Jacobian; lengths relative to the arm's size.
+  [[nodiscard]] six_coordinates tip_error(const seven_coordinates& x,
+                                          seven_columns& jacobian) const {
+    const auto state = model_.at(model_.joints(x));
+    jacobian = state.jacobian;
+    return error_twist(state.tip, scaled_goal_);
+  }
+
+  known_size_view<7> chain_;
+  planning_model<8> model_;
+  tip_pose goal_, scaled_goal_;
+  seven_coordinates unit_; ///< 1 for angles, the arm's size for lengths
 };
 
 /// Predictor–corrector continuation of the self-motion curves of one arm and goal: steps along the
@@ -505,13 +506,17 @@ private:
 /// Collects the components of the self-motion set of one redundant arm at one goal.
 class component_search {
 public:
-  component_search(const redundant_arm& arm, double resolution)
-      : arm_(arm), set_(arm), tracer_(set_, resolution), sampler_(set_), resolution_(resolution) {}
+  component_search(const self_motion_set& set, double resolution)
+      : set_(set), tracer_(set, resolution), sampler_(set), resolution_(resolution) {}
 
   [[nodiscard]] std::vector<traced_curve> operator()() {
     add_slices();
-    if (is_degenerate_ || seeds_[1].empty()) {
-      add_random_points();
+    // Points of components on which no joint can be fixed alone, from random configurations.
+    const int random_points = is_degenerate_ || seeds_[1].empty() ? 256 : 0;
+    for (int k = 0; k < random_points; ++k) {
+      if (const auto x = set_.any_point(random_)) {
+        add_seed(*x);
+      }
     }
     // Seeds with the smallest null spaces first: almost all points of a component have a null space
     // of the same dimension, some have larger ones.
@@ -529,37 +534,18 @@ private:
   void add_slices() {
     const int count = int(std::ceil(2 * std::numbers::pi / resolution_));
     for (int fixed = 0; fixed < 7; ++fixed) {
-      for (int k = 0; k < count && arm_.is_revolute(fixed); ++k) {
+      for (int k = 0; k < count && set_.is_revolute(fixed); ++k) {
         // not at round numbers from tables, where arms are singular
-        add_slice(fixed, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
-      }
-    }
-  }
-  void add_slice(int fixed, double value) {
-    const chain_screws axes = arm_.axes_without(fixed, value);
-    const branch_search search(axes.loop_to(arm_.goal));
-    for (const loop_solution& x : search.answer().solutions) {
-      seven_coordinates theta;
-      for (int i = 0, k = 0; i < 7; ++i) {
-        theta[i] = i == fixed ? value : x.theta[k] * (arm_.is_revolute(i) ? 1 : axes.size);
-        k += i != fixed;
-      }
-      // If other joints can move while this one is fixed, its value is singular, or the set has
-      // more dimensions.
-      is_degenerate_ = is_degenerate_ || !search.answer().is_complete;
-      if (const auto on_set = set_.projected(theta, .1)) {
-        add_seed(*on_set);
-      }
-    }
-  }
-
-  /// Adds points of components on which no joint can be fixed alone, by searches from random
-  /// configurations.
-  void add_random_points() {
-    constexpr int count = 256;
-    for (int k = 0; k < count; ++k) {
-      if (const auto x = set_.any_point(random_)) {
-        add_seed(*x);
+        const auto all =
+            set_.slice(fixed, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
+        for (const Eigen::VectorXd& theta : all.joints) {
+          // If other joints can move while this one is fixed, its value is singular, or the set has
+          // more dimensions.
+          is_degenerate_ = is_degenerate_ || !all.is_complete;
+          if (const auto on_set = set_.projected(theta, .1)) {
+            add_seed(*on_set);
+          }
+        }
       }
     }
   }
@@ -623,8 +609,7 @@ private:
 
   static constexpr double step = .05, small_step = .005; ///< steps from a singular point to others
 
-  const redundant_arm& arm_;
-  self_motion_set set_;
+  const self_motion_set& set_;
   curve_tracer tracer_;
   surface_sampler sampler_;
   double resolution_;
@@ -647,9 +632,9 @@ std::vector<self_motion_curve> self_motion_curves(const chain_view& chain,
   detail::require_pose(goal, "self_motion_curves", "the goal");
   detail::require_option("self_motion_curves", "resolution", options.resolution,
                          options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
-  const detail::redundant_arm arm(chain, normalized(goal));
+  const detail::self_motion_set set(chain, normalized(goal));
   std::vector<self_motion_curve> result;
-  for (const detail::traced_curve& curve : detail::component_search(arm, options.resolution)()) {
+  for (const detail::traced_curve& curve : detail::component_search(set, options.resolution)()) {
     result.push_back(
         {{curve.points.begin(), curve.points.end()}, curve.is_closed, curve.dimension});
   }

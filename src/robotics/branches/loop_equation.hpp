@@ -165,9 +165,10 @@ struct coupled_prismatic_pair {
 
 /// Solutions of a loop, and whether they are complete.
 struct loop_solution_set {
-  std::vector<loop_solution> solutions;
+  std::vector<loop_solution> solutions = {};
   int complex_solutions = 0;
   bool is_complete = false;
+  solution_method method = solution_method::elimination;
   std::optional<coupled_prismatic_pair> coupled_pair =
       {}; ///< if set, a solution represents all that it makes
 };
@@ -184,27 +185,7 @@ struct loop_solution_set {
 }
 
 /// All solutions of a loop, by the method that suits its geometry.
-class branch_search {
-public:
-  explicit branch_search(const loop_equation& loop);
-
-  [[nodiscard]] const loop_solution_set& answer() const { return answer_; }
-  [[nodiscard]] solution_method method() const { return method_; }
-
-private:
-  branch_search() = default;
-
-  void search(const loop_equation& loop);
-  void search_near_goal(const loop_equation& loop);
-  /// Solves the loop that begins with its joint number `first` as a loop of the type `Form`.
-  ///
-  /// \return false if no solution is found and coordinates are undetermined
-  template <class Form, class... Rest>
-  bool solve(solution_method method, int first, const loop_equation& loop, const Rest&... rest);
-
-  loop_solution_set answer_;
-  solution_method method_ = solution_method::elimination;
-};
+[[nodiscard]] loop_solution_set solutions_of(const loop_equation& loop);
 
 /// Loop with a goal close to the given one.
 [[nodiscard]] loop_equation with_disturbed_goal(loop_equation loop, double by, std::uint64_t seed);
