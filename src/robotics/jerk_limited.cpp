@@ -659,91 +659,72 @@ struct jerk_search_result {
   return result;
 }
 
-/// Search for motions within jerk limits with given velocities at both ends. It proceeds from a
-/// motion with small accelerations by successive refinement, each result being the initial guess
-/// (warm start) of the next. If that fails it starts with jerk limits relaxed until it succeeds and
-/// tightens them step by step, so that the velocities at the ends are right throughout.
-class jerk_search {
-public:
-  jerk_search(const time_parametrisation_input& problem, const std::vector<joint_cubic>& curve)
-      : problem_(problem), curve_(curve), gentle_(min_acceleration_motion(problem, curve)) {}
-
-  /// Motion within the limits; empty if none is found.
-  [[nodiscard]] std::optional<timed_path> run() {
-    std::optional<timed_path> result;
-    timed_path last = gentle_;
-    for (const double divisor : {6, 3, 2}) {
-      auto next = find(last, divisor, 1);
-      if (next.is_feasible()) {
-        result = next.motion;
-      } else if (next.reached[next.end()] > nearest_.reached[nearest_.end()]) {
-        nearest_ = next;
-      }
-      last = std::move(next.motion);
-    }
-    return result ? result : narrowed();
+/// Motion found with relaxed jerk limits, which are then tightened step by step, so that the
+/// velocities at the ends are right throughout; empty if none is found.
+///
+/// \param find  (initial guess, divisor of the number of intervals, factor of the jerk limits) ↦
+/// `jerk_search_result`
+template <class Find>
+[[nodiscard]] std::optional<timed_path> tightened(const timed_path& gentle, const Find& find) {
+  double scale = 2;
+  jerk_search_result last = find(gentle, 3, scale);
+  while (!last.is_feasible() && scale < 1e4) {
+    scale *= 2;
+    last = find(gentle, 3, scale);
   }
-  /// Motion that comes nearest, among those that violate the limits.
-  [[nodiscard]] const jerk_search_result& nearest() const { return nearest_; }
-
-private:
-  /// Searches with jerk limits multiplied by `scale`, coarsely if that is not 1.
-  [[nodiscard]] jerk_search_result find(const timed_path& from, double divisor, double scale) {
-    time_parametrisation_input loose = problem_;
-    loose.jerk *= scale;
-    return timed_by_jerks(loose, curve_, from,
-                          std::size_t(std::max(16.0, problem_.parts / divisor)),
-                          scale > 1 ? 200 : 5e4);
-  }
-  [[nodiscard]] std::optional<timed_path> narrowed() {
-    double scale = 2;
-    auto last = find(gentle_, 3, scale);
-    while (!last.is_feasible() && scale < 1e4) {
-      scale *= 2;
-      last = find(gentle_, 3, scale);
+  for (double step = 1.5; last.is_feasible() && step > 1.01;) {
+    const double narrower = std::max(1.0, scale / step);
+    jerk_search_result next = find(last.motion, 2, narrower);
+    if (!next.is_feasible()) {
+      next = find(last.motion, 1, narrower);
     }
-    for (double step = 1.5; last.is_feasible() && step > 1.01;) {
-      const double narrower = std::max(1.0, scale / step);
-      auto next = find(last.motion, 2, narrower);
-      if (!next.is_feasible()) {
-        next = find(last.motion, 1, narrower);
-      }
-      if (!next.is_feasible()) {
-        step = std::sqrt(step);
-      } else if (narrower == 1) {
-        return next.motion;
-      } else {
-        scale = narrower;
-        last = std::move(next);
-      }
+    if (!next.is_feasible()) {
+      step = std::sqrt(step);
+    } else if (narrower == 1) {
+      return next.motion;
+    } else {
+      scale = narrower;
+      last = std::move(next);
     }
-    return {};
   }
-
-  const time_parametrisation_input& problem_;
-  const std::vector<joint_cubic>& curve_;
-  timed_path gentle_;
-  jerk_search_result nearest_;
-};
+  return {};
+}
 
 } // namespace
 
+/// The search proceeds from a motion with small accelerations by successive refinement, each result
+/// being the initial guess (warm start) of the next.
 timed_path timed_within_jerks(const time_parametrisation_input& problem,
                               const std::vector<joint_cubic>& curve) {
   require_smooth(problem, curve);
   require_feasible_ends(problem, curve);
-  jerk_search search(problem, curve);
-  if (auto result = search.run()) {
-    return *result;
+  const auto find = [&](const timed_path& from, double divisor, double scale) {
+    time_parametrisation_input loose = problem;
+    loose.jerk *= scale;
+    return timed_by_jerks(loose, curve, from, std::size_t(std::max(16.0, problem.parts / divisor)),
+                          scale > 1 ? 200 : 5e4); // relaxed limits only roughly
+  };
+  const timed_path gentle = min_acceleration_motion(problem, curve);
+  timed_path last = gentle;
+  std::optional<timed_path> result;
+  jerk_search_result nearest; // among those that violate the limits
+  for (const double divisor : {6, 3, 2}) {
+    jerk_search_result next = find(last, divisor, 1);
+    if (next.is_feasible()) {
+      result = next.motion;
+    } else if (next.reached[next.end()] > nearest.reached[nearest.end()]) {
+      nearest = next;
+    }
+    last = std::move(next.motion);
   }
-  const auto& nearest = search.nearest();
+  result = result ? result : tightened(gentle, find);
   const std::size_t end = nearest.end(), joint = nearest.nearest_joint;
-  raise(invalid_input(message("duet: time_optimal_trajectory: the ", end == 0 ? "initial" : "final",
-                              " velocities are too large for the limits (expected at most ",
-                              std::floor(1e4 * nearest.reached[end]) / 1e4, " of them; joint ",
-                              joint, ", with the velocity ",
-                              end_velocities(problem, curve)[end][Eigen::Index(joint)],
-                              ", is nearest to its limits)")));
+  require(result.has_value(), "duet: time_optimal_trajectory: the ", end == 0 ? "initial" : "final",
+          " velocities are too large for the limits (expected at most ",
+          std::floor(1e4 * nearest.reached[end]) / 1e4, " of them; joint ", joint,
+          ", with the velocity ", end_velocities(problem, curve)[end][Eigen::Index(joint)],
+          ", is nearest to its limits)");
+  return *result;
 }
 
 DUET_ABI_END

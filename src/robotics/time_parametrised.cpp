@@ -46,15 +46,13 @@ Eigen::VectorXd validated_limits(const Eigen::VectorXd& limits, const char* name
                                  bool may_be_infinite) {
   require(limits.size() == n, "duet: time_optimal_trajectory: ", limits.size(), " ", name,
           " limits (expected ", n, ", one per joint)");
-  Eigen::VectorXd result(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double x = limits[i];
     require(x > 0 && (may_be_infinite || x - x == 0), "duet: time_optimal_trajectory: the ", name,
             " limit of joint ", i, " is ", x, " (expected positive",
             may_be_infinite ? ")" : " and finite)");
-    result[i] = x;
   }
-  return result;
+  return limits;
 }
 
 /// Path velocity ṡ at an end; the slope of the path there becomes the direction of the
@@ -157,14 +155,14 @@ time_parametrisation_input validated_input(const std::vector<Eigen::VectorXd>& w
   const Eigen::Index n = waypoints.front().size();
   const Eigen::VectorXd v = validated_limits(velocity, "velocity", n, true);
   const Eigen::VectorXd a = validated_limits(acceleration, "acceleration", n, false);
+  const Eigen::VectorXd none =
+      Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
   const Eigen::VectorXd j =
       options.jerk.empty()
-          ? Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity())
+          ? none
           : validated_limits(Eigen::Map<const Eigen::VectorXd>(options.jerk.data(),
                                                                Eigen::Index(options.jerk.size())),
                              "jerk", n, true);
-  const Eigen::VectorXd none =
-      Eigen::VectorXd::Constant(n, std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < waypoints.size(); ++k) {
     require(waypoints[k].size() == n && waypoints[k].allFinite(),
             "duet: time_optimal_trajectory: waypoint ", k,
@@ -334,20 +332,18 @@ private:
   }
 };
 
-/// Infeasible boundary velocity: the end of the path, and the largest ṡ² that is feasible there.
-struct infeasible_boundary {
-  bool at_start = false, at_end = false;
-  double largest = 0;
+/// Maximum squared path velocities, or an infeasible boundary velocity.
+struct phase_plane_result {
+  std::vector<double> squares = {};       ///< ṡ² at the ends of all segments
+  std::optional<int> infeasible_end = {}; ///< 0: start, 1: end; `squares` then has no meaning
+  double largest = 0;                     ///< largest ṡ² that is feasible there
 };
 
 /// Maximum squared path velocities ṡ² at the ends of all segments. The backward pass finds the
 /// range from which the given end can be reached; the forward pass takes the largest values that
 /// this range and the constraints admit.
-///
-/// \param infeasible  set if a boundary velocity is infeasible; then the result has no meaning
-[[nodiscard]] std::vector<double> phase_plane_velocities(const path_bounds& path, double first,
-                                                         double last,
-                                                         infeasible_boundary& infeasible) {
+[[nodiscard]] phase_plane_result phase_plane_velocities(const path_bounds& path, double first,
+                                                        double last) {
   const std::size_t n = path.size();
   const auto cap = [&](std::size_t i) {
     return std::min(i < n ? path.before[i] : path.after[n - 1],
@@ -379,16 +375,14 @@ struct infeasible_boundary {
   if (first <= upper[0] * tolerance && first * tolerance >= lower[0] &&
       last <= cap(n) * tolerance) {
     forwards();
-    return speeds;
+    return {std::move(speeds)};
   }
   backwards(0, std::min(last, cap(n)));
   if (first > upper[0] * tolerance) {
-    infeasible = {true, false, upper[0]};
-  } else {
-    backwards(0, cap(n));
-    infeasible = {false, true, forwards()};
+    return {{}, 0, upper[0]};
   }
-  return speeds;
+  backwards(0, cap(n));
+  return {{}, 1, forwards()};
 }
 
 /// Segments of a curve with constant s̈ each: their number is proportional to the length, but at
@@ -410,19 +404,6 @@ struct infeasible_boundary {
     }
   }
   return result;
-}
-
-/// Checks that the boundary velocities are feasible.
-///
-/// \throws invalid_input if they are not, with the fraction that is feasible
-void require_feasible_velocities(const infeasible_boundary& infeasible, double first, double last) {
-  if (infeasible.at_start || infeasible.at_end) {
-    const double required = infeasible.at_start ? first : last;
-    raise(invalid_input(message(
-        "duet: time_optimal_trajectory: the ", infeasible.at_start ? "initial" : "final",
-        " velocities are infeasible (expected at most ",
-        std::floor(9999 * std::sqrt(infeasible.largest) / required) / 1e4, " times as large)")));
-  }
 }
 
 /// Motion with given squared path velocities ṡ² at the ends of segments.
@@ -469,13 +450,16 @@ void require_feasible_velocities(const infeasible_boundary& infeasible, double f
   Eigen::VectorXd limits = problem.acceleration;
   std::optional<timed_path> result;
   for (int round = 0; round < 8; ++round) {
-    infeasible_boundary infeasible;
-    const std::vector<double> squares = phase_plane_velocities(
-        path_bounds(parts, problem.velocity, limits), first * first, last * last, infeasible);
-    if (result && (infeasible.at_start || infeasible.at_end)) {
+    const auto [squares, infeasible_end, largest] = phase_plane_velocities(
+        path_bounds(parts, problem.velocity, limits), first * first, last * last);
+    if (result && infeasible_end) {
       break; // velocities at their limits
     }
-    require_feasible_velocities(infeasible, first, last);
+    require(!infeasible_end, "duet: time_optimal_trajectory: the ",
+            infeasible_end == 0 ? "initial" : "final",
+            " velocities are infeasible (expected at most ",
+            std::floor(9999 * std::sqrt(largest) / (infeasible_end == 0 ? first : last)) / 1e4,
+            " times as large)");
     result = timed_by_squares(parts, squares);
     const double excess = largest_fraction(*result, problem.acceleration) - 1;
     if (!(excess > 1e-13)) {
@@ -493,17 +477,14 @@ timed_path min_acceleration_motion(const time_parametrisation_input& problem,
   const auto parts = parts_of(curve, problem.polygon.s.back(), problem.parts);
   std::array<double, 2> ends{problem.initial_speed * problem.initial_speed,
                              problem.final_speed * problem.final_speed};
-  infeasible_boundary infeasible;
-  std::vector<double> squares;
+  phase_plane_result found;
   const auto is_feasible = [&](double scale) {
-    const Eigen::VectorXd acceleration = scale * problem.acceleration;
-    infeasible = {};
-    squares = phase_plane_velocities(path_bounds(parts, problem.velocity, acceleration), ends[0],
-                                     ends[1], infeasible);
-    return !infeasible.at_start && !infeasible.at_end;
+    found = phase_plane_velocities(
+        path_bounds(parts, problem.velocity, scale * problem.acceleration), ends[0], ends[1]);
+    return !found.infeasible_end;
   };
   while (!is_feasible(1)) {
-    ends[infeasible.at_start ? 0 : 1] = infeasible.largest > 0 ? .99 * infeasible.largest : 0;
+    ends[std::size_t(*found.infeasible_end)] = found.largest > 0 ? .99 * found.largest : 0;
   }
   if (ends[0] + ends[1] > 0) {
     double low = 1e-4, high = 1;
@@ -513,7 +494,7 @@ timed_path min_acceleration_motion(const time_parametrisation_input& problem,
     }
     (void)is_feasible(high);
   }
-  return timed_by_squares(parts, squares);
+  return timed_by_squares(parts, found.squares);
 }
 
 joint_trajectory timed(const time_parametrisation_input& problem,
