@@ -829,17 +829,6 @@ planned(const planning_model<Capacity>& model, const Eigen::VectorXd& start,
   return plan;
 }
 
-/// Path along screw motions from pose to pose, pose i at the parameter i.
-struct path_through {
-  std::vector<dual_quaternion<double>> poses;
-
-  [[nodiscard]] dual_quaternion<double> operator()(double u) const {
-    const std::size_t i = std::min(std::size_t(u), poses.size() - 1);
-    const std::size_t next = std::min(i + 1, poses.size() - 1);
-    return sclerp(poses[i], poses[next], u - double(i));
-  }
-};
-
 /// Shorter screw motion between two poses (N19), as a function of τ.
 [[nodiscard]] path_function screw_path(const dual_quaternion<double>& first,
                                        const dual_quaternion<double>& last) {
@@ -873,13 +862,17 @@ motion_plan follow_poses(const chain_view& chain, const Eigen::Ref<const Eigen::
                          const plan_options& options, const objective_view& objective,
                          const scene* around) {
   require(!poses.empty(), "duet: follow_path: the list of poses is empty");
-  path_through target;
+  std::vector<dual_quaternion<double>> all;
   std::vector<double> stops;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     require_pose(poses[i], "follow_path", "pose " + std::to_string(i));
-    target.poses.push_back(normalized(poses[i]));
+    all.push_back(normalized(poses[i]));
     stops.push_back(double(i));
   }
+  const auto target = [&](double u) {
+    const std::size_t i = std::min(std::size_t(u), all.size() - 1);
+    return sclerp(all[i], all[std::min(i + 1, all.size() - 1)], u - double(i));
+  };
   return follow(chain, start, target, stops, options, objective, around);
 }
 
