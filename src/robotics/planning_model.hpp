@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -27,6 +28,24 @@
 
 namespace duet::detail {
 DUET_ABI_BEGIN
+
+/// \throws invalid_input unless the value is finite and `is_good`: within the `range` of the
+/// message
+inline void require_option(const char* caller, const char* name, double value, bool is_good,
+                           const char* range) {
+  require(is_good && value - value == 0, "duet: ", caller, ": ", name, " is ", value, " (expected ",
+          range, ")");
+}
+inline void require_positive(const char* caller, const char* name, double value) {
+  require_option(caller, name, value, value > 0, "a positive number");
+}
+inline void require_positive(const char* caller, const char* name, const pose_tolerance& value) {
+  const bool is_length = !(value.translation > 0);
+  if (is_length || !(value.rotation > 0)) {
+    const std::string part = std::string(name) + (is_length ? ".translation" : ".rotation");
+    require_positive(caller, part.c_str(), is_length ? value.translation : value.rotation);
+  }
+}
 
 /// Largest number of joints of a chain.
 inline constexpr int max_capacity = 100;

@@ -256,24 +256,6 @@ inline void require_pose(const dual_quaternion<double>& a, const char* caller,
                               ", p.q = ", square.epsilon() / 2, " (expected 1 and 0)")));
 }
 
-/// \throws invalid_input unless the value is finite and `is_good`: within the `range` of the
-/// message
-inline void require_option(const char* caller, const char* name, double value, bool is_good,
-                           const char* range) {
-  require(is_good && value - value == 0, "duet: ", caller, ": ", name, " is ", value, " (expected ",
-          range, ")");
-}
-inline void require_positive(const char* caller, const char* name, double value) {
-  require_option(caller, name, value, value > 0, "a positive number");
-}
-inline void require_positive(const char* caller, const char* name, const pose_tolerance& value) {
-  const bool is_length = !(value.translation > 0);
-  if (is_length || !(value.rotation > 0)) {
-    const std::string part = std::string(name) + (is_length ? ".translation" : ".rotation");
-    require_positive(caller, part.c_str(), is_length ? value.translation : value.rotation);
-  }
-}
-
 } // namespace detail
 
 /// State of the joints: coordinates, velocities and accelerations.
