@@ -83,6 +83,17 @@ double crossing(const auto& f, double value, double low) {
   return high;
 }
 
+/// Computes the last two coefficients c_1 and c_0 of a reference parametrisation at an end in
+/// motion at p_0, from the next two positions and the coefficient before them.
+void advance(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0) {
+  // The differences have one sign. ds/dτ at the end is c_2 + 2 c_1 − 3 p_0: at least a twentieth
+  // of c_2 − p_0 remains.
+  const double near_end = p_1 - p_0, next = p_2 - p_1, max_bend = 2.85 * (c_2 - p_0);
+  const double bend = std::clamp((next - near_end) / near_end, -.5, max_bend / near_end) * near_end;
+  c_1 = p_0 - bend / 6;
+  c_0 = 6 * p_0 - 4 * c_1 - c_2;
+}
+
 } // namespace
 
 reference_parametrisation::reference_parametrisation(const std::vector<double>& arc_lengths,
@@ -110,10 +121,11 @@ reference_parametrisation::pieces(const std::vector<double>& knots) const {
   std::vector<reference_piece> result;
   std::size_t edge = 0;
   for (std::size_t k = 0; k + 3 < c_.size(); ++k) {
-    const auto [p_0, p_1, p_2, p_3] = powers(k);
-    const auto arc_length = [p_0 = p_0, p_1 = p_1, p_2 = p_2, p_3 = p_3](double t) {
-      return p_0 + t * (p_1 + t * (p_2 + t * p_3));
-    };
+    // s by powers of τ − k.
+    const double d_0 = c_[k + 1] - c_[k], d_1 = c_[k + 2] - c_[k + 1], d_2 = c_[k + 3] - c_[k + 2];
+    const double p_0 = c_[k + 1] + (d_1 - d_0) / 6, p_1 = (d_0 + d_1) / 2, p_2 = (d_1 - d_0) / 2,
+                 p_3 = (d_2 - 2 * d_1 + d_0) / 6;
+    const auto arc_length = [&](double t) { return p_0 + t * (p_1 + t * (p_2 + t * p_3)); };
     for (double from = 0; from < 1;) {
       const bool is_last = edge + 2 == knots.size();
       const double end = knots[edge + 1];
@@ -128,21 +140,6 @@ reference_parametrisation::pieces(const std::vector<double>& knots) const {
     }
   }
   return result;
-}
-
-void reference_parametrisation::advance(double p_0, double p_1, double p_2, double c_2, double& c_1,
-                                        double& c_0) {
-  // The differences have one sign. ds/dτ at the end is c_2 + 2 c_1 − 3 p_0: at least a twentieth
-  // of c_2 − p_0 remains.
-  const double near_end = p_1 - p_0, next = p_2 - p_1, max_bend = 2.85 * (c_2 - p_0);
-  const double bend = std::clamp((next - near_end) / near_end, -.5, max_bend / near_end) * near_end;
-  c_1 = p_0 - bend / 6;
-  c_0 = 6 * p_0 - 4 * c_1 - c_2;
-}
-
-std::array<double, 4> reference_parametrisation::powers(std::size_t k) const {
-  const double d_0 = c_[k + 1] - c_[k], d_1 = c_[k + 2] - c_[k + 1], d_2 = c_[k + 3] - c_[k + 2];
-  return {c_[k + 1] + (d_1 - d_0) / 6, (d_0 + d_1) / 2, (d_1 - d_0) / 2, (d_2 - 2 * d_1 + d_0) / 6};
 }
 
 namespace {

@@ -131,12 +131,6 @@ public:
   [[nodiscard]] std::vector<reference_piece> pieces(const std::vector<double>& knots) const;
 
 private:
-  /// Computes the last two coefficients c_1 and c_0 at an end in motion at p_0, from the next two
-  /// positions and the coefficient before them.
-  static void advance(double p_0, double p_1, double p_2, double c_2, double& c_1, double& c_0);
-  /// Coefficients of s in [k, k + 1] by powers of τ − k.
-  [[nodiscard]] std::array<double, 4> powers(std::size_t k) const;
-
   std::vector<double> c_;
 };
 
