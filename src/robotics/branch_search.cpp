@@ -304,16 +304,14 @@ private:
   [[nodiscard]] first_harmonic beyond_reach(const six_coordinates& theta) const {
     const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2],
                &fifth = loop_.joints[4];
-    const auto across = [&](const loop_joint& j, const vector3d& x) {
-      return x - dot(j.axis, x) * j.axis;
-    };
     const tip_pose after = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 5, 1)),
                    before = inverse_pose(product_of_joints(loop_, theta, 3, 1));
     const rotating_vector offset(-1 * fifth.axis, before.point(third.point) - fifth.point);
-    const vector3d fixed_part = across(fifth, fifth.point - inverse_pose(after).point(first.point));
-    const double a = length_of(across(first, second.point - first.point)),
+    const vector3d fixed_part =
+        orthogonal_part(fifth.point - inverse_pose(after).point(first.point), fifth.axis);
+    const double a = length_of(orthogonal_part(second.point - first.point, first.axis)),
                  c = length_of(fixed_part),
-                 b = length_of(across(first, third.point - second.point)),
+                 b = length_of(orthogonal_part(third.point - second.point, first.axis)),
                  d = length_of(offset.across),
                  radius = (std::max(std::abs(a - b), std::abs(c - d)) + std::min(a + b, c + d)) / 2;
     return {c * c + d * d - radius * radius, 2 * dot(fixed_part, offset.across),
@@ -328,8 +326,7 @@ private:
     const double total_angle = angle_of(motion.rotation, n); // sum of angles about n and −n
     const vector3d offset = second.point - first.point;
     const rotating_vector arm(second.axis, third.point - second.point, offset);
-    const auto in_plane = [&](const vector3d& x) { return x - dot(n, x) * n; };
-    const vector3d across = in_plane(offset), goal = in_plane(to);
+    const vector3d across = orthogonal_part(offset, n), goal = orthogonal_part(to, n);
     connecting_rotation rotation(n, arm, to);
     const double error = multiplicity > 1 ? 2 * one_angle : 0; // error of the other angles
     const bool has_second = visit_zeros(

@@ -106,8 +106,7 @@ private:
     double largest = 0, reach = length_of(centre);
     for (loop_joint& j : joints) {
       reach = std::max(reach, length_of(j.point));
-      const auto from_centre = j.point - centre;
-      j.point = from_centre - dot(from_centre, j.axis) * j.axis;
+      j.point = orthogonal_part(j.point - centre, j.axis);
       largest = std::max(largest, length_of(j.point));
     }
     const double to_tip = length_of(tip.translation - centre), rounding = 1e-12 * reach;

@@ -263,9 +263,7 @@ private:
     theta[1] = loop_.joints[1].is_revolute ? std::atan2(x[1], x[0]) : x[0];
     theta[0] = loop_.joints[0].is_revolute ? std::atan2(x[5], x[2]) : x[2];
     const tip_pose rest = inverse_pose(product_of_joints(loop_, theta, 0, 5)) * loop_.closing;
-    const three_vector<double>& n = loop_.joints[5].axis;
-    const quaternion<double>& q = rest.rotation;
-    theta[5] = 2 * std::atan2(n.x * q.x() + n.y * q.y() + n.z * q.z(), q.w());
+    theta[5] = angle_of(rest.rotation, loop_.joints[5].axis);
     if (theta.allFinite()) {
       visit(theta);
     }

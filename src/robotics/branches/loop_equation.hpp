@@ -86,6 +86,17 @@ struct loop_equation {
   return {cosine, sine * axis.x, sine * axis.y, sine * axis.z};
 }
 
+/// Angle of a rotation about n.
+[[nodiscard]] inline double angle_of(const quaternion<double>& q, const three_vector<double>& n) {
+  return 2 * std::atan2(n.x * q.x() + n.y * q.y() + n.z * q.z(), q.w());
+}
+
+/// Component of x orthogonal to a unit vector n.
+[[nodiscard]] inline three_vector<double> orthogonal_part(const three_vector<double>& x,
+                                                          const three_vector<double>& n) {
+  return x - dot(n, x) * n;
+}
+
 /// Sines and cosines of half the coordinates.
 [[nodiscard]] inline sines_at_once<6> half_angle_sincos_of(const six_coordinates& theta) {
   return sines_at_once<6>(theta[0] / 2, theta[1] / 2, theta[2] / 2, theta[3] / 2, theta[4] / 2,

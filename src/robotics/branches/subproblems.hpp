@@ -545,11 +545,6 @@ private:
   constexpr double rounding = 1e-9;
   return length_of(cross(n, v)) < rounding;
 }
-/// Angle of a rotation about n.
-[[nodiscard]] inline double angle_of(const quaternion<double>& q, const vector3d& n) {
-  return 2 * std::atan2(n.x * q.x() + n.y * q.y() + n.z * q.z(), q.w());
-}
-
 /// Product of the rotations by α and β about axes a and b.
 [[nodiscard]] inline quaternion<double> rotation_product(const vector3d& a, double alpha,
                                                          const vector3d& b, double beta) {
