@@ -3,11 +3,7 @@
 // The collision bodies of the example motion_plan.
 
 #include "../../examples/motion_plan/options.hpp"
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cstddef>
+#include "support/test.hpp"
 
 namespace test_examples_motion_plan {
 

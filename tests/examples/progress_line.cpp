@@ -1,18 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "../../examples/support/progress_line.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/parallel_for.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
 #include <new>
-#include <string>
 
 namespace test_examples_progress_line {
 namespace {

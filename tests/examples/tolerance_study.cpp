@@ -6,14 +6,9 @@
 
 #include "../../examples/tolerance_study/samples.hpp"
 #include "../../examples/tolerance_study/toleranced_carrier.hpp"
-
-#include <doctest/doctest.h>
+#include "support/test.hpp"
 
 #include <Eigen/LU>
-
-#include <cmath>
-#include <cstdint>
-#include <vector>
 
 namespace test_examples_tolerance_study {
 

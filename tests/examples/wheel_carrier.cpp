@@ -8,13 +8,9 @@
 #include "../../examples/wheel_carrier/configuration.hpp"
 #include "../../examples/wheel_carrier/pictures.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
+#include "support/test.hpp"
 
 #include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
 
 namespace test_examples_wheel_carrier {
 

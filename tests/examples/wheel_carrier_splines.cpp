@@ -4,14 +4,10 @@
 
 #include "../../examples/wheel_carrier/carrier.hpp"
 #include "../../examples/wheel_carrier/table.hpp"
+#include "support/test.hpp"
 
 #include <duet/spline/interpolate.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <vector>
 
 namespace test_examples_wheel_carrier_splines {
 

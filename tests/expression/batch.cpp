@@ -1,23 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/lanes.hpp"
-#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual/dual.hpp>
-#include <duet/expression/condition.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/functions_of_many.hpp>
-#include <duet/expression/gradient.hpp>
-#include <duet/expression/jacobian.hpp>
-#include <duet/expression/motion.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/expression/special_functions.hpp>
-#include <duet/expression/symbol.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_expression_batch {
 namespace {

@@ -1,15 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/gradient.hpp>
-#include <duet/expression/symbol.hpp>
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <utility>
+#include <duet/duet.hpp>
 
 namespace test_expression_common_subexpressions {
 namespace {

@@ -2,26 +2,12 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/expression/condition.hpp>
-#include <duet/expression/functions_of_many.hpp>
+#include <duet/duet.hpp>
 #include <duet/expression/graph/components.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_latex.hpp>
-#include <duet/expression/jacobian.hpp>
-#include <duet/expression/matrix.hpp>
-#include <duet/expression/motion.hpp>
-#include <duet/expression/rotation_matrix.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/expression/special_functions.hpp>
-#include <duet/expression/symbol.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 namespace test_expression_components {
 namespace {

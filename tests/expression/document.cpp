@@ -2,27 +2,18 @@
 
 #include "support/message.hpp"
 #include "support/skip.hpp"
+#include "support/test.hpp"
 
+#include <duet/duet.hpp>
 #include <duet/expression/graph/derivation.hpp>
 #include <duet/expression/graph/document.hpp>
 #include <duet/expression/graph/formula_derivative.hpp>
 #include <duet/expression/graph/formula_latex.hpp>
 #include <duet/expression/graph/read_formula.hpp>
-#include <duet/expression/jacobian.hpp>
-#include <duet/expression/motion.hpp>
-#include <duet/expression/rotation.hpp>
-#include <duet/expression/rotation_matrix.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/expression/special_functions.hpp>
-#include <duet/expression/symbol.hpp>
-
-#include <doctest/doctest.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
-#include <string>
 
 namespace test_expression_document {
 namespace {

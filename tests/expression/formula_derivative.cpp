@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/derivative.hpp>
 #include <duet/expression/graph/evaluate.hpp>
@@ -8,13 +9,6 @@
 #include <duet/expression/graph/formula_latex.hpp>
 #include <duet/expression/graph/formula_text.hpp>
 #include <duet/expression/graph/read_formula.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cstddef>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 namespace test_expression_formula_derivative {
 

@@ -1,11 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/expression/graph/formula_from.hpp>
 #include <duet/expression/text.hpp>
-
-#include <doctest/doctest.h>
-
-#include <type_traits>
 
 namespace test_expression_formula_from {
 namespace {

@@ -7,6 +7,7 @@
 // them; DUET_RANDOM_FORMULAS_C is a folder for the first 1000 in C, each a file with a check.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/dual.hpp>
 #include <duet/dual/taylor.hpp>
@@ -25,22 +26,12 @@
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
-#include <sstream>
-#include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 namespace test_expression_formulas_of_all_kinds {
 namespace {

@@ -1,21 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/dual/math.hpp>
-#include <duet/expression/condition.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/functions_of_many.hpp>
-#include <duet/expression/special_functions.hpp>
-#include <duet/expression/symbol.hpp>
-#include <duet/expression/vector.hpp>
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <type_traits>
-#include <vector>
+#include <duet/duet.hpp>
 
 // Every function as a formula beside the same over dual numbers: values and derivatives by the
 // same rules, so within 4 ulp of each other, wherever it is.

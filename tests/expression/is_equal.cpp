@@ -1,21 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/dual/stumpff.hpp>
+#include <duet/duet.hpp>
 #include <duet/expression/graph/is_equal.hpp>
 #include <duet/expression/graph/recorded.hpp>
 #include <duet/expression/graph/reverse.hpp>
 #include <duet/expression/graph/trace.hpp>
-#include <duet/expression/symbol.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rotation.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <string>
 
 namespace test_expression_is_equal {
 namespace {

@@ -1,25 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/expression/condition.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/functions_of_many.hpp>
-#include <duet/expression/rotation.hpp>
-#include <duet/expression/special_functions.hpp>
-#include <duet/expression/symbol.hpp>
-#include <duet/expression/text.hpp>
-#include <duet/expression/vector.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/duet.hpp>
 
 #include <cctype>
-#include <cmath>
-#include <cstddef>
-#include <map>
-#include <numbers>
-#include <stdexcept>
-#include <string>
 #include <string_view>
 
 namespace test_expression_latex {

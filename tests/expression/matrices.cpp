@@ -2,23 +2,11 @@
 
 #include "support/gap.hpp"
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 
-#include <duet/core/errors.hpp>
-#include <duet/derivative/derivative.hpp>
-#include <duet/expression/condition.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/matrix.hpp>
-#include <duet/expression/rotation_matrix.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/expression/text.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/duet.hpp>
 
 #include <Eigen/LU>
-
-#include <cmath>
-#include <type_traits>
 
 namespace test_expression_matrices {
 namespace {

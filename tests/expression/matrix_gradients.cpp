@@ -1,19 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/gap.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/gradient.hpp>
-#include <duet/expression/gradient.hpp>
-#include <duet/expression/jacobian.hpp>
-#include <duet/expression/matrix.hpp>
-#include <duet/expression/rotation_matrix.hpp>
-#include <duet/expression/symbol.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/duet.hpp>
 
 #include <Eigen/LU>
-
-#include <limits>
 
 namespace test_expression_matrix_gradients {
 namespace {

@@ -1,24 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/tangent_coordinates.hpp>
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/jacobian.hpp>
-#include <duet/expression/motion.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/expression/symbol.hpp>
-#include <duet/expression/text.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/robots.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <tuple>
-#include <type_traits>
+#include <duet/duet.hpp>
 
 namespace test_expression_poses {
 namespace {

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/dual.hpp>
 #include <duet/dual/stumpff.hpp>
@@ -12,16 +13,6 @@
 #include <duet/expression/graph/read_formula.hpp>
 #include <duet/expression/graph/recorded.hpp>
 #include <duet/expression/graph/reverse.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <utility>
-#include <vector>
 
 // Random formulas of three variables by independent routes: dual numbers forward, reverse
 // accumulation, the rules of textbooks, and text that is read again.

@@ -1,23 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
+#include <duet/duet.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_text.hpp>
 #include <duet/expression/graph/read_formula.hpp>
 #include <duet/expression/graph/trace.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace test_expression_read_formula {
 namespace {

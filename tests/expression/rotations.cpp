@@ -1,20 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/motion.hpp>
-#include <duet/expression/rotation.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/expression/symbol.hpp>
-#include <duet/expression/vector.hpp>
-#include <duet/quaternion/rate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <type_traits>
+#include <duet/duet.hpp>
 
 namespace test_expression_rotations {
 namespace {

@@ -1,22 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/expression/condition.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/functions_of_many.hpp>
-#include <duet/expression/special_functions.hpp>
-#include <duet/expression/symbol.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <type_traits>
-#include <utility>
+#include <duet/duet.hpp>
 
 namespace test_expression_scalars {
 namespace {

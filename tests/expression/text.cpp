@@ -1,19 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 
-#include <duet/expression/condition.hpp>
-#include <duet/expression/derivative.hpp>
-#include <duet/expression/functions_of_many.hpp>
-#include <duet/expression/matrix.hpp>
-#include <duet/expression/matrix/functions.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/expression/special_functions.hpp>
-#include <duet/expression/symbol.hpp>
-#include <duet/expression/text.hpp>
-#include <duet/expression/vector.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/duet.hpp>
 
 namespace test_expression_text {
 namespace {

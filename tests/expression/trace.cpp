@@ -2,28 +2,13 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/gradient.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/screw.hpp>
-#include <duet/expression/gradient.hpp>
+#include <duet/duet.hpp>
 #include <duet/expression/graph/reverse.hpp>
 #include <duet/expression/graph/trace.hpp>
-#include <duet/expression/jacobian.hpp>
-#include <duet/expression/motion.hpp>
-#include <duet/expression/rotation.hpp>
-#include <duet/expression/screw.hpp>
-#include <duet/quaternion/curves.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
 
 namespace test_expression_trace {
 namespace {

@@ -2,12 +2,11 @@
 
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/interop/boost.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
-
-#include <doctest/doctest.h>
 
 // boost::math::quaternion is the same algebra, over any real number.
 

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/math.hpp>
 #include <duet/interop/boost_math.hpp>
 
@@ -19,12 +21,7 @@
 #include <boost/math/special_functions/trigamma.hpp>
 #include <boost/math/special_functions/zeta.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
 #include <initializer_list>
-#include <limits>
-#include <numbers>
 
 // The special functions of Boost.Math called with dual and Taylor numbers.
 

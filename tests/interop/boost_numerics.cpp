@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/derivative/implicit_function.hpp>
 #include <duet/dual/math.hpp>
 
@@ -9,15 +11,6 @@
 #include <boost/math/quadrature/trapezoidal.hpp>
 #include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/roots.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <type_traits>
-#include <utility>
 
 // Root finders and quadrature of Boost.Math, with dual numbers as parameters.
 

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/dual/eigen_traits.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
@@ -13,12 +15,6 @@
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <vector>
 
 // Sensitivities of a pendulum's motion, ẍ = −p sin x, to p and to its initial angle: by states of
 // dual numbers, against the variational equations.

@@ -1,8 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/interop/ceres.hpp>
-
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
@@ -10,6 +9,7 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/dual_quaternion/pose.hpp>
+#include <duet/interop/ceres.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <ceres/autodiff_cost_function.h>
@@ -17,21 +17,9 @@
 #include <ceres/problem.h>
 #include <ceres/rotation.h>
 #include <ceres/solver.h>
-
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 #include <memory>
-#include <numbers>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 // Manifolds, ambient Jacobians and cost functions for Ceres: against differences in 50 digits,
 // Ceres' own manifolds and Jets.

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/interop/ceres_curves.hpp>
+#include "support/test.hpp"
 
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
@@ -9,6 +9,7 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
 #include <duet/interop/ceres.hpp>
+#include <duet/interop/ceres_curves.hpp>
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
@@ -16,24 +17,10 @@
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>
-
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <limits>
 #include <memory>
-#include <numbers>
-#include <string>
 #include <thread>
-#include <type_traits>
-#include <utility>
-#include <vector>
 
 // Residuals of curves for Ceres: against dual numbers through whole curves, by formulas of their
 // own, and in problems with known solutions.

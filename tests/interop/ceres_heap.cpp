@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/allocations.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/interop/ceres.hpp>
@@ -9,13 +10,7 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/split_bspline.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <memory>
-#include <vector>
 
 // Evaluations of cost functions use no heap memory.
 

@@ -1,10 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/interop/ceres.hpp>
+#include "support/test.hpp"
 
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
+#include <duet/interop/ceres.hpp>
 #include <duet/interop/eigen.hpp>
 #include <duet/quaternion/rotation.hpp>
 
@@ -13,17 +14,8 @@
 #include <ceres/problem.h>
 #include <ceres/product_manifold.h>
 #include <ceres/solver.h>
-
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
 
 // A pose graph of 10 000 poses on a sphere, as in the usual data sets: by cost functions of duet on
 // its manifold, by functors through `duet::cost_function`, and by Ceres' own means.

@@ -1,14 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/interop/eigen.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>
-
-#include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 #include "support/ulp.hpp"
 
 #include <duet/core/batch/batch.hpp>
@@ -9,15 +10,7 @@
 #include <duet/interop/boost_math.hpp>
 #include <duet/interop/special_functions.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <initializer_list>
-#include <limits>
-#include <string>
 
 // The special functions of <cmath> over Taylor numbers: values by the standard library, derivatives
 // to the third by differences of the defining integrals and series in 100 digits.

@@ -1,18 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
 #include <duet/io/mesh_file.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <fstream>
-#include <string>
-#include <vector>
 
 namespace test_io_collada {
 namespace {

@@ -3,14 +3,10 @@
 #include "kinematics/loops.hpp"
 #include "support/message.hpp"
 
-#include <duet/core/text/file.hpp>
+#include <duet/duet.hpp>
 #include <duet/io/loop_file.hpp>
-#include <duet/kinematics/tree_loop.hpp>
-#include <duet/quaternion/distance.hpp>
 
-#include <array>
 #include <filesystem>
-#include <string>
 
 namespace test_io_loop_file {
 namespace {

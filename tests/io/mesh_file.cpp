@@ -1,20 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/core/compiler/types.hpp>
-#include <duet/core/text/printable.hpp>
+#include <duet/duet.hpp>
 #include <duet/io/mesh_file.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <fstream>
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace test_io_mesh_file {
 namespace {

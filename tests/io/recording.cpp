@@ -1,21 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/io/recording.hpp>
-#include <duet/io/table_file.hpp>
-#include <duet/quaternion/rotation.hpp>
+#include <duet/duet.hpp>
+#include <duet/io.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <fstream>
-#include <string>
-#include <vector>
 
 namespace test_io_recording {
 namespace {

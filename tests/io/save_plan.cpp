@@ -1,20 +1,16 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/core/text/csv.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/pose_coordinates.hpp>
+#include <duet/duet.hpp>
 #include <duet/io/save_plan.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
 
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <fstream>
-#include <string>
 
 namespace test_io_save_plan {
 namespace {

@@ -2,27 +2,13 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/core/text/number_text.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/io/recording.hpp>
-#include <duet/io/table_file.hpp>
-#include <duet/quaternion/euler.hpp>
-#include <duet/quaternion/rotation.hpp>
+#include <duet/duet.hpp>
+#include <duet/io.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <fstream>
-#include <numeric>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace test_io_table_columns {
 namespace {

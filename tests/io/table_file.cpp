@@ -2,29 +2,16 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/core/text/number_text.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/io/recording.hpp>
-#include <duet/io/table_file.hpp>
-#include <duet/quaternion/euler.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/orientations.hpp>
+#include <duet/duet.hpp>
+#include <duet/io.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
 #include <clocale>
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <locale>
-#include <sstream>
-#include <string>
-#include <vector>
 
 namespace test_io_table_file {
 namespace {

@@ -4,16 +4,11 @@
 #include "support/message.hpp"
 #include "support/skip.hpp"
 
-#include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/duet.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/quaternion/euler.hpp>
 
 #include <filesystem>
 #include <fstream>
-#include <numbers>
-#include <string>
-#include <vector>
 
 namespace test_io_urdf {
 namespace {

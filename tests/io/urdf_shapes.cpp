@@ -2,21 +2,13 @@
 
 #include "support/message.hpp"
 #include "support/skip.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/io/srdf.hpp>
-#include <duet/io/urdf.hpp>
+#include <duet/io.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <string>
 #include <variant>
-#include <vector>
 
 namespace test_io_urdf_shapes {
 namespace {

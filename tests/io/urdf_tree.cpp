@@ -3,19 +3,16 @@
 #include "support/gap.hpp"
 #include "support/message.hpp"
 #include "support/skip.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/io/urdf.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
 
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <vector>
 
 namespace test_io_urdf_tree {
 namespace {

@@ -5,23 +5,12 @@
 #include "support/multiprecision.hpp"
 #include "support/shared_tag.hpp"
 
-#include <duet/derivative/tangent_coordinates.hpp>
+#include <duet/duet.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/adapted.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/robots.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
 #include <cstdio>
 #include <fstream>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 namespace test_kinematics_adapted {
 namespace {

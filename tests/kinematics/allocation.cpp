@@ -11,11 +11,8 @@
 #include <duet/kinematics/sweep.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
 
-#include <cstddef>
 #include <filesystem>
 #include <fstream>
-#include <string>
-#include <vector>
 
 namespace test_kinematics_allocation {
 

@@ -3,10 +3,7 @@
 #include "kinematics/arms.hpp"
 #include "support/shared_tag.hpp"
 
-#include <duet/derivative/jacobian.hpp>
-#include <duet/kinematics/jacobian.hpp>
-
-#include <algorithm>
+#include <duet/duet.hpp>
 
 namespace test_kinematics_analytic_jacobian {
 namespace {

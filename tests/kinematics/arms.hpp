@@ -3,23 +3,11 @@
 
 #include "support/gap.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/frame.hpp>
-#include <duet/kinematics/chain_parameters.hpp>
-#include <duet/kinematics/robots.hpp>
-#include <duet/kinematics/serial_chain.hpp>
-
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/rotation.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/duet.hpp>
 
 #include <Eigen/Core>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <vector>
 
 /// \file
 /// Arms and configurations for tests.

@@ -1,26 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual_quaternion/pose.hpp>
+#include <duet/duet.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/kinematics/chain_formula.hpp>
-#include <duet/kinematics/chain_parameters.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/jacobian_rate.hpp>
-#include <duet/kinematics/robots.hpp>
-#include <duet/kinematics/serial_chain.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <vector>
 
 namespace test_kinematics_chain_formula {
 namespace {

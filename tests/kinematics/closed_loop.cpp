@@ -1,18 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/core/constants.hpp>
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/jacobian.hpp>
-#include <duet/kinematics/closed_loop.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <string>
+#include <duet/duet.hpp>
 
 // Planar linkages, against closed forms. (The wheel carrier, whose unknown is a rotation, is in
 // examples/wheel_carrier.)

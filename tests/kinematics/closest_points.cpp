@@ -4,19 +4,12 @@
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
 #include "support/shared_tag.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/gradient.hpp>
 #include <duet/kinematics/closest_points.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Geometry>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <string>
 
 namespace test_kinematics_closest_points {
 namespace {

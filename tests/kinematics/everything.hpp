@@ -1,8 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/jacobian_rate.hpp>
+#include <duet/duet.hpp>
 
 /// \file
 /// Sum of all functions of a chain, as one number.

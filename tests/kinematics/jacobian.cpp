@@ -3,11 +3,9 @@
 #include "kinematics/arms.hpp"
 #include "support/shared_tag.hpp"
 
-#include <duet/derivative/tangent_coordinates.hpp>
-#include <duet/kinematics/jacobian.hpp>
+#include <duet/duet.hpp>
 
 #include <span>
-#include <vector>
 
 namespace test_kinematics_jacobian {
 namespace {

@@ -3,9 +3,7 @@
 #include "kinematics/arms.hpp"
 #include "support/shared_tag.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/jacobian.hpp>
-#include <duet/kinematics/jacobian_rate.hpp>
+#include <duet/duet.hpp>
 
 namespace test_kinematics_jacobian_rate {
 namespace {

@@ -1,20 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/jacobian.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/screw.hpp>
+#include <duet/duet.hpp>
 #include <duet/kinematics/joined_chain.hpp>
-#include <duet/kinematics/robots.hpp>
-#include <duet/quaternion/exponential.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
 
 namespace test_kinematics_joined_chain {
 

@@ -1,23 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "kinematics/trees.hpp"
-#include "support/gap.hpp"
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
-#include "support/random.hpp"
 #include "support/shared_tag.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/jacobian.hpp>
-#include <duet/derivative/tangent_coordinates.hpp>
-#include <duet/kinematics/adapted.hpp>
+#include <duet/duet.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/kinematics/tree_jacobian.hpp>
-
-#include <cmath>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 namespace test_kinematics_kinematic_tree {
 namespace {

@@ -3,21 +3,12 @@
 #include "kinematics/arms.hpp"
 #include "support/message.hpp"
 
+#include <duet/duet.hpp>
 #include <duet/io/urdf.hpp>
-#include <duet/kinematics/adapted.hpp>
-#include <duet/kinematics/robots.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 namespace test_kinematics_limits {
 namespace {

@@ -2,15 +2,11 @@
 #pragma once
 
 #include "kinematics/trees.hpp"
+#include "support/test.hpp"
 
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/kinematics/tree_loop.hpp>
 #include <duet/robotics/closed_tree.hpp>
-
-#include <array>
-#include <string>
-#include <utility>
-#include <vector>
 
 /// \file
 /// Closed-chain mechanisms for tests.

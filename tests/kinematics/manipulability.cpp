@@ -2,14 +2,8 @@
 
 #include "kinematics/arms.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/gradient.hpp>
+#include <duet/duet.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/kinematics/manipulability.hpp>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
 
 namespace test_kinematics_manipulability {
 namespace {

@@ -1,15 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/derivative/gradient.hpp>
-#include <duet/derivative/jacobian.hpp>
-#include <duet/derivative/least_squares.hpp>
-#include <duet/derivative/linear_solve.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/jacobian_rate.hpp>
-#include <duet/kinematics/robots.hpp>
+#include "support/mixed_arguments.hpp"
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-#include <support/mixed_arguments.hpp>
+#include <duet/duet.hpp>
 
 namespace test_kinematics_mixed_arguments {
 

@@ -3,18 +3,10 @@
 #include "kinematics/arms.hpp"
 #include "support/message.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/gradient.hpp>
-#include <duet/dual_quaternion/pose_coordinates.hpp>
-#include <duet/dual_quaternion/twist.hpp>
+#include <duet/duet.hpp>
 #include <duet/interop/multiprecision.hpp>
-#include <duet/kinematics/chain_parameters.hpp>
 
 #include <Eigen/Geometry>
-
-#include <limits>
-#include <numbers>
-#include <vector>
 
 namespace test_kinematics_serial_chain {
 namespace {

@@ -4,16 +4,8 @@
 #include "support/lanes.hpp"
 #include "support/message.hpp"
 
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/jacobian_rate.hpp>
-#include <duet/kinematics/manipulability.hpp>
+#include <duet/duet.hpp>
 #include <duet/kinematics/sweep.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cstddef>
-#include <string>
-#include <vector>
 
 namespace test_kinematics_sweep {
 

@@ -5,12 +5,7 @@
 
 #include <duet/kinematics/closed_loop.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
 #include <thread>
-#include <vector>
 
 namespace test_kinematics_threads {
 namespace {

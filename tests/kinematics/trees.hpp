@@ -2,15 +2,12 @@
 #pragma once
 
 #include "kinematics/arms.hpp"
-#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual_quaternion/pose.hpp>
+#include <duet/duet.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
-#include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
-
-#include <vector>
 
 /// \file
 /// Kinematic trees and configurations for tests.

@@ -4,14 +4,6 @@
 
 #include <duet/motion/printed_plan.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 namespace test_motion_printed_plan {
 namespace {
 

@@ -1,28 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/random.hpp"
-
 #include "../../src/robotics/branches/chain_loop.hpp"
 #include "../../src/robotics/branches/loop_equation.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/kinematics/chain_parameters.hpp>
-#include <duet/kinematics/robots.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 #include <Eigen/SVD>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <numbers>
-#include <string>
-#include <vector>
 
 namespace test_robotics_all_inverse_kinematics {
 namespace {

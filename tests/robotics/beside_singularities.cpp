@@ -1,28 +1,18 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/multiprecision.hpp"
-#include "support/random.hpp"
-
 #include "../../src/robotics/branches/chain_loop.hpp"
 #include "../../src/robotics/branches/singular_value.hpp"
 #include "../../src/robotics/branches/subproblems.hpp"
+#include "support/multiprecision.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/kinematics/chain_parameters.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/serial_chain.hpp>
+#include <duet/duet.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
-
-#include <doctest/doctest.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
 #include <span>
 
 namespace test_robotics_beside_singularities {

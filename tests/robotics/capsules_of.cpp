@@ -2,24 +2,12 @@
 
 #include "kinematics/trees.hpp"
 #include "support/message.hpp"
-#include "support/random.hpp"
 
-#include <duet/robotics/bounding_capsules.hpp>
-#include <duet/robotics/pairs_apart.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/robotics.hpp>
 
 #include <Eigen/Core>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <fstream>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <vector>
 
 namespace test_robotics_capsules_of {
 namespace {

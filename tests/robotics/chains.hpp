@@ -2,10 +2,7 @@
 #pragma once
 
 #include "kinematics/arms.hpp"
-
-#include <algorithm>
-#include <array>
-#include <numbers>
+#include "support/test.hpp"
 
 /// \file
 /// Chains of any number of joints, so that what searches on them is compiled once.

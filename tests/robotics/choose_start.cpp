@@ -3,22 +3,8 @@
 #include "robotics/chains.hpp"
 #include "support/message.hpp"
 
-#include <duet/kinematics/adapted.hpp>
-#include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/choose_start.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
-#include <duet/robotics/pairs_apart.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_choose_start {
 namespace {

@@ -5,14 +5,9 @@
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/robotics/clearance.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
 
-#include <cmath>
-#include <cstddef>
 #include <variant>
-#include <vector>
 
 namespace test_robotics_clearance {
 namespace {

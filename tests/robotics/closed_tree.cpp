@@ -1,25 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "kinematics/loops.hpp"
-#include "support/gap.hpp"
 #include "support/message.hpp"
-#include "support/random.hpp"
 #include "support/shared_tag.hpp"
 
-#include <duet/derivative/jacobian.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/rotation.hpp>
+#include <duet/duet.hpp>
 #include <duet/robotics/closed_tree.hpp>
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <vector>
 
 namespace test_robotics_closed_tree {
 namespace {

@@ -1,20 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "../../src/robotics/constrained_step.hpp"
-
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual_quaternion/twist.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
 
 namespace test_robotics_constrained_step {
 namespace {

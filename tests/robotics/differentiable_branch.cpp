@@ -1,17 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/robots.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/differentiable_branch.hpp>
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 #include <Eigen/LU>
-
-#include <cmath>
 
 namespace test_robotics_differentiable_branch {
 namespace {

@@ -1,19 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/random.hpp"
-
 #include "../../src/robotics/branches/elimination.hpp"
 #include "../../src/robotics/branches/loop_equation.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <complex>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <vector>
 
 namespace test_robotics_elimination {
 namespace {

@@ -2,17 +2,8 @@
 
 #include "robotics/paths.hpp"
 
-#include <duet/kinematics/manipulability.hpp>
-#include <duet/robotics/follow_path.hpp>
-#include <duet/robotics/plan_screw_motion.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_follow_path {
 namespace {

@@ -3,20 +3,7 @@
 #include "robotics/chains.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/robotics/goals.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <type_traits>
-#include <vector>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_goals {
 namespace {

@@ -1,33 +1,23 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "support/test.hpp"
+
 #include <duet/comparison/judge_jacobian.hpp>
-#include <duet/comparison/numeric_derivative.hpp>
-#include <duet/core/progress.hpp>
 #include <duet/core/text/csv.hpp>
-#include <duet/derivative/gradient.hpp>
-#include <duet/derivative/symmetric_eigen.hpp>
 #include <duet/dual_quaternion/nearest.hpp>
 #include <duet/duet.hpp>
 #include <duet/io.hpp>
 #include <duet/kinematics/chain_formula.hpp>
 #include <duet/kinematics/joined_chain.hpp>
-#include <duet/kinematics/robots.hpp>
-#include <duet/kinematics/tree_loop.hpp>
 #include <duet/motion/printed_plan.hpp>
 #include <duet/robotics.hpp>
 #include <duet/spline/fit.hpp>
-#include <duet/spline/knot_jacobian.hpp>
 #include <duet/spline/split_bspline.hpp>
-
-#include <doctest/doctest.h>
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <cstring>
-#include <functional>
 #include <new>
-#include <type_traits>
 
 // No public aggregate keeps the previous contents of memory: each is default-initialized, as by
 // `T x;`, on memory that is filled with a pattern. house/initial_values finds those that are

@@ -2,24 +2,14 @@
 
 #include "../../src/robotics/planning_model.hpp"
 #include "../../src/robotics/tip_pose.hpp"
-
 #include "robotics/chains.hpp"
 #include "support/allocations.hpp"
 #include "support/message.hpp"
 
-#include <duet/kinematics/adapted.hpp>
-#include <duet/kinematics/tree_loop.hpp>
+#include <duet/duet.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numbers>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace test_robotics_inverse_kinematics {
 namespace {

@@ -1,25 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../src/robotics/timed_curve.hpp"
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
-
-#include "../../src/robotics/timed_curve.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual/taylor.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace test_robotics_jerk_limits {
 namespace {

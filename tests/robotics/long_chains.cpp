@@ -2,21 +2,12 @@
 
 // Chains of all types and lengths in duet::robotics.
 
-#include <duet/kinematics/chain_view.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/robots.hpp>
-#include <duet/robotics/goals.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
-#include <duet/robotics/plan_screw_motion.hpp>
+#include "support/message.hpp"
+#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-#include <support/message.hpp>
-#include <support/random.hpp>
-
-#include <array>
-#include <cstddef>
-#include <numbers>
-#include <vector>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_long_chains {
 namespace {

@@ -4,17 +4,8 @@
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/core/random_source.hpp>
-#include <duet/derivative/derivative.hpp>
-#include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loop_motion.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_loop_branches {
 namespace {

@@ -1,22 +1,11 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "kinematics/loops.hpp"
-#include "support/gap.hpp"
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/core/random_source.hpp>
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/jacobian.hpp>
-#include <duet/derivative/tangent_coordinates.hpp>
-#include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loop_motion.hpp>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_loop_motion {
 namespace {

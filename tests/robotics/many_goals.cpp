@@ -3,18 +3,9 @@
 #include "robotics/chains.hpp"
 #include "support/message.hpp"
 
-#include <duet/robotics/goals.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
+#include <duet/robotics.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <span>
-#include <string>
-#include <vector>
 
 // Many goals at once are as many one by one, to the last bit.
 

@@ -2,13 +2,7 @@
 
 #include "kinematics/loops.hpp"
 
-#include <duet/robotics/closed_tree.hpp>
-#include <duet/robotics/loop_motion.hpp>
-
-#include <cmath>
-#include <numbers>
-#include <string>
-#include <vector>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_mobility {
 namespace {

@@ -4,17 +4,7 @@
 
 #include <duet/robotics/plan_screw_motion.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
-
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <numbers>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace test_robotics_obstacles {
 namespace {

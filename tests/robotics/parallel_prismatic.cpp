@@ -4,19 +4,7 @@
 #include "support/multiprecision.hpp"
 
 #include <duet/kinematics/adapted.hpp>
-#include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/goals.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <vector>
+#include <duet/robotics.hpp>
 
 // Arms with two prismatic joints that are parallel in every configuration: poses within reach have
 // infinitely many solutions, represented by one per solution of the revolute joints; other poses

@@ -2,15 +2,11 @@
 #pragma once
 
 #include "kinematics/arms.hpp"
+#include "support/test.hpp"
 
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/robotics/clearance.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 
 /// \file
 /// Checks of plans that all tests share.

@@ -1,19 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "../../src/robotics/path_step.hpp"
-
 #include "robotics/paths.hpp"
 
 #include <duet/motion/printed_plan.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
 
 #include <Eigen/Cholesky>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
 
 namespace test_robotics_plan_screw_motion {
 namespace {

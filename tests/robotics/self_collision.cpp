@@ -3,22 +3,10 @@
 #include "kinematics/trees.hpp"
 #include "robotics/paths.hpp"
 
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/kinematics/tree_jacobian.hpp>
-#include <duet/robotics/pairs_apart.hpp>
-#include <duet/robotics/plan_screw_motion.hpp>
-
-#include <doctest/doctest.h>
+#include <duet/robotics.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace test_robotics_self_collision {
 namespace {

@@ -1,21 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/kinematics/robots.hpp>
 #include <duet/robotics/self_motion_curves.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
 #include <initializer_list>
-#include <limits>
-#include <numbers>
-#include <vector>
 
 namespace test_robotics_self_motion_curves {
 namespace {

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "../../src/robotics/planning_model.hpp"
-
 #include "robotics/chains.hpp"
 #include "robotics/complete_search.hpp"
 #include "robotics/paths.hpp"
@@ -9,12 +8,6 @@
 #include <duet/kinematics/adapted.hpp>
 #include <duet/kinematics/chain_parameters.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
 
 namespace test_robotics_singular_paths {
 namespace {

@@ -1,23 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../src/robotics/branches/singular_value.hpp"
 #include "support/multiprecision.hpp"
 #include "support/random.hpp"
-
-#include "../../src/robotics/branches/singular_value.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/batch/math.hpp>
-
-#include <doctest/doctest.h>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <Eigen/QR>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <vector>
 
 namespace test_robotics_singular_value {
 namespace {

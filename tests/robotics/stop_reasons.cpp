@@ -1,6 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "robotics/complete_search.hpp"
 #include "robotics/layered_search.hpp"
 #include "robotics/paths.hpp"
 #include "robotics/singular_problems.hpp"
@@ -10,15 +9,7 @@
 #include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/robotics/self_motion_curves.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
-
-#include <cmath>
-#include <cstddef>
-#include <optional>
-#include <utility>
-#include <vector>
 
 namespace test_robotics_stop_reasons {
 namespace {

@@ -1,24 +1,14 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
+#include "../../src/robotics/timed_curve.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
-
-#include "../../src/robotics/timed_curve.hpp"
+#include "support/test.hpp"
 
 #include <duet/core/text/number_text.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 
-#include <doctest/doctest.h>
-
 #include <Eigen/Core>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace test_robotics_time_parametrised {
 namespace {

@@ -4,26 +4,8 @@
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/derivative/gradient.hpp>
-#include <duet/kinematics/adapted.hpp>
-#include <duet/kinematics/chain_parameters.hpp>
-#include <duet/kinematics/jacobian.hpp>
-#include <duet/robotics/all_inverse_kinematics.hpp>
-#include <duet/robotics/goals.hpp>
-#include <duet/robotics/inverse_kinematics.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <type_traits>
-#include <vector>
+#include <duet/duet.hpp>
+#include <duet/robotics.hpp>
 
 namespace test_robotics_wanted_solution {
 namespace {

@@ -3,20 +3,10 @@
 #include "spline/curves.hpp"
 #include "support/allocations.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/derivative/frame.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/exponential.hpp>
+#include <duet/duet.hpp>
 #include <duet/spline/bspline_segment.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/printed.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cstddef>
 #include <span>
-#include <vector>
 
 TEST_CASE("curves: evaluation does not allocate memory") {
   const auto knots = duet_test::knot_vectors(4)[1].knots;

@@ -3,17 +3,7 @@
 #include "spline/curves.hpp"
 #include "support/identical.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/spline/basis.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_basis {
 

@@ -6,14 +6,6 @@
 
 #include <duet/spline/basis.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 namespace test_spline_basis_accuracy {
 
 using duet_test::cast;

@@ -1,16 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
-
 #include "support/lanes.hpp"
-#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_batch {
 

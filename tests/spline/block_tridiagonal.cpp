@@ -2,16 +2,9 @@
 
 #include "support/identical.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual/dual.hpp>
-#include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/blocks.hpp>
-
-#include <Eigen/Dense>
-#include <doctest/doctest.h>
-
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_block_tridiagonal {
 namespace {

@@ -1,22 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curve_jacobians.hpp"
-#include "spline/curves.hpp"
 
-#include <duet/derivative/frame.hpp>
-#include <duet/dual_quaternion/pose.hpp>
+#include <duet/duet.hpp>
 #include <duet/quaternion/quaternion_order.hpp>
 #include <duet/spline/bspline_segment.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/split_bspline.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <span>
-#include <vector>
 
 namespace test_spline_bspline_segment {
 

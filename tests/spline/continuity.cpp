@@ -2,16 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_continuity {
 

@@ -3,19 +3,7 @@
 #include "spline/curves.hpp"
 #include "support/message.hpp"
 
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/basis.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numeric>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_curve {
 

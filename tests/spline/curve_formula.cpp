@@ -1,22 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual_quaternion/pose.hpp>
+#include <duet/duet.hpp>
 #include <duet/expression/graph/evaluate.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/curve_formula.hpp>
-#include <duet/spline/interpolate.hpp>
 
 #include <Eigen/Core>
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 namespace test_spline_curve_formula {
 namespace {

@@ -3,23 +3,11 @@
 
 #include "spline/curves.hpp"
 #include "support/multiprecision.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/frame.hpp>
-#include <duet/derivative/manifold.hpp>
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
+#include <duet/duet.hpp>
 
 #include <Eigen/Core>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <type_traits>
-#include <vector>
 
 /// \file
 /// Jacobians of curves by dual numbers over 50 digits, the truth for those in closed form.

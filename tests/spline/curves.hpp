@@ -2,20 +2,9 @@
 #pragma once
 
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/core/scalar_traits.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/norm.hpp>
-#include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/basis.hpp>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 /// \file
 /// Knots, parameters and control quaternions for tests of splines, and independent implementations

@@ -4,22 +4,8 @@
 #include "support/lanes.hpp"
 #include "support/message.hpp"
 
-#include <duet/core/text/number_text.hpp>
-#include <duet/dual/dual.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/evaluate.hpp>
+#include <duet/duet.hpp>
 #include <duet/spline/fit.hpp>
-#include <duet/spline/printed.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <type_traits>
-#include <vector>
 
 // Sums of steps may end a few ulp beyond the domain: such parameters count as its end.
 

@@ -3,24 +3,11 @@
 #include "support/identical.hpp"
 #include "support/lanes.hpp"
 #include "support/message.hpp"
-#include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/frame.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/basis.hpp>
-#include <duet/spline/evaluate.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
+#include <duet/duet.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace test_spline_evaluate {
 namespace {

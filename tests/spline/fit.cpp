@@ -2,23 +2,10 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/dual_quaternion/distance.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/basis.hpp>
+#include <duet/duet.hpp>
 #include <duet/spline/fit.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
 
 namespace test_spline_fit {
 namespace {

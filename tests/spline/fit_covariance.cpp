@@ -3,6 +3,7 @@
 #include "support/instantiated.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
 #include <duet/derivative/nonlinear_least_squares.hpp>
 #include <duet/dual_quaternion/pose.hpp>
@@ -10,13 +11,6 @@
 #include <duet/quaternion/rotation.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/fit.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
 
 // Statistics of fitted curves: covariances, degrees of freedom, runs test.
 

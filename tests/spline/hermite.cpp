@@ -1,23 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/dual_quaternion/distance.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/quaternion/rate.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_hermite {
 namespace {

@@ -2,15 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_interpolate {
 

@@ -2,21 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/euler.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rate.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/printed.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_interpolate_convergence {
 

@@ -3,15 +3,7 @@
 #include "spline/curves.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
 
 // Derivatives through the solve are compared with central differences of 50-digit solutions, whose
 // error is far below the round-off of doubles.

@@ -4,13 +4,6 @@
 
 #include <duet/spline/interpolate.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 namespace test_spline_interpolate_ends {
 namespace {
 

@@ -4,15 +4,6 @@
 
 #include <duet/spline/interpolate.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <string>
-#include <vector>
-
 namespace test_spline_interpolate_errors {
 
 using spline = duet::cumulative_bspline<double>;

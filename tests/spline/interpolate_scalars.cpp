@@ -4,11 +4,6 @@
 
 #include <duet/spline/interpolate.hpp>
 
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <vector>
-
 namespace test_spline_interpolate_scalars {
 
 using duet_test::cast;

@@ -2,14 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_interpolate_second_derivatives {
 namespace {

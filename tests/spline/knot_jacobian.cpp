@@ -1,19 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curve_jacobians.hpp"
-#include "spline/curves.hpp"
 
-#include <duet/derivative/frame.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_knot_jacobian {
 

@@ -4,18 +4,7 @@
 #include "support/identical.hpp"
 #include "support/message.hpp"
 
-#include <duet/dual/taylor.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_location {
 namespace {

@@ -1,18 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/adaptive_table.hpp>
-#include <duet/spline/orientations.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_lookup_table {
 namespace {

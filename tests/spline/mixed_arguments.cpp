@@ -1,16 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/motion.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
+#include "support/mixed_arguments.hpp"
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-#include <support/mixed_arguments.hpp>
-
-#include <tuple>
-#include <type_traits>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_mixed_arguments {
 

@@ -2,20 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rate.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <type_traits>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_motion {
 

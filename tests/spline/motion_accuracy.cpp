@@ -6,14 +6,6 @@
 
 #include <duet/spline/cumulative_bspline.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
-
 namespace test_spline_motion_accuracy {
 
 using duet_test::real_100;

@@ -1,22 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curve_jacobians.hpp"
-#include "spline/curves.hpp"
 
-#include <duet/core/constants.hpp>
-#include <duet/core/errors.hpp>
-#include <duet/derivative/frame.hpp>
-#include <duet/dual/dual.hpp>
-#include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/motion_jacobian.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cstddef>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_motion_jacobian {
 

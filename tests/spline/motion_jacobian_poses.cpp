@@ -1,20 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curve_jacobians.hpp"
-#include "spline/curves.hpp"
 
-#include <duet/core/constants.hpp>
-#include <duet/derivative/frame.hpp>
-#include <duet/dual/dual.hpp>
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/motion_jacobian.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cstddef>
-#include <string>
+#include <duet/duet.hpp>
 
 namespace test_spline_motion_jacobian_poses {
 

@@ -1,26 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/select.hpp>
-#include <duet/derivative/frame.hpp>
-#include <duet/quaternion/euler.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/quaternion.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/end_conditions.hpp>
-#include <duet/spline/equations/cubic.hpp>
-#include <duet/spline/equations/newton.hpp>
-#include <duet/spline/interpolate.hpp>
-#include <duet/spline/orientations.hpp>
-#include <duet/spline/rotation_vector_spline.hpp>
+#include "support/test.hpp"
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <numbers>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_newton_start {
 namespace {

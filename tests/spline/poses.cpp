@@ -2,19 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/screw.hpp>
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_poses {
 namespace {

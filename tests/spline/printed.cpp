@@ -2,18 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-#include <duet/spline/printed.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_printed {
 

@@ -1,10 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/quaternion/euler.hpp>
-#include <duet/quaternion/quaternion.hpp>
+#include "support/test.hpp"
 
-#include <cmath>
+#include <duet/duet.hpp>
 
 /// \file
 /// Motion to be interpolated, over any scalar.

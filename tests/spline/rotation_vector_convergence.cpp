@@ -3,19 +3,7 @@
 #include "spline/curves.hpp"
 #include "spline/rotation_vector.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rate.hpp>
-#include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <numbers>
-#include <vector>
+#include <duet/duet.hpp>
 
 // Orders of convergence of rotation-vector splines, for every end.
 

@@ -5,16 +5,6 @@
 
 #include <duet/spline/interpolate.hpp>
 
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
-
 // Infinitesimal parts through the solve: derivatives of a curve with respect to its data.
 
 namespace test_spline_rotation_vector_data {

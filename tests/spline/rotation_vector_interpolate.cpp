@@ -4,16 +4,6 @@
 
 #include <duet/spline/interpolate.hpp>
 
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <vector>
-
 // Rotation-vector splines through data: they pass through it, are as smooth as their order says and
 // meet their end conditions.
 

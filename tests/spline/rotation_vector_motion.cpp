@@ -2,19 +2,7 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <vector>
+#include <duet/duet.hpp>
 
 // Evaluation of rotation-vector splines: closed form against Taylor numbers through the value.
 

@@ -3,15 +3,7 @@
 #include "spline/curves.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/twist.hpp>
-#include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include <duet/duet.hpp>
 
 // Infinitesimal parts through the solve: poses are compared with 50 digits.
 

@@ -3,17 +3,7 @@
 #include "spline/curves.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/spline/cumulative_bspline.hpp>
-
-#include <doctest/doctest.h>
-
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <type_traits>
-#include <vector>
+#include <duet/duet.hpp>
 
 namespace test_spline_scalars {
 

@@ -2,23 +2,9 @@
 
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/test.hpp"
 
-#include <duet/derivative/derivative.hpp>
-#include <duet/dual_quaternion/pose.hpp>
-#include <duet/quaternion/exponential.hpp>
-#include <duet/quaternion/rotation.hpp>
-#include <duet/spline/interpolate.hpp>
-
-#include <doctest/doctest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <limits>
-#include <string>
-#include <type_traits>
-#include <vector>
+#include <duet/duet.hpp>
 
 // Tables with very uneven parameters and motions of uniform rate.
 
