@@ -3,7 +3,6 @@
 #include "spline/curves.hpp"
 #include "support/allocations.hpp"
 
-#include <duet/duet.hpp>
 #include <duet/spline/bspline_segment.hpp>
 
 #include <span>

@@ -1,17 +1,13 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "spline/curves.hpp"
-#include "support/message.hpp"
-
-#include <duet/duet.hpp>
 
 namespace test_spline_basis_domain {
+namespace {
 
 using duet::bspline_basis;
 using duet::invalid_input;
 using duet_test::message_of;
-
-namespace {
 
 using numbers = std::vector<double>;
 
@@ -45,10 +41,8 @@ double sum_of_all(const numbers& t, int order, F&& value) {
 
 template <int Order>
 std::string error_message(const numbers& t) {
-  return message_of([&] { static_cast<void>(bspline_basis<Order>(t)); });
+  return message_of([&] { (void)bspline_basis<Order>(t); });
 }
-
-} // namespace
 
 TEST_CASE("P1 as printed, closed at both ends, breaks the partition of unity at simple knots") {
   const numbers t = {0, 1, 2, 3, 4, 5, 6, 7};
@@ -148,15 +142,16 @@ TEST_CASE("bspline_basis: errors name invalid knots") {
 TEST_CASE("cumulative_bspline: parameters outside the domain throw, with the value") {
   const duet::cumulative_bspline<double, 3> s({0, 1, 2, 3, 4, 5},
                                               duet_test::random_orientations(3, 0.4));
-  CHECK_NOTHROW(static_cast<void>(s(2.0)));
-  CHECK_NOTHROW(static_cast<void>(s(3.0)));
-  const auto of = [&](double u) { return message_of([&] { static_cast<void>(s(u)); }); };
+  CHECK_NOTHROW((void)s(2.0));
+  CHECK_NOTHROW((void)s(3.0));
+  const auto of = [&](double u) { return message_of([&] { (void)s(u); }); };
   CHECK(of(1.5).starts_with("duet: spline evaluated at 1.5, outside its domain [2, 3]; "));
   CHECK(of(4).starts_with("duet: spline evaluated at 4, outside its domain [2, 3]; "));
   CHECK(of(not_a_number) == "duet: spline evaluated at nan, outside its domain [2, 3]");
   CHECK(of(-infinity).starts_with("duet: spline evaluated at -inf, outside its domain [2, 3]; "));
-  CHECK_THROWS_AS(static_cast<void>(s.motion(not_a_number, duet::frame::body)), invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(s.derivatives(5.0)), invalid_input);
+  CHECK_THROWS_AS((void)s.motion(not_a_number, duet::frame::body), invalid_input);
+  CHECK_THROWS_AS((void)s.derivatives(5.0), invalid_input);
 }
 
+} // namespace
 } // namespace test_spline_basis_domain

@@ -6,11 +6,10 @@
 #include <duet/duet.hpp>
 
 namespace test_spline_batch {
+namespace {
 
 using namespace duet;
 using duet_test::check_lanes;
-
-namespace {
 
 constexpr double limit = 16;
 
@@ -27,8 +26,6 @@ Spline some_spline() {
   }
   return interpolate<Spline>(u, samples, natural{});
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("curves of rotations over batches: lanes on different spans, at knots and "
                    "beyond the ends agree with single parameters",
@@ -78,4 +75,5 @@ TEST_CASE(
   check(hermite_spline(u, samples, velocities, frame::body));
 }
 
+} // namespace
 } // namespace test_spline_batch

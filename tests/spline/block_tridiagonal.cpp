@@ -62,8 +62,6 @@ void check(std::size_t n, const corners& at) {
   }
 }
 
-} // namespace
-
 TEST_CASE("block_tridiagonal: cyclic systems of two and more rows agree with a dense solution") {
   for (const std::size_t n : {2, 3, 4, 5, 20}) {
     check(n, {n - 1, 0});
@@ -113,4 +111,5 @@ TEST_CASE("block_tridiagonal: factorise returns false for a singular pivot") {
   CHECK(!solver.factorise({2, 1}));
 }
 
+} // namespace
 } // namespace test_spline_block_tridiagonal

@@ -2,7 +2,6 @@
 
 #include "spline/curve_jacobians.hpp"
 
-#include <duet/duet.hpp>
 #include <duet/quaternion/quaternion_order.hpp>
 #include <duet/spline/bspline_segment.hpp>
 #include <duet/spline/split_bspline.hpp>
@@ -10,13 +9,12 @@
 #include <span>
 
 namespace test_spline_bspline_segment {
+namespace {
 
 using duet::perturbation;
 using duet::quaternion;
 using duet::quaternion_order;
 using screw = duet::screw_dual<double>;
-
-namespace {
 
 template <class T, int Order>
 duet::bspline_segment<T, Order> segment_of(const duet::cumulative_bspline<T, Order>& s, double u) {
@@ -52,8 +50,6 @@ void compare_with_curve(double step) {
     }
   }
 }
-
-} // namespace
 
 TEST_CASE("bspline_segment: equals the curve that it is a span of") {
   compare_with_curve<double, 2>(0.7);
@@ -96,8 +92,8 @@ TEST_CASE("bspline_segment: rejects signs that are not aligned, norms, knots and
                                              s.control_points()[2], s.control_points()[3]};
   using segment = duet::bspline_segment<double>;
   const segment right(controls, basis);
-  CHECK_THROWS_AS(static_cast<void>(right(knots[4] + 0.01)), duet::invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(right(knots[3] - 0.01)), duet::invalid_input);
+  CHECK_THROWS_AS((void)right(knots[4] + 0.01), duet::invalid_input);
+  CHECK_THROWS_AS((void)right(knots[3] - 0.01), duet::invalid_input);
   controls[2] = -controls[2];
   CHECK_THROWS_WITH_AS(segment(controls, basis), doctest::Contains("sample 2: its sign"),
                        duet::invalid_sample);
@@ -178,4 +174,5 @@ TEST_CASE("split_bspline: positions are a B-spline, with weights as Jacobians") 
   }
 }
 
+} // namespace
 } // namespace test_spline_bspline_segment

@@ -2,15 +2,12 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/duet.hpp>
-
 namespace test_spline_continuity {
+namespace {
 
 using duet::cumulative_bspline;
 using duet_test::max_abs_difference;
 using duet_test::random_orientations;
-
-namespace {
 
 constexpr double knot = 1.2;
 const double just_before = std::nextafter(knot, 0);
@@ -54,8 +51,6 @@ void check_order() {
   }
 }
 
-} // namespace
-
 TEST_CASE("P1: the curve is C^{k−2} at simple knots, with one order less for every repetition") {
   check_order<2>();
   check_order<3>();
@@ -88,4 +83,5 @@ TEST_CASE(
   frames(duet::frame::spatial);
 }
 
+} // namespace
 } // namespace test_spline_continuity

@@ -1,9 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/message.hpp"
-#include "support/test.hpp"
-
-#include <duet/duet.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/spline/curve_formula.hpp>
 
@@ -43,8 +39,6 @@ void check(const Curve& curve, F frame) {
   CHECK(error < 1e-14);
 }
 
-} // namespace
-
 TEST_CASE("formula_of a curve: the motion on each span of rotations and poses") {
   std::vector<duet::quaternion<double>> rotations;
   std::vector<duet::dual_quaternion<double>> poses;
@@ -62,8 +56,9 @@ TEST_CASE("formula_of a curve: the motion on each span of rotations and poses") 
   check(of_poses, duet::frame::body);
   check(of_poses, duet::frame::hybrid);
   const std::string message = duet_test::message_of<duet::invalid_input>(
-      [&] { static_cast<void>(duet::formula_of(of_poses, 5, duet::frame::body)); });
+      [&] { (void)duet::formula_of(of_poses, 5, duet::frame::body); });
   CHECK(message.find("span 5 does not exist, the curve has 5 spans") != std::string::npos);
 }
 
+} // namespace
 } // namespace test_spline_curve_formula

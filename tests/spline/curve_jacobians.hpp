@@ -3,9 +3,6 @@
 
 #include "spline/curves.hpp"
 #include "support/multiprecision.hpp"
-#include "support/test.hpp"
-
-#include <duet/duet.hpp>
 
 #include <Eigen/Core>
 

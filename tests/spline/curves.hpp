@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include "support/message.hpp"
 #include "support/random.hpp"
 #include "support/test.hpp"
 

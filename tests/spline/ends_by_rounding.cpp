@@ -2,9 +2,7 @@
 
 #include "spline/curves.hpp"
 #include "support/lanes.hpp"
-#include "support/message.hpp"
 
-#include <duet/duet.hpp>
 #include <duet/spline/fit.hpp>
 
 // Sums of steps may end a few ulp beyond the domain: such parameters count as its end.
@@ -37,8 +35,6 @@ Spline curve_over(double first, double last) {
 double beyond(double end, double ulp, int k, bool is_last) {
   return is_last ? end + k * ulp : end - k * ulp;
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE(
     "curve: parameters up to 8 ulp of the larger end beyond the domain count as its end", Spline,
@@ -78,14 +74,14 @@ TEST_CASE_TEMPLATE(
         CHECK(out[5] == out[4]);
       }
       const double u = beyond(end, ulp, 9, is_last);
-      CHECK(message_of([&] { static_cast<void>(s(u)); }) ==
+      CHECK(message_of([&] { (void)s(u); }) ==
             "duet: spline evaluated at " + duet::to_text(u) + ", outside its domain [" +
                 duet::to_text(first) + ", " + duet::to_text(last) +
                 "]; set_out_of_domain(out_of_domain::clamp) makes a curve stay at its end");
       s.set_out_of_domain(out_of_domain::clamp);
       CHECK(s.motion(u, duet::frame::body).velocity.isZero(0));
       s.set_out_of_domain(out_of_domain::extrapolate);
-      CHECK_NOTHROW(static_cast<void>(s(u)));
+      CHECK_NOTHROW((void)s(u));
     }
   }
 }
@@ -99,8 +95,8 @@ TEST_CASE_TEMPLATE("curve: usual loops over the domain do not throw because of r
     for (int n = 1; n <= 60; ++n) {
       const double h = last / n;
       for (int i = 0; i <= n; ++i) {
-        CHECK_NOTHROW(static_cast<void>(s(last * i / n)));
-        CHECK_NOTHROW(static_cast<void>(s(i * h)));
+        CHECK_NOTHROW((void)s(last * i / n));
+        CHECK_NOTHROW((void)s(i * h));
         beyond_the_end += i * h > last;
       }
       double u = 0;
@@ -109,9 +105,9 @@ TEST_CASE_TEMPLATE("curve: usual loops over the domain do not throw because of r
       }
       beyond_the_end += u > last;
       if (u <= last + 8 * ulp) {
-        CHECK_NOTHROW(static_cast<void>(s.motion(u, duet::frame::spatial)));
+        CHECK_NOTHROW((void)s.motion(u, duet::frame::spatial));
       } else {
-        CHECK_THROWS_AS(static_cast<void>(s.motion(u, duet::frame::spatial)), duet::invalid_input);
+        CHECK_THROWS_AS((void)s.motion(u, duet::frame::spatial), duet::invalid_input);
       }
     }
   }
@@ -124,12 +120,11 @@ TEST_CASE(
   CHECK(s(4 * (1 + 3e-16)) == s(4));
   CHECK(duet::printed_derivative(s, 4 * (1 + 3e-16)).commuting_second ==
         duet::printed_derivative(s, 4.0).commuting_second);
-  CHECK_THROWS_AS(static_cast<void>(duet::printed_derivative(s, 4 * (1 + 3e-15))),
-                  duet::invalid_input);
+  CHECK_THROWS_AS((void)duet::printed_derivative(s, 4 * (1 + 3e-15)), duet::invalid_input);
 
   const duet::bspline_basis<2, float> basis({0, 0, 3, 3});
   CHECK(basis.find_span(std::nextafter(3.f, 4.f)) == 0);
-  CHECK_THROWS_WITH_AS(static_cast<void>(basis.find_span(3.00001f)),
+  CHECK_THROWS_WITH_AS((void)basis.find_span(3.00001f),
                        doctest::Contains("evaluated at 3.00001, outside its domain [0, 3]"),
                        duet::invalid_input);
 
@@ -144,4 +139,5 @@ TEST_CASE(
   CHECK(fitted.rms < 1e-12);
 }
 
+} // namespace
 } // namespace test_spline_ends_by_rounding

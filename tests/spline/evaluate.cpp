@@ -40,8 +40,6 @@ std::vector<double> many_parameters() {
   return u;
 }
 
-} // namespace
-
 TEST_CASE_TEMPLATE(
     "evaluate: many parameters give the results of single ones, with any number of threads", Spline,
     cumulative, rotation_vector) {
@@ -136,4 +134,5 @@ TEST_CASE("evaluate: an error that single parameters do not reproduce is rethrow
   CHECK(error_after(at_two) == "duet: sample 2: too far");
 }
 
+} // namespace
 } // namespace test_spline_evaluate

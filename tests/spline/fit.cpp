@@ -79,8 +79,6 @@ double largest_distance(const Curve& a, const Curve& b) {
   return largest;
 }
 
-} // namespace
-
 TEST_CASE_TEMPLATE("fit: exact samples of a curve reproduce it", Q, rotation, pose_type) {
   const auto reference = some_curve<Q>();
   const auto u = steps(8, 60);
@@ -105,9 +103,7 @@ TEST_CASE("fit: as many samples as control points are interpolated") {
   CHECK(result.rms <= 1e-13);
 }
 
-TEST_CASE_TEMPLATE(
-    "fit: noise is smoothed, and perturbed control points increase the sum of squares", Q, rotation,
-    pose_type) {
+TEST_CASE_TEMPLATE("fit: noise is smoothed", Q, rotation, pose_type) {
   constexpr double noise = 0.01;
   const auto reference = some_curve<Q>();
   const auto u = steps(8, 400);
@@ -122,52 +118,7 @@ TEST_CASE_TEMPLATE(
         0.5 * noise * (std::is_same_v<Q, rotation> ? 1 : 2));
   const double expected = noise * (std::is_same_v<Q, rotation> ? 1 : std::sqrt(2.0));
   CHECK(result.rms == doctest::Approx(expected).epsilon(0.05));
-
-  const auto sum_of_squares = [&](const curve<Q>& s) {
-    double sum = 0;
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      const auto d = between(s(u[i]), samples[i]);
-      sum += d * d;
-    }
-    return sum;
-  };
-  if constexpr (std::is_same_v<Q, rotation>) { // `between` is another metric for poses
-    const double minimum = sum_of_squares(result.curve);
-    for (std::size_t k = 0; k < result.curve.control_points().size(); ++k) {
-      for (const double size : {1e-4, -1e-4}) {
-        for (int axis = 0; axis < 3; ++axis) {
-          auto controls = result.curve.control_points();
-          controls[k] = controls[k] * duet::from_rotation_vector(
-                                          vector3<double>(vector3<double>::Unit(axis) * size));
-          CHECK(sum_of_squares({reference.basis(), controls}) > minimum);
-        }
-      }
-    }
-  }
 }
-
-TEST_CASE_TEMPLATE("fit with an outlier threshold: outliers of 1.5 have little effect", Q, rotation,
-                   pose_type) {
-  constexpr double noise = 0.001;
-  const auto reference = some_curve<Q>();
-  const auto u = steps(8, 100);
-  random_source random(11);
-  auto samples = samples_of(reference, u);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples[i] = moved(samples[i], random, i % 20 == 10 ? 1.5 : noise);
-  }
-  const auto plain = duet::fit<curve<Q>>(u, samples, reference.basis().knots());
-  const auto robust =
-      duet::fit<curve<Q>>(u, samples, reference.basis().knots(),
-                          {.characteristic_length = 1, .outlier_threshold = 3 * noise});
-  CHECK(largest_distance(plain.curve, reference) > 0.1);
-  CHECK(largest_distance(robust.curve, reference) < 2 * noise);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    CHECK((robust.residuals[i] > 0.1) == (i % 20 == 10));
-  }
-}
-
-namespace {
 
 /// Outlier: translated by `size` in a random direction and rotated by a random angle.
 pose_type thrown(const pose_type& a, random_source& random, double size) {
@@ -179,8 +130,6 @@ pose_type thrown(const pose_type& a, random_source& random, double size) {
 rotation thrown(const rotation& a, random_source& random, double) {
   return a * duet::from_rotation_vector(random_vector(random, random.uniform(0.1, 3.1415)));
 }
-
-} // namespace
 
 TEST_CASE_TEMPLATE("fit with an outlier threshold: outliers of any size do not move the curve", Q,
                    rotation, pose_type) {
@@ -240,9 +189,8 @@ TEST_CASE("fit by least squares: the error names a sample whose squared distance
   const auto u = steps(8, 100);
   auto samples = samples_of(reference, u);
   samples[40] = duet::pose(rotation(1.0), vector3<double>(1e160, 0, 0));
-  const auto message = duet_test::message_of<duet::invalid_sample>([&] {
-    static_cast<void>(duet::fit<curve<pose_type>>(u, samples, reference.basis().knots()));
-  });
+  const auto message = duet_test::message_of<duet::invalid_sample>(
+      [&] { (void)duet::fit<curve<pose_type>>(u, samples, reference.basis().knots()); });
   CHECK(message.rfind("duet: sample 40: is 1", 0) == 0);
   CHECK(message.find("e+160 from the samples around it, too far for least squares "
                      "(fit_options::outlier_threshold makes the fit robust)") != std::string::npos);
@@ -265,8 +213,8 @@ TEST_CASE("fit: no_convergence gives the number of steps and the last step") {
   const auto reference = some_curve<rotation>();
   const auto u = steps(8, 100);
   const auto message = duet_test::message_of<duet::no_convergence>([&] {
-    static_cast<void>(duet::fit<curve<rotation>>(u, samples_of(reference, u),
-                                                 reference.basis().knots(), {.max_iterations = 1}));
+    (void)duet::fit<curve<rotation>>(u, samples_of(reference, u), reference.basis().knots(),
+                                     {.max_iterations = 1});
   });
   CHECK(message.rfind("duet: fit: the iteration does not converge after 1 steps, the last one 0.",
                       0) == 0);
@@ -277,34 +225,11 @@ TEST_CASE("fit: no_convergence gives the number of steps and the last step") {
     q = moved(q, random, 0.1);
   }
   const auto robust = duet_test::message_of<duet::no_convergence>([&] {
-    static_cast<void>(duet::fit<curve<rotation>>(u, noisy, reference.basis().knots(),
-                                                 {.outlier_threshold = 0.02, .max_iterations = 1}));
+    (void)duet::fit<curve<rotation>>(u, noisy, reference.basis().knots(),
+                                     {.outlier_threshold = 0.02, .max_iterations = 1});
   });
   CHECK(robust.rfind("duet: fit: the iteration does not converge after ", 0) == 0);
   CHECK(robust.find(" after 1 steps") == std::string::npos);
-}
-
-TEST_CASE("fit: a larger characteristic length reduces the errors of rotation") {
-  const auto reference = some_curve<pose_type>();
-  const auto u = steps(8, 40);
-  random_source random(13);
-  auto samples = samples_of(reference, u);
-  for (auto& sample : samples) { // noise in the translations alone
-    sample = sample * duet::pose(rotation(1.0), random_vector(random, 0.1));
-  }
-  const auto knots = duet::clamped_knots(steps(8, 4), 4); // too few for an exact fit
-  const auto largest_angle = [&](double characteristic_length) {
-    const auto s = duet::fit<curve<pose_type>>(u, samples, knots,
-                                               {.characteristic_length = characteristic_length})
-                       .curve;
-    double worst = 0;
-    for (std::size_t i = 0; i < u.size(); ++i) {
-      worst = std::max(worst, between(rotation(duet::rotation(s(u[i]))),
-                                      rotation(duet::rotation(reference(u[i])))));
-    }
-    return worst;
-  };
-  CHECK(largest_angle(100) < largest_angle(0.1));
 }
 
 /// Error 2 log(S* Q); for poses [v; ω].
@@ -328,7 +253,8 @@ Eigen::MatrixXd random_covariance(random_source& random, Eigen::Index n) {
   return root * root.transpose() + 1e-6 * Eigen::MatrixXd::Identity(n, n);
 }
 
-TEST_CASE_TEMPLATE("fit with weights and covariances: perturbed control points increase the cost",
+TEST_CASE_TEMPLATE("fit, also with weights and covariances: perturbed control points increase the "
+                   "cost",
                    Q, rotation, pose_type) {
   const auto reference = some_curve<Q>();
   const auto knots = reference.basis().knots();
@@ -345,7 +271,9 @@ TEST_CASE_TEMPLATE("fit with weights and covariances: perturbed control points i
   const auto check_minimum = [&](const auto& fitted, const duet::fit_options& of) {
     const auto residual = [&](const curve<Q>& s, std::size_t i) {
       const Eigen::VectorXd e = error_of(Q(s(u[i])), samples[i]);
-      const Eigen::MatrixXd& sigma = of.covariances[of.covariances.size() > 1 ? i : 0];
+      const Eigen::MatrixXd sigma = of.covariances.empty()
+                                        ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))
+                                        : of.covariances[of.covariances.size() > 1 ? i : 0];
       return std::sqrt(e.dot(sigma.inverse() * e));
     };
     const auto cost = [&](const curve<Q>& s) {
@@ -377,6 +305,7 @@ TEST_CASE_TEMPLATE("fit with weights and covariances: perturbed control points i
       CHECK(fitted.residuals[i] == doctest::Approx(residual(fitted.curve, i)).epsilon(1e-9));
     }
   };
+  check_minimum(duet::fit<curve<Q>>(u, samples, knots, {.characteristic_length = 1}), {});
   check_minimum(duet::fit<curve<Q>>(u, samples, knots, options), options);
   duet::fit_options robust = options;
   robust.outlier_threshold = 2;
@@ -500,7 +429,7 @@ TEST_CASE("fit by least squares: no_convergence names a sample far from the othe
   samples[23] = duet::pose(duet::rotation(samples[23]), vector3<double>(1e6, -2e6, 5e5));
   const auto knots = duet::knots_every(u, 5, 4);
   const std::string message = duet_test::message_of<duet::no_convergence>(
-      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, samples, knots)); });
+      [&] { (void)duet::fit<curve<pose_type>>(u, samples, knots); });
   CHECK_MESSAGE(message.find(": sample 23 is 2.29") != std::string::npos, message);
   CHECK(message.ends_with(
       " from the samples around it (fit_options::outlier_threshold makes the fit robust)"));
@@ -520,7 +449,7 @@ TEST_CASE("fit by least squares: no_convergence names control points half a turn
   auto samples = samples_of(curve<pose_type>(knots, controls), u);
   samples[31] = duet::pose(duet::rotation(samples[31]), vector3<double>(600, 0, -800));
   const std::string message = duet_test::message_of<duet::no_convergence>(
-      [&] { static_cast<void>(duet::fit<curve<pose_type>>(u, samples, knots)); });
+      [&] { (void)duet::fit<curve<pose_type>>(u, samples, knots); });
   CHECK_MESSAGE(message.find(" half a turn apart, where the curve jumps: sample 31 is ") !=
                     std::string::npos,
                 message);
@@ -538,7 +467,7 @@ TEST_CASE("knots_every: a knot at every n-th sample, usable by fit for any numbe
     CHECK(duet::knots_every(u, many, 2) == knots{0, 0, 10, 10});
   }
   const auto error_message = [](const knots& parameters, std::size_t n) {
-    return duet_test::message_of([&] { static_cast<void>(duet::knots_every(parameters, n)); });
+    return duet_test::message_of([&] { (void)duet::knots_every(parameters, n); });
   };
   CHECK(error_message(u, 0) ==
         "duet: knots_every: n is 0 with 7 parameters (expected n > 0 and two parameters or more)");
@@ -567,7 +496,7 @@ TEST_CASE("fit: errors name invalid arguments") {
   const auto message = [&](std::vector<double> u, std::vector<rotation> samples,
                            const duet::fit_options& options = {}) {
     return duet_test::message_of(
-        [&] { static_cast<void>(duet::fit<curve<rotation>>(u, samples, knots, options)); });
+        [&] { (void)duet::fit<curve<rotation>>(u, samples, knots, options); });
   };
   const auto u = steps(8, 40);
   const auto samples = samples_of(reference, u);
@@ -611,4 +540,5 @@ TEST_CASE("fit: errors name invalid arguments") {
         "duet: sample 8: parameter 1.4 does not increase, the sample before has 1.4");
 }
 
+} // namespace
 } // namespace test_spline_fit

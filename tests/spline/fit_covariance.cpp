@@ -245,15 +245,15 @@ TEST_CASE("fit: plain least squares have no covariance without degrees of freedo
 TEST_CASE("fit: errors name a covariance that was not requested, or is not stored") {
   const problem<rotation> p;
   const auto fitted = duet::fit<curve<rotation>>(p.u, p.exact, p.knots);
-  CHECK(duet_test::message_of([&] { static_cast<void>(fitted.covariance()); }) ==
+  CHECK(duet_test::message_of([&] { (void)fitted.covariance(); }) ==
         "duet: fit_result: there is no covariance (set fit_options::keeps_covariance)");
   const auto with =
       duet::fit<curve<rotation>>(p.u, p.exact, p.knots, {.keeps_covariance = true}).covariance();
-  CHECK(duet_test::message_of([&] { static_cast<void>(with.block(6, 2)); }) ==
+  CHECK(duet_test::message_of([&] { (void)with.block(6, 2); }) ==
         "duet: curve_covariance: control points 6 and 2 of 7 (expected two less than 4 "
         "apart)");
   CHECK(duet_test::message_of([&] {
-          static_cast<void>(with.block(7, 6));
+          (void)with.block(7, 6);
         }).find("control points 7 and 6 of 7") != std::string::npos);
 }
 

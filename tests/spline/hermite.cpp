@@ -64,8 +64,6 @@ void check_samples(Frame frame) {
   }
 }
 
-} // namespace
-
 TEST_CASE("hermite_spline: the curve passes through its samples with the given velocities") {
   check_samples(duet::frame::body);
   check_samples(duet::frame::spatial);
@@ -96,7 +94,7 @@ TEST_CASE("hermite_spline: errors name invalid samples") {
   samples r(5, duet::frame::body);
   const auto message = [&](const std::vector<vector6<double>>& twists) {
     return duet_test::message_of(
-        [&] { static_cast<void>(duet::hermite_spline(r.u, r.poses, twists, duet::frame::body)); });
+        [&] { (void)duet::hermite_spline(r.u, r.poses, twists, duet::frame::body); });
   };
   auto twists = r.twists;
   twists[2][4] = std::numeric_limits<double>::quiet_NaN();
@@ -110,4 +108,5 @@ TEST_CASE("hermite_spline: errors name invalid samples") {
   CHECK(message(r.twists).starts_with("duet: sample 3: parameter "));
 }
 
+} // namespace
 } // namespace test_spline_hermite

@@ -3,8 +3,6 @@
 #include "spline/curves.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/duet.hpp>
-
 // Derivatives through the solve are compared with central differences of 50-digit solutions, whose
 // error is far below the round-off of doubles.
 
@@ -89,8 +87,6 @@ void check_as_poses(const Ends& ends, const std::vector<quaternion<real_50>>& ex
         [](const auto& x) { return x.epsilon(); });
 }
 
-} // namespace
-
 TEST_CASE("interpolate, natural ends: derivatives with respect to the data and dual parts agree "
           "with 50-digit differences") {
   check_both(duet::natural{});
@@ -125,4 +121,48 @@ TEST_CASE("interpolate, clamped ends: derivatives with respect to end rates and 
   check_as_poses(duet::clamped{start_twist, end_twist}, expected);
 }
 
+TEST_CASE_TEMPLATE("interpolate, rotation vectors: derivatives with respect to the data agree with "
+                   "differences",
+                   order, std::integral_constant<int, 4>, std::integral_constant<int, 6>) {
+  const auto at = [](const auto& h) {
+    using spline = duet::rotation_vector_spline<std::decay_t<decltype(h)>, order::value>;
+    return duet::interpolate<spline>(u, moved(h), duet::not_a_knot{})(0.9);
+  };
+  const double h = 1e-5;
+  const auto slope = at(dual<double>::variable(0));
+  const auto difference = (at(h) - at(-h)) / (2 * h);
+  CHECK(norm(difference) > 1e-3);
+  CHECK(std::abs(slope.w().epsilon() - difference.w()) < 1e-8);
+  CHECK(std::abs(slope.x().epsilon() - difference.x()) < 1e-8);
+  CHECK(std::abs(slope.y().epsilon() - difference.y()) < 1e-8);
+  CHECK(std::abs(slope.z().epsilon() - difference.z()) < 1e-8);
+}
+
+TEST_CASE("interpolate: second derivatives with respect to the data and derivatives of poses agree "
+          "with differences") {
+  // The derivative of the dual part is compared with the difference of two curves of poses, the
+  // second derivative of a rotation with the difference of two first derivatives.
+  using D = dual<double>;
+  const double h = 1e-6;
+  const auto check_second = [&](auto variable, auto at) {
+    using T = decltype(variable);
+    using S = decltype(at(0.0));
+    const auto s = duet::interpolate<curve<T>>(u, moved(variable), duet::natural{});
+    const auto a = duet::interpolate<curve<S>>(u, moved(at(h)), duet::natural{});
+    const auto b = duet::interpolate<curve<S>>(u, moved(at(-h)), duet::natural{});
+    for (const double x : between) {
+      const auto q = s(x);
+      const auto difference = (a(x) - b(x)) / (2 * h);
+      CHECK(std::abs(q.w().epsilon().epsilon() - difference.w().epsilon()) < 1e-8);
+      CHECK(std::abs(q.y().epsilon().epsilon() - difference.y().epsilon()) < 1e-8);
+    }
+  };
+  struct second;
+  using nested = dual<D, 1, duet::derivative_tag<second>>;
+  check_second(nested(D::variable(0), D(1)), [](double x) { return D(x, 1); });
+  check_second(duet::screw_dual<D>(D::variable(0), D(1)),
+               [](double x) { return duet::screw_dual<double>(x, 1); });
+}
+
+} // namespace
 } // namespace test_spline_interpolate_derivatives

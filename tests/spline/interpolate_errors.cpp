@@ -2,134 +2,122 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/spline/interpolate.hpp>
-
 namespace test_spline_interpolate_errors {
+namespace {
 
-using spline = duet::cumulative_bspline<double>;
+using cumulative = duet::cumulative_bspline<double>;
+using cubic = duet::rotation_vector_spline<double>;
+using quintic = duet::rotation_vector_spline<double, 6>;
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
 using parameters = std::vector<double>;
 using table = std::vector<quaternion>;
-
-namespace {
+using ends = duet::curve_ends<double>;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const quaternion one(1);
+const vector zero = vector::Zero();
 
-/// Index of the invalid sample and the reason, as "index: reason".
-std::string invalid_sample_of(const parameters& u, const table& q) {
-  try {
-    static_cast<void>(duet::interpolate<spline>(u, q));
-  } catch (const duet::invalid_sample& e) {
-    const std::string text = std::to_string(e.index()) + ": " + e.reason();
-    CHECK(e.what() == "duet: sample " + text);
-    return text;
-  }
-  return "no invalid sample";
+template <class Spline = cumulative, class Error = duet::invalid_input>
+std::string error_of(const parameters& u, const table& q, const ends& at_ends = duet::natural{}) {
+  return duet_test::message_of<Error>([&] { (void)duet::interpolate<Spline>(u, q, at_ends); });
 }
 
-template <class Exception, class Ends = duet::natural>
-std::string message_of(const parameters& u, const table& q, const Ends& ends = {}) {
-  try {
-    static_cast<void>(duet::interpolate<spline>(u, q, ends));
-  } catch (const Exception& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
-}
-
-} // namespace
-
-TEST_CASE("interpolate: errors name orientations that no curve can pass through") {
+TEST_CASE("interpolate: errors name samples that no curve can pass through, and their number") {
+  struct row {
+    parameters u;
+    table q;
+    std::string message;
+  };
   const parameters u = {0, 1, 2};
-  CHECK(invalid_sample_of(u, {one, one, {0, not_a_number, 0, 0}}) ==
-        "2: quaternion (0, nan, 0, 0) is not finite");
-  CHECK(invalid_sample_of(u, {{infinity, 0, 0, 0}, one, one}) ==
-        "0: quaternion (inf, 0, 0, 0) is not finite");
-  CHECK(invalid_sample_of(u, {one, {0.5, 0.5, 0.5, 0}, one}) ==
-        "1: quaternion (0.5, 0.5, 0.5, 0) has norm 0.866025, not 1");
-  CHECK(invalid_sample_of(u, {one, {}, one}) == "1: quaternion (0, 0, 0, 0) has norm 0, not 1");
-  CHECK(invalid_sample_of(u, {one, {1e200, 0, 0, 0}, one}) ==
-        "1: quaternion (1e+200, 0, 0, 0) has norm 1e+200, not 1");
-  CHECK(invalid_sample_of(u, {one, one, {0, 0, 0.6, 0.8}}) ==
-        "2: half a turn from the sample before: both arcs are equally short");
-}
-
-TEST_CASE("interpolate: errors name parameters that do not increase or are not finite") {
-  const table q = {one, one, one, one};
-  CHECK(invalid_sample_of({0, 1, 1, 2}, q) ==
-        "2: parameter 1 does not increase, the sample before has 1");
-  CHECK(invalid_sample_of({0, 1, 0.5, 2}, q) ==
-        "2: parameter 0.5 does not increase, the sample before has 1");
-  CHECK(invalid_sample_of({0, 1, 2, not_a_number}, q) == "3: parameter nan is not finite");
-  CHECK(invalid_sample_of({-infinity, 1, 2, 3}, q) == "0: parameter -inf is not finite");
-}
-
-TEST_CASE("interpolate: errors for too few samples and for differing numbers of parameters") {
-  using duet::invalid_input;
-  CHECK(message_of<invalid_input>({}, {}) == "duet: interpolate: needs 2 samples or more, got 0");
-  CHECK(message_of<invalid_input>({1}, {one}) ==
-        "duet: interpolate: needs 2 samples or more, got 1");
-  CHECK(message_of<invalid_input>({1, 2, 3, 4}, {one, one, one, one, one}) ==
-        "duet: interpolate: 4 parameters, but 5 samples");
-  CHECK(message_of<invalid_input>({1, 2, 3}, {one, one, one}, duet::not_a_knot{}) ==
-        "duet: interpolate: needs 4 samples or more with these end conditions, got 3");
-  CHECK(message_of<invalid_input>({1, 2}, {one, one}, duet::periodic{}) ==
-        "duet: interpolate: needs 3 samples or more with these end conditions, got 2");
-}
-
-TEST_CASE("interpolate: periodic ends require that the last sample repeats the first") {
-  const quaternion rotated = normalized(quaternion(1, 0.001, 0, 0));
-  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, rotated, rotated}, duet::periodic{}) ==
-        "duet: sample 2: periodic ends: differs from sample 0 by 0.002 rad, but must repeat it");
-  CHECK(message_of<duet::invalid_sample>({1, 2, 3}, {one, rotated, -one}, duet::periodic{}) ==
-        "nothing was thrown");
-
-  using pose = duet::dual_quaternion<double>;
-  const std::vector<pose> poses = {pose(one), duet::pose(rotated, vector(1, 2, 3)),
-                                   duet::pose(one, vector(0, 0.003, 0.004))};
+  const table four(4, one);
+  for (const row& each : std::initializer_list<row>{
+           {u,
+            {one, one, {0, not_a_number, 0, 0}},
+            "sample 2: quaternion (0, nan, 0, 0) is not finite"},
+           {u,
+            {{infinity, 0, 0, 0}, one, one},
+            "sample 0: quaternion (inf, 0, 0, 0) is not finite"},
+           {u,
+            {one, {0.5, 0.5, 0.5, 0}, one},
+            "sample 1: quaternion (0.5, 0.5, 0.5, 0) has norm 0.866025, not 1"},
+           {u, {one, {}, one}, "sample 1: quaternion (0, 0, 0, 0) has norm 0, not 1"},
+           {u,
+            {one, {1e200, 0, 0, 0}, one},
+            "sample 1: quaternion (1e+200, 0, 0, 0) has norm 1e+200, not 1"},
+           {u,
+            {one, one, {0, 0, 0.6, 0.8}},
+            "sample 2: half a turn from the sample before: both arcs are equally short"},
+           {{0, 1, 1, 2}, four, "sample 2: parameter 1 does not increase, the sample before has 1"},
+           {{0, 1, 0.5, 2},
+            four,
+            "sample 2: parameter 0.5 does not increase, the sample before has 1"},
+           {{0, 1, 2, not_a_number}, four, "sample 3: parameter nan is not finite"},
+           {{-infinity, 1, 2, 3}, four, "sample 0: parameter -inf is not finite"},
+           {{}, {}, "interpolate: needs 2 samples or more, got 0"},
+           {{1}, {one}, "interpolate: needs 2 samples or more, got 1"},
+           {{1, 2, 3, 4, 5}, four, "interpolate: 5 parameters, but 4 samples"}}) {
+    CAPTURE(each.message);
+    CHECK(error_of<cumulative>(each.u, each.q) == "duet: " + each.message);
+    CHECK(error_of<cubic>(each.u, each.q) == "duet: " + each.message);
+    CHECK(error_of<quintic>(each.u, each.q) == "duet: " + each.message);
+  }
   try {
-    static_cast<void>(duet::interpolate<duet::cumulative_bspline<pose::scalar_type>>(
-        parameters{1, 2, 3}, poses, duet::periodic{}));
+    (void)duet::interpolate<cumulative>(u, table{one, {}, one});
     FAIL("nothing was thrown");
   } catch (const duet::invalid_sample& e) {
-    CHECK(e.index() == 2);
-    CHECK(e.reason() ==
-          "periodic ends: differs from sample 0 by 0.005 in translation, but must repeat it");
+    CHECK(e.index() == 1);
+    CHECK(e.reason() == "quaternion (0, 0, 0, 0) has norm 0, not 1");
   }
 }
 
-TEST_CASE("interpolate: errors name end rates that are not finite") {
+TEST_CASE("interpolate: end conditions need samples enough, and rates that are finite") {
+  const auto few = [](int needed, int got) {
+    return "duet: interpolate: needs " + std::to_string(needed) +
+           " samples or more with these end conditions, got " + std::to_string(got);
+  };
+  CHECK(error_of({1, 2, 3}, table(3, one), duet::not_a_knot{}) == few(4, 3));
+  CHECK(error_of({1, 2}, table(2, one), duet::periodic{}) == few(3, 2));
+  CHECK(error_of<cubic>({1, 2, 3}, table(3, one), duet::not_a_knot{}) == few(4, 3));
+  CHECK(error_of<quintic>({1, 2, 3, 4, 5}, table(5, one), duet::not_a_knot{}) == few(6, 5));
+  CHECK(error_of<quintic>({1, 2, 3}, table(3, one), duet::clamped{zero, zero}) == few(4, 3));
+  const auto of_rates = [](const vector& start, const vector& end) {
+    return duet_test::message_of([&] { (void)ends(duet::clamped{start, end}); });
+  };
+  CHECK(of_rates(vector(0, not_a_number, 0), zero) ==
+        "duet: clamped: the rate at the start, (0, nan, 0), is not finite");
+  CHECK(of_rates(zero, vector(infinity, 0, 0)) ==
+        "duet: clamped: the rate at the end, (inf, 0, 0), is not finite");
   const duet::vector6<double> twist(0, 0, 1, infinity, 0, 0);
   CHECK_THROWS_WITH_AS(
       (duet::curve_ends<duet::screw_dual<double>>(
           duet::end_acceleration{twist, duet::vector6<double>(0 * twist)})),
       "duet: end_acceleration: the rate at the start, (0, 0, 1, inf, 0, 0), is not finite",
       duet::invalid_input);
-  const vector zero = vector::Zero();
-  const auto with = [&](const vector& start, const vector& end) -> std::string {
-    try {
-      static_cast<void>(duet::interpolate<spline>(parameters{0, 1, 2}, table{one, one, one},
-                                                  duet::clamped{start, end}));
-    } catch (const duet::invalid_input& e) {
-      return e.what();
-    }
-    return "nothing was thrown";
-  };
-  CHECK(with(vector(0, not_a_number, 0), zero) ==
-        "duet: clamped: the rate at the start, (0, nan, 0), is not finite");
-  CHECK(with(zero, vector(infinity, 0, 0)) ==
-        "duet: clamped: the rate at the end, (inf, 0, 0), is not finite");
-}
-
-TEST_CASE("interpolate: cubics reject velocities and accelerations at the same end") {
-  const vector zero = vector::Zero();
   const duet::fully_clamped both{duet::clamped{zero, zero}, duet::end_acceleration{zero, zero}};
-  CHECK(message_of<duet::invalid_input>({0, 1, 2}, {one, one, one}, both) ==
+  CHECK(error_of({0, 1, 2}, table(3, one), both) ==
         "duet: interpolate: fully_clamped ends need a quintic (a cubic can meet velocities or "
         "accelerations, not both)");
+}
+
+TEST_CASE("interpolate: periodic ends require that the last sample repeats the first") {
+  const quaternion rotated = normalized(quaternion(1, 0.001, 0, 0));
+  const std::string differs =
+      "duet: sample 2: periodic ends: differs from sample 0 by 0.002 rad, but must repeat it";
+  CHECK(error_of({1, 2, 3}, {one, rotated, rotated}, duet::periodic{}) == differs);
+  CHECK(error_of<cubic>({1, 2, 3}, {one, rotated, rotated}, duet::periodic{}) == differs);
+  CHECK(error_of({1, 2, 3}, {one, rotated, -one}, duet::periodic{}) == "");
+
+  using pose = duet::dual_quaternion<double>;
+  const std::vector<pose> poses = {pose(one), duet::pose(rotated, vector(1, 2, 3)),
+                                   duet::pose(one, vector(0, 0.003, 0.004))};
+  CHECK_THROWS_WITH_AS(
+      (void)duet::interpolate<duet::cumulative_bspline<pose::scalar_type>>(parameters{1, 2, 3},
+                                                                           poses, duet::periodic{}),
+      "duet: sample 2: periodic ends: differs from sample 0 by 0.005 in translation, but must "
+      "repeat it",
+      duet::invalid_sample);
 }
 
 TEST_CASE("interpolate: rotations of 3.1 rad at uneven parameters give a curve or an error with "
@@ -143,8 +131,8 @@ TEST_CASE("interpolate: rotations of 3.1 rad at uneven parameters give a curve o
     while (u.size() < q.size()) {
       u.push_back(u.back() + random.uniform(0.2, 2));
     }
-    const std::string message = message_of<duet::no_convergence>(u, q);
-    if (message == "nothing was thrown") {
+    const std::string message = error_of<cumulative, duet::no_convergence>(u, q);
+    if (message.empty()) {
       continue;
     }
     ++failures;
@@ -158,4 +146,30 @@ TEST_CASE("interpolate: rotations of 3.1 rad at uneven parameters give a curve o
   CHECK(failures <= 4);
 }
 
+TEST_CASE("rotation_vector_spline: errors name rates and parameters that give no curve") {
+  const auto of_rates = [](const std::vector<std::array<vector, 2>>& rates) {
+    return duet_test::message_of([&] { quintic({0, 1}, {one, one}, rates); });
+  };
+  CHECK(of_rates({{zero, zero}}).find("2 samples need 2 rates, got 1") != std::string::npos);
+  for (const double x : {not_a_number, infinity}) {
+    for (const std::size_t i : {0, 1}) {
+      std::vector<std::array<vector, 2>> rates(2, {zero, zero});
+      rates[i][1 - i][2] = x;
+      CHECK(of_rates(rates) == "duet: sample " + std::to_string(i) + ": a rate is not finite");
+    }
+  }
+  const auto over = [](double from, double to) {
+    return duet_test::message_of([&] {
+      (void)cubic::from_pieces({from, to}, {one, one}, {{zero, zero, zero, zero}});
+    });
+  };
+  CHECK(over(0, 1) == "");
+  CHECK(over(0, 5e-324) ==
+        "duet: rotation_vector_spline: parameter 0 = 0 and parameter 1 = 4.94066e-324 are too "
+        "close: a derivative overflows");
+  CHECK(over(-1.7e308, 1.7e308) ==
+        "duet: rotation_vector_spline: the distance from -1.7e+308 to 1.7e+308 overflows");
+}
+
+} // namespace
 } // namespace test_spline_interpolate_errors

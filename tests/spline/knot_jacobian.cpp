@@ -2,15 +2,12 @@
 
 #include "spline/curve_jacobians.hpp"
 
-#include <duet/duet.hpp>
-
 namespace test_spline_knot_jacobian {
+namespace {
 
 using duet::perturbation;
 using duet_test::real_50;
 using screw = duet::screw_dual<double>;
-
-namespace {
 
 /// A curve over 50 digits with one knot moved.
 template <class T, int Order>
@@ -78,8 +75,6 @@ void compare(Frame frame, perturbation side) {
   }
 }
 
-} // namespace
-
 TEST_CASE("knot_jacobian: agrees with moved knots over 50 digits") {
   compare<double, 2>(duet::frame::body, perturbation::right);
   compare<double, 3>(duet::frame::spatial, perturbation::right);
@@ -109,4 +104,5 @@ TEST_CASE("knot_jacobian: knots of a clamped end have no derivative, others sum 
   }
 }
 
+} // namespace
 } // namespace test_spline_knot_jacobian

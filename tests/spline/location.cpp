@@ -2,9 +2,6 @@
 
 #include "spline/curves.hpp"
 #include "support/identical.hpp"
-#include "support/message.hpp"
-
-#include <duet/duet.hpp>
 
 namespace test_spline_location {
 namespace {
@@ -28,10 +25,8 @@ spline with_behaviour(out_of_domain behaviour) {
 }
 
 std::string message_of(const spline& t, double u) {
-  return duet_test::message_of([&] { static_cast<void>(t.motion(u, duet::frame::body)); });
+  return duet_test::message_of([&] { (void)t.motion(u, duet::frame::body); });
 }
-
-} // namespace
 
 TEST_CASE("curve: a span hint does not affect results") {
   duet::span_hint forward, backward, random{99};
@@ -49,7 +44,7 @@ TEST_CASE("curve: a span hint does not affect results") {
   }
   duet::span_hint at_end{s.basis().breaks().size() - 2};
   check(last, at_end);
-  CHECK_THROWS_AS(static_cast<void>(s(last + 1, at_end)), duet::invalid_input);
+  CHECK_THROWS_AS((void)s(last + 1, at_end), duet::invalid_input);
 }
 
 TEST_CASE("curve outside its domain: by default an error with the parameter") {
@@ -156,4 +151,5 @@ TEST_CASE("cumulative_bspline: increments of any length give longer arcs and sev
                        duet::invalid_input);
 }
 
+} // namespace
 } // namespace test_spline_location

@@ -43,8 +43,6 @@ duet::lookup_table<T> uniform_table(const F& f, int intervals) {
   return table;
 }
 
-} // namespace
-
 TEST_CASE(
     "adaptive_table: the error is within the bound, with fewer samples than a uniform table") {
   for (const double tolerance : {1e-3, 1e-5, 1e-6}) {
@@ -154,9 +152,9 @@ TEST_CASE("adaptive_table: ripples are within the bound; errors name values that
   }
   const auto message = [](double bad, const rotation& value) {
     try {
-      static_cast<void>(duet::adaptive_table<rotation_curve>(
+      (void)duet::adaptive_table<rotation_curve>(
           [&](double u) { return std::abs(u - bad) < .01 ? value : rotation(1.0); }, 0.0, 1.0,
-          1e-3));
+          1e-3);
     } catch (const duet::invalid_input& error) {
       return std::string(error.what());
     }
@@ -172,8 +170,8 @@ TEST_CASE("adaptive_table: ripples are within the bound; errors name values that
 TEST_CASE("adaptive_table, estimated_errors: errors name invalid bounds and too few samples") {
   const auto message = [](double first, double last, double tolerance, std::size_t max_samples) {
     try {
-      static_cast<void>(duet::adaptive_table<rotation_curve>(
-          rotating, first, last, tolerance, duet::not_a_knot{}, {.max_samples = max_samples}));
+      (void)duet::adaptive_table<rotation_curve>(rotating, first, last, tolerance,
+                                                 duet::not_a_knot{}, {.max_samples = max_samples});
     } catch (const std::exception& error) {
       return std::string(error.what());
     }
@@ -184,9 +182,9 @@ TEST_CASE("adaptive_table, estimated_errors: errors name invalid bounds and too 
         "that is not empty and a positive tolerance)");
   CHECK(message(0, 1, 0, 100).find("tolerance 0 (expected") != std::string::npos);
   CHECK(message(0, 3, 1e-9, 100).ends_with(", and options.max_samples is 100"));
-  CHECK_THROWS_AS(
-      static_cast<void>(duet::estimated_errors<rotation_curve>(uniform_table<double>(rotating, 7))),
-      duet::invalid_input);
+  CHECK_THROWS_AS((void)duet::estimated_errors<rotation_curve>(uniform_table<double>(rotating, 7)),
+                  duet::invalid_input);
 }
 
+} // namespace
 } // namespace test_spline_lookup_table

@@ -2,143 +2,116 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/duet.hpp>
-
 namespace test_spline_motion {
+namespace {
 
 using duet::cumulative_bspline;
 using duet_test::knot_vectors;
-using duet_test::max_abs_difference;
 using duet_test::parameters_on;
 using duet_test::random_orientations;
 
+using number = duet::screw_dual<double>;
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
 
-namespace {
+double size_of(const quaternion& q) { return norm(q); }
+double size_of(const duet::dual_quaternion<double>& a) {
+  return norm(real_part(a)) + norm(dual_part(a));
+}
+double size_of(const vector& v) { return v.norm(); }
+double size_of(const duet::vector6<double>& v) { return v.norm(); }
+template <class X>
+double difference(const X& a, const X& b) {
+  return size_of(X(a - b)) / (1 + size_of(a));
+}
 
-template <int Order, class F>
-void for_each_curve(F&& f) {
-  for (const duet_test::named_knots& each : knot_vectors(Order)) {
-    const std::string& name = each.name;
-    const std::vector<double>& knots = each.knots;
-    CAPTURE(Order);
-    CAPTURE(name);
-    f(cumulative_bspline<double, Order>(knots,
-                                        random_orientations(knots.size() - std::size_t(Order), 1)),
-      parameters_on(knots, Order, 2));
+/// Velocity from Q and Q′ by N7 or N18, over any scalar of the parameter.
+template <class Curve, class S, class Frame>
+auto velocity_of(const Curve& s, const S& u, Frame frame) {
+  const auto q = duet::derivative([&](const auto& x) { return s(x); }, u);
+  if constexpr (requires { duet::twist(q.value, q.derivative, frame); }) {
+    return duet::twist(q.value, q.derivative, frame);
+  } else {
+    return duet::angular_velocity(q.value, q.derivative, frame);
   }
 }
 
-/// ω, ω′ and ω″ from Q, Q′, Q″, Q‴ by the product rule on N7.
-template <class Frame>
-std::array<vector, 3> rates(const std::array<quaternion, 4>& q, Frame) {
-  const std::array<quaternion, 3> half = [&] {
-    if constexpr (std::is_same_v<Frame, duet::spatial_frame>) {
-      return std::array{q[1] * conj(q[0]), q[2] * conj(q[0]) + q[1] * conj(q[1]),
-                        q[3] * conj(q[0]) + 2 * (q[2] * conj(q[1])) + q[1] * conj(q[2])};
-    } else {
-      return std::array{conj(q[0]) * q[1], conj(q[0]) * q[2] + conj(q[1]) * q[1],
-                        conj(q[0]) * q[3] + 2 * (conj(q[1]) * q[2]) + conj(q[2]) * q[1]};
-    }
-  }();
-  return {2 * half[0].vec(), 2 * half[1].vec(), 2 * half[2].vec()};
-}
-
-/// Relative difference, with a lower bound of the size for derivatives that are identically zero.
-double difference(const vector& a, const vector& b) {
-  return (a - b).norm() / std::max(1e-3, a.norm());
-}
-double difference(const quaternion& a, const quaternion& b) {
-  return max_abs_difference(a, b) / std::max(1e-3, std::sqrt(squared_norm(a)));
-}
-
-template <class Spline, class Frame>
-double against_taylor(const Spline& s, const std::vector<double>& parameters, Frame frame) {
+/// Derivatives and rates of a curve in closed form against Taylor numbers through its value.
+template <class Curve>
+double against_taylor(const Curve& s, const std::vector<double>& parameters) {
   double worst = 0;
   for (const double u : parameters) {
-    const auto m = s.motion(u, frame);
+    const auto closed = s.derivatives(u);
     const auto q = duet::derivatives<3>([&](const auto& x) { return s(x); }, u);
-    const auto expected = rates(q, frame);
-    worst = std::max(worst, max_abs_difference(m.value, s(u)));
-    worst = std::max(worst, difference(expected[0], m.velocity));
-    worst = std::max(worst, difference(duet::angular_velocity(q[0], q[1], frame), m.velocity));
-    worst = std::max(worst, difference(expected[1], m.acceleration));
-    worst = std::max(worst, difference(expected[2], m.jerk));
+    for (std::size_t d = 0; d <= 3; ++d) {
+      worst = std::max(worst, difference(closed[d], q[d]));
+    }
+    const auto compare = [&](auto frame) {
+      const auto m = s.motion(u, frame);
+      const auto rates =
+          duet::derivatives<2>([&](const auto& x) { return velocity_of(s, x, frame); }, u);
+      using rate = std::decay_t<decltype(m.velocity)>;
+      worst = std::max({worst, difference(m.value, q[0]), difference(rate(rates[0]), m.velocity),
+                        difference(rate(rates[1]), m.acceleration),
+                        difference(rate(rates[2]), m.jerk)});
+    };
+    compare(duet::frame::body);
+    compare(duet::frame::spatial);
+    if constexpr (duet::manifold<std::decay_t<decltype(s(u))>>::dimension == 6) {
+      compare(duet::frame::hybrid);
+    }
   }
   return worst;
 }
 
-} // namespace
-
-TEST_CASE("P3, P4: Q′, Q″ and Q‴ agree with Taylor numbers, Q′ and Q″ with nested dual numbers") {
-  const auto check = [](const auto& s, const std::vector<double>& parameters) {
-    double worst = 0;
-    for (const double u : parameters) {
-      const auto closed = s.derivatives(u);
-      const auto curve = [&](const auto& x) { return s(x); };
-      const auto taylor = duet::derivatives<3>(curve, u);
-      const auto nested = duet::derivative(
-          [&](const auto& x) {
-            return duet::derivative([&](const auto& y) { return s(y); }, x).derivative;
-          },
-          u);
-      for (std::size_t d = 0; d <= 3; ++d) {
-        worst = std::max(worst, difference(taylor[d], closed[d]));
-      }
-      worst = std::max(worst, difference(nested.value, closed[1]));
-      worst = std::max(worst, difference(nested.derivative, closed[2]));
-    }
-    CHECK(worst < 1e-13);
-  };
-  for_each_curve<3>(check);
-  for_each_curve<4>(check);
+template <class T, int Order>
+void check_cumulative(const duet_test::named_knots& knots) {
+  CAPTURE(Order);
+  CAPTURE(knots.name);
+  const std::size_t count = knots.knots.size() - std::size_t(Order);
+  const auto parameters = parameters_on(knots.knots, Order, 2);
+  if constexpr (std::is_same_v<T, double>) {
+    const cumulative_bspline<T, Order> s(knots.knots, random_orientations(count, 1));
+    CHECK(against_taylor(s, parameters) < 1e-13);
+  } else {
+    const cumulative_bspline<T, Order> s(knots.knots, duet_test::random_poses(count, 1.2));
+    CHECK(against_taylor(s, parameters) < 1e-13);
+  }
 }
 
-TEST_CASE("P3, P4, N7: angular velocity, acceleration and jerk agree with Taylor numbers") {
-  for_each_curve<4>([](const auto& s, const std::vector<double>& parameters) {
-    CHECK(against_taylor(s, parameters, duet::frame::body) < 1e-12);
-    CHECK(against_taylor(s, parameters, duet::frame::spatial) < 1e-12);
-  });
+TEST_CASE("P3, P4, N7, N18: derivatives and rates of cumulative curves agree with Taylor numbers") {
+  for (const auto& each : knot_vectors(4)) {
+    check_cumulative<double, 4>(each);
+  }
+  check_cumulative<double, 3>(knot_vectors(3)[1]);
+  check_cumulative<number, 4>(knot_vectors(4)[1]);
 }
 
-TEST_CASE("motion: each rate is the derivative of the rate before in the same axes") {
+TEST_CASE("rotation_vector_spline: derivatives and rates agree with Taylor numbers") {
+  const std::vector<double> u{-0.5, 0.1, 0.4, 1.3, 1.5, 2.2, 2.9};
+  std::vector<double> parameters;
+  for (double x = -0.5; x <= 2.9; x += 0.0613) {
+    parameters.push_back(x);
+  }
+  for (const double step : {0.0, 1e-9, 0.01, 1.0, 2.5}) {
+    CAPTURE(step);
+    const auto q = random_orientations(7, step, 3);
+    using duet::rotation_vector_spline;
+    const auto cubic = duet::interpolate<rotation_vector_spline<double>>(u, q);
+    CHECK(against_taylor(cubic, parameters) < 1e-13);
+    const auto quintic = duet::interpolate<rotation_vector_spline<double, 6>>(u, q);
+    CHECK(against_taylor(quintic, parameters) < 1e-13);
+  }
+}
+
+TEST_CASE("motion: hybrid rates of rotations are spatial ones") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, random_orientations(knots.size() - 4, 1));
-  const auto check = [&](auto frame) {
-    for (const double u : parameters_on(knots, 4)) {
-      const auto m = s.motion(u, frame);
-      const auto alpha =
-          duet::derivative([&](const auto& x) { return s.motion(x, frame).velocity; }, u);
-      const auto jerk =
-          duet::derivative([&](const auto& x) { return s.motion(x, frame).acceleration; }, u);
-      CHECK(difference(alpha.value, m.velocity) < 1e-14);
-      CHECK(difference(alpha.derivative, m.acceleration) < 1e-13);
-      CHECK(difference(jerk.value, m.acceleration) < 1e-14);
-      CHECK(difference(jerk.derivative, m.jerk) < 1e-13);
-    }
-  };
-  check(duet::frame::body);
-  check(duet::frame::spatial);
   const auto hybrid = s.motion(1.5, duet::frame::hybrid);
   const auto spatial = s.motion(1.5, duet::frame::spatial);
   CHECK(hybrid.velocity == spatial.velocity);
   CHECK(hybrid.acceleration == spatial.acceleration);
   CHECK(hybrid.jerk == spatial.jerk);
-}
-
-TEST_CASE(
-    "motion: body and spatial rates are the same vectors in different axes, except the jerk") {
-  const auto knots = knot_vectors(4)[0].knots;
-  const cumulative_bspline<double> s(knots, random_orientations(knots.size() - 4, 2));
-  for (const double u : parameters_on(knots, 4)) {
-    const auto b = s.motion(u, duet::frame::body);
-    const auto f = s.motion(u, duet::frame::spatial);
-    CHECK(difference(f.velocity, rotate(b.value, b.velocity)) < 1e-14);
-    CHECK(difference(f.acceleration, rotate(b.value, b.acceleration)) < 1e-14);
-    const vector jerk = b.jerk + b.velocity.cross(b.acceleration);
-    CHECK(difference(f.jerk, rotate(b.value, jerk)) < 1e-14);
-  }
 }
 
 TEST_CASE("cumulative_bspline: a curve of order 2 rotates at a constant rate") {
@@ -152,4 +125,5 @@ TEST_CASE("cumulative_bspline: a curve of order 2 rotates at a constant rate") {
   }
 }
 
+} // namespace
 } // namespace test_spline_motion

@@ -4,15 +4,12 @@
 #include "support/multiprecision.hpp"
 #include "support/ulp.hpp"
 
-#include <duet/spline/cumulative_bspline.hpp>
-
 namespace test_spline_motion_accuracy {
+namespace {
 
 using duet_test::real_100;
 using duet_test::ulps_of_range;
 using duet_test::worst_error;
-
-namespace {
 
 using quaternion = duet::quaternion<real_100>;
 using vector = std::array<real_100, 3>;
@@ -110,8 +107,6 @@ void measure(worst_errors& worst, const std::string& name, const std::vector<dou
   }
 }
 
-} // namespace
-
 TEST_CASE("P2, P3, P4: value and rates are within 16 ulp of 100 digits") {
   worst_errors worst;
   for (const duet_test::named_knots& each : duet_test::knot_vectors(4)) {
@@ -132,4 +127,5 @@ TEST_CASE("P2, P3, P4: value and rates are within 16 ulp of 100 digits") {
   CHECK_MESSAGE(worst.jerk <= 16, worst.jerk);
 }
 
+} // namespace
 } // namespace test_spline_motion_accuracy

@@ -132,8 +132,6 @@ void check_jacobians(double perturbation, double tolerance) {
   check("periodic", duet::periodic{});
 }
 
-} // namespace
-
 TEST_CASE("interpolate: Jacobians of the equations agree with central differences") {
   check_jacobians<cumulative>(0, 1e-8); // off the solution it is exact only along Newton steps
   check_jacobians<rotation_vector<4>>(.1, 1e-8);
@@ -172,4 +170,5 @@ TEST_CASE("interpolate, rotation vectors: for small rotations Newton's method ne
   check_all_ends<rotation_vector<6>>({.25, 4}); // third and fourth rates start from zero
 }
 
+} // namespace
 } // namespace test_spline_newton_start

@@ -2,15 +2,12 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/duet.hpp>
-
 namespace test_spline_poses {
 namespace {
 
 using number = duet::screw_dual<double>;
 using pose = duet::quaternion<number>;
 using vector = duet::vector3<double>;
-using twist = duet::vector6<double>;
 using curve = duet::cumulative_bspline<number>;
 
 const std::vector<double> knots = duet_test::knot_vectors(4)[1].knots;
@@ -22,16 +19,6 @@ double max_abs_difference(const pose& a, const pose& b) {
   return std::max(duet_test::max_abs_difference(real_part(a), real_part(b)),
                   duet_test::max_abs_difference(dual_part(a), dual_part(b)));
 }
-/// Twist from Q and Q′ by N18, over any scalar of the parameter.
-template <class S, class Frame>
-auto twist_of_curve(const S& u, Frame frame) {
-  const auto q = duet::derivative([](const auto& x) { return s(x); }, u);
-  return duet::twist(q.value, q.derivative, frame);
-}
-
-double difference(const twist& a, const twist& b) { return (a - b).norm() / (1 + b.norm()); }
-
-} // namespace
 
 TEST_CASE(
     "cumulative_bspline over poses: its rotation is the curve of the rotations, values are units") {
@@ -74,62 +61,6 @@ TEST_CASE("cumulative_bspline over poses: order 2 gives screw motions between ne
   }
 }
 
-TEST_CASE("cumulative_bspline over poses: moving all control poses moves the curve, body twists "
-          "are unchanged") {
-  const pose p = duet_test::random_poses(1, 1).front();
-  std::vector<pose> moved = s.control_points();
-  for (pose& a : moved) {
-    a = p * a;
-  }
-  const curve t(knots, moved);
-  for (const double u : parameters) {
-    CHECK(max_abs_difference(t(u), p * s(u)) < 1e-13);
-    const auto a = s.motion(u, duet::frame::body), b = t.motion(u, duet::frame::body);
-    CHECK(difference(a.velocity, b.velocity) < 1e-13);
-    CHECK(difference(a.jerk, b.jerk) < 1e-13);
-  }
-}
-
-TEST_CASE("P3, P4 over poses: Q′, Q″ and Q‴ agree with Taylor numbers") {
-  for (const double u : parameters) {
-    const auto closed = s.derivatives(u);
-    const auto taylor = duet::derivatives<3>([](const auto& x) { return s(x); }, u);
-    for (std::size_t d = 0; d <= 3; ++d) {
-      const double size = 1 + norm(real_part(taylor[d])) + norm(dual_part(taylor[d]));
-      CHECK(max_abs_difference(closed[d], taylor[d]) < 1e-13 * size);
-    }
-  }
-}
-
-TEST_CASE(
-    "N18: motion gives the twist of Q and Q′, and each rate is the derivative of the rate before") {
-  const auto check = [](auto frame) {
-    for (const double u : parameters) {
-      const auto m = s.motion(u, frame);
-      const auto q = s.derivatives(u);
-      CHECK(difference(duet::twist(q[0], q[1], frame), m.velocity) < 1e-13);
-      const auto rates =
-          duet::derivatives<2>([&](const auto& x) { return twist_of_curve(x, frame); }, u);
-      CHECK(difference(rates[0], m.velocity) < 1e-13);
-      CHECK(difference(rates[1], m.acceleration) < 1e-13);
-      CHECK(difference(rates[2], m.jerk) < 1e-13);
-    }
-  };
-  check(duet::frame::body);
-  check(duet::frame::spatial);
-  check(duet::frame::hybrid);
-}
-
-TEST_CASE("motion over poses: linear hybrid rates are the derivatives of the translation") {
-  for (const double u : parameters) {
-    const auto m = s.motion(u, duet::frame::hybrid);
-    const auto t = duet::derivatives<3>([](const auto& x) { return translation(s(x)); }, u);
-    CHECK((t[1] - m.velocity.head<3>()).norm() < 1e-13 * (1 + t[1].norm()));
-    CHECK((t[2] - m.acceleration.head<3>()).norm() < 1e-13 * (1 + t[2].norm()));
-    CHECK((t[3] - m.jerk.head<3>()).norm() < 1e-13 * (1 + t[3].norm()));
-  }
-}
-
 TEST_CASE("motion over poses: hybrid rates have no cancellation far from the origin") {
   // The body rotates about its origin only (shift 0), or also moves along its axes at a rate of 1.
   using scalar = duet::screw_dual<double>;
@@ -162,4 +93,5 @@ TEST_CASE("motion over poses: hybrid rates have no cancellation far from the ori
   }
 }
 
+} // namespace
 } // namespace test_spline_poses

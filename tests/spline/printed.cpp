@@ -2,9 +2,8 @@
 
 #include "spline/curves.hpp"
 
-#include <duet/duet.hpp>
-
 namespace test_spline_printed {
+namespace {
 
 using duet::cumulative_bspline;
 using duet::printed_derivative;
@@ -15,8 +14,6 @@ using duet_test::parameters_on;
 
 using quaternion = duet::quaternion<double>;
 using vector = duet::vector3<double>;
-
-namespace {
 
 double size(const quaternion& q) { return std::sqrt(squared_norm(q)); }
 double relative(const quaternion& reference, const quaternion& q) {
@@ -48,8 +45,6 @@ std::array<double, 2> as_printed(const std::vector<double>& knots, std::size_t i
                             b_definition(knots, i, order - 2, u, u, end)
                       : 0};
 }
-
-} // namespace
 
 TEST_CASE("P3, P4 as printed: printed_derivative agrees with the literal formulas") {
   const auto check = [](auto order) {
@@ -147,44 +142,6 @@ TEST_CASE("P3 as printed is correct only for parallel ω_i and on spans with B̃
   CHECK(beyond > 10);
 }
 
-TEST_CASE("P2 with functions from B_0: q_{-1} cancels") {
-  for (const duet_test::named_knots& each : knot_vectors(4)) {
-    const std::vector<double>& knots = each.knots;
-    CAPTURE(each.name);
-    const std::size_t count = knots.size() - 4;
-    const cumulative_bspline<double> s(knots, duet_test::random_orientations(count, 1));
-    const quaternion before = duet::from_axis_angle(vector(0, 1, 0), 1.3); // any q_{-1}
-    const auto omega_0 = log(conj(before) * s.control_points()[0]).vec();
-    for (const double u : parameters_on(knots, 4)) {
-      const auto cumulative = [&](std::size_t i) {
-        double sum = 0;
-        for (; i < count; ++i) {
-          sum += duet::basis_function(knots, i, 4, u);
-        }
-        return sum;
-      };
-      quaternion q = pow(before, cumulative(0)) * duet::exp(vector(omega_0 * cumulative(0)));
-      for (std::size_t i = 1; i < count; ++i) {
-        q = q * duet::exp(vector(s.increments()[i] * cumulative(i)));
-      }
-      CHECK(max_abs_difference(q, s(u)) < 1e-14);
-    }
-  }
-}
-
-TEST_CASE("P4: Q″ = Q (a + w²) with w² = −|w|²") {
-  const auto knots = knot_vectors(4)[1].knots;
-  const cumulative_bspline<double> s(knots, duet_test::random_orientations(knots.size() - 4, 1));
-  for (const double u : parameters_on(knots, 4)) {
-    const auto m = s.motion(u, duet::frame::body);
-    const quaternion w(0, m.velocity / 2), a(0, m.acceleration / 2);
-    const auto reference = s.derivatives(u)[2];
-    CHECK(max_abs_difference(reference, m.value * (a + w * w)) <= 1e-13 * (1 + size(reference)));
-    CHECK(max_abs_difference(w * w, quaternion(-squared_norm(w))) <= 1e-14 * (1 + squared_norm(w)));
-    CHECK(relative(reference, m.value * (a - w * w)) > 1e-3);
-  }
-}
-
 TEST_CASE("P4 as printed is wrong even for parallel ω_i, because B̃″_i lacks a term") {
   const auto knots = knot_vectors(4)[1].knots;
   const cumulative_bspline<double> s(knots, about_one_axis(knots.size() - 4));
@@ -231,7 +188,8 @@ TEST_CASE("P3, P4: relative errors of the commuting sums are proportional to the
 TEST_CASE("printed_derivative: parameters outside the domain throw") {
   const cumulative_bspline<double> s({0, 0, 0, 0, 1, 1, 1, 1},
                                      duet_test::random_orientations(4, 1));
-  CHECK_THROWS_AS(static_cast<void>(printed_derivative(s, 1.5)), duet::invalid_input);
+  CHECK_THROWS_AS((void)printed_derivative(s, 1.5), duet::invalid_input);
 }
 
+} // namespace
 } // namespace test_spline_printed

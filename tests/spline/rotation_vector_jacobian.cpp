@@ -2,15 +2,12 @@
 
 #include "spline/curve_jacobians.hpp"
 
-#include <duet/duet.hpp>
-
 namespace test_spline_rotation_vector_jacobian {
+namespace {
 
 using duet::perturbation;
 using duet_test::real_50;
 using screw = duet::screw_dual<double>;
-
-namespace {
 
 template <class T, int Order>
 struct data {
@@ -106,12 +103,11 @@ void compare(Frame frame, perturbation side) {
   }
 }
 
-} // namespace
-
 TEST_CASE("rotation_vector_spline: motion_jacobian agrees with 50 digits") {
   compare<double, 4>(duet::frame::body, perturbation::right);
   compare<double, 6>(duet::frame::spatial, perturbation::left);
   compare<screw, 4>(duet::frame::hybrid, perturbation::right);
 }
 
+} // namespace
 } // namespace test_spline_rotation_vector_jacobian

@@ -3,9 +3,8 @@
 #include "spline/curves.hpp"
 #include "support/multiprecision.hpp"
 
-#include <duet/duet.hpp>
-
 namespace test_spline_scalars {
+namespace {
 
 using duet::cumulative_bspline;
 using duet::dual;
@@ -13,8 +12,6 @@ using duet::quaternion;
 using duet::taylor;
 using duet_test::cast;
 using duet_test::max_abs_difference;
-
-namespace {
 
 const std::vector<double> knots = duet_test::knot_vectors(4)[1].knots;
 const std::vector<quaternion<double>> controls =
@@ -41,8 +38,6 @@ void check_real(double tolerance) {
     CHECK(max_abs_difference(s.derivatives(T(u))[1], reference.derivatives(u)[1]) < 50 * tolerance);
   }
 }
-
-} // namespace
 
 TEST_CASE("cumulative_bspline: float, long double and 50 digits agree with double") {
   check_real<float>(1e-6);
@@ -112,4 +107,5 @@ TEST_CASE(
   }
 }
 
+} // namespace
 } // namespace test_spline_scalars

@@ -98,8 +98,6 @@ void check_ends(random_source& random) {
 template <class Q>
 using cubic = rotation_vectors<Q, 4>;
 
-} // namespace
-
 TEST_CASE(
     "interpolate: intervals of 1e-6 between intervals of 1e3, with a uniform rate, converge") {
   random_source random(1);
@@ -131,15 +129,12 @@ TEST_CASE(
   // The first segment is a cubic through three adjacent samples and a distant one.
   random_source random(3);
   const auto t = random_table<rotation>(random, {1, 1e-5, 1e-5, 1e-5, 1}, 1);
-  const auto message = duet_test::message_of<duet::no_convergence>([&] {
-    static_cast<void>(duet::interpolate<cumulative<rotation>>(t.u, t.samples, duet::not_a_knot{}));
-  });
+  const auto message = duet_test::message_of<duet::no_convergence>(
+      [&] { (void)duet::interpolate<cumulative<rotation>>(t.u, t.samples, duet::not_a_knot{}); });
   CHECK(message.find("the parameters may be too uneven for these end conditions, the longest "
                      "interval is 100000 times the shortest") != std::string::npos);
   CHECK(miss<cumulative<rotation>>(t, duet::natural{}) < 1e-13);
 }
-
-namespace {
 
 /// Scale for the round-off of a derivative at a knot.
 enum class measure {
@@ -182,8 +177,6 @@ std::array<double, Count> jumps(const Spline& s, const std::vector<double>& u, m
   return worst;
 }
 
-} // namespace
-
 TEST_CASE("interpolate, cubics at uneven parameters: C² to round-off, rotation vectors relative to "
           "the derivatives") {
   random_source random(4);
@@ -225,4 +218,5 @@ TEST_CASE("interpolate, quintic at uneven parameters: C⁴ to round-off") {
   }
 }
 
+} // namespace
 } // namespace test_spline_uneven
