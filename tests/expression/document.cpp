@@ -30,8 +30,6 @@ constexpr pose_symbol<"A"> A;
 
 const auto arm = screw(axis::z, theta) * translation_along(axis::x, a);
 
-} // namespace
-
 TEST_CASE("gradients, Hessians, Jacobians and motions in LaTeX") {
   const auto f = sin(x) * exp(-x / a);
   CHECK(to_latex(gradient(f, wrt(x, a))) ==
@@ -72,7 +70,7 @@ TEST_CASE("derivations step by step") {
     CHECK(steps.ends_with(last + "\n\\end{align*}\n"));
   }
   CHECK(duet_test::message_of<duet::invalid_input>([] {
-          static_cast<void>(derivation(read_formula("vector w; w[0]"), "w"));
+          (void)derivation(read_formula("vector w; w[0]"), "w");
         }) == "duet: derivation takes a formula with one scalar output, and a scalar input");
 }
 
@@ -122,4 +120,5 @@ TEST_CASE("a document compiles") {
   std::filesystem::remove_all(folder);
 }
 
+} // namespace
 } // namespace test_expression_document

@@ -22,8 +22,6 @@ constexpr bool are_same(const A&, const B&) {
 template <name Text>
 constexpr auto error_column = detail::formula_reading<Text>::error_column;
 
-} // namespace
-
 TEST_CASE("formula_from: a text has the type of the formula in C++") {
   static_assert(
       are_same(formula_from<"exp(-u)*sin(omega*u^2)">, exp(-u) * sin(omega * pow(u, c<2>))));
@@ -52,4 +50,5 @@ TEST_CASE("formula_from: errors have the columns of read_formula") {
   CHECK(error_column<"u; u"> == 2);
 }
 
+} // namespace
 } // namespace test_expression_formula_from

@@ -119,7 +119,7 @@ private:
   void keep(std::vector<X>& list, const X& x) {
     detail::add_outputs(f, "", x);
     const std::vector<double> numbers = evaluate(f, at);
-    static_cast<void>(f.take_outputs());
+    (void)f.take_outputs();
     for (const double y : numbers) {
       if (!(std::abs(y) < 100)) {
         return;
@@ -131,118 +131,63 @@ private:
 
   recorded scalar() {
     const recorded a = s(), b = s();
-    switch (random_.integer(0, 54)) {
-    case 0:
-      return a + b;
-    case 1:
-      return a - b;
-    case 2:
-      return a * b;
-    case 3:
-      return a / b;
-    case 4:
-      return number() * a;
-    case 5:
-      return -a;
-    case 6:
-      return sqrt(1 + a * a);
-    case 7:
-      return cbrt(a);
-    case 8:
-      return exp(a / 4);
-    case 9:
-      return exp2(b);
-    case 10:
-      return expm1(a);
-    case 11:
-      return log(a * a + 0.5);
-    case 12:
-      return log2(2 + sin(a));
-    case 13:
-      return log10(1 + b * b);
-    case 14:
-      return log1p(a * a);
-    case 15:
-      return sin(a);
-    case 16:
-      return cos(a + b);
-    case 17:
-      return tan(a / 4);
-    case 18:
-      return asin(0.9 * sin(a));
-    case 19:
-      return acos(0.9 * cos(a));
-    case 20:
-      return atan(a);
-    case 21:
-      return sinh(a / 2);
-    case 22:
-      return cosh(a / 2);
-    case 23:
-      return tanh(a);
-    case 24:
-      return asinh(a);
-    case 25:
-      return acosh(1.25 + a * a);
-    case 26:
-      return atanh(0.9 * sin(a));
-    case 27:
-      return erf(a);
-    case 28:
-      return erfc(a);
-    case 29:
-      return abs(a);
-    case 30:
-      return a * floor(b);
-    case 31:
-      return a + ceil(b);
-    case 32:
-      return a - trunc(b) * b;
-    case 33:
-      return a * round(a);
-    case 34:
-      return atan2(a, b);
-    case 35:
-      return hypot(a, b);
-    case 36:
-      return hypot(a, b, recorded(1));
-    case 37:
-      return pow(1 + a * a, b);
-    case 38:
-      return pow(a, recorded(random_.integer(-16, 16)));
-    case 39:
-      return pow(1.5 + sin(a), number());
-    case 40:
-      return fmod(a, 2 + b * b);
-    case 41:
-      return remainder(a, 1 + b * b);
-    case 42:
-      return fma(a, b, s());
-    case 43:
-      return max(a, b);
-    case 44:
-      return min(a, b * b);
-    case 45:
-      return duet::stumpff<2>(recorded(a * a));
-    case 46:
-      return duet::stumpff<1>(recorded(3 * abs(b)));
-    case 47:
-      return duet::stumpff<3>(recorded(a * a * b * b));
-    case 48:
-      return duet::arc_ratio(recorded(a * a + 0.01), b);
-    case 49:
-      return v().dot(v());
-    case 50:
-      return v()[random_.integer(0, 2)];
-    case 51:
-      return m().trace() + m()(0, 2);
-    case 52:
-      return norm(q());
-    case 53:
-      return norm(p()).value() + real_part(l()).dot(dual_part(l()));
-    default:
-      return condition(a, b);
-    }
+    const std::function<recorded()> all[] = {
+        [&] { return a + b; },
+        [&] { return a - b; },
+        [&] { return a * b; },
+        [&] { return a / b; },
+        [&] { return number() * a; },
+        [&] { return -a; },
+        [&] { return sqrt(1 + a * a); },
+        [&] { return cbrt(a); },
+        [&] { return exp(a / 4); },
+        [&] { return exp2(b); },
+        [&] { return expm1(a); },
+        [&] { return log(a * a + 0.5); },
+        [&] { return log2(2 + sin(a)); },
+        [&] { return log10(1 + b * b); },
+        [&] { return log1p(a * a); },
+        [&] { return sin(a); },
+        [&] { return cos(a + b); },
+        [&] { return tan(a / 4); },
+        [&] { return asin(0.9 * sin(a)); },
+        [&] { return acos(0.9 * cos(a)); },
+        [&] { return atan(a); },
+        [&] { return sinh(a / 2); },
+        [&] { return cosh(a / 2); },
+        [&] { return tanh(a); },
+        [&] { return asinh(a); },
+        [&] { return acosh(1.25 + a * a); },
+        [&] { return atanh(0.9 * sin(a)); },
+        [&] { return erf(a); },
+        [&] { return erfc(a); },
+        [&] { return abs(a); },
+        [&] { return a * floor(b); },
+        [&] { return a + ceil(b); },
+        [&] { return a - trunc(b) * b; },
+        [&] { return a * round(a); },
+        [&] { return atan2(a, b); },
+        [&] { return hypot(a, b); },
+        [&] { return hypot(a, b, recorded(1)); },
+        [&] { return pow(1 + a * a, b); },
+        [&] { return pow(a, recorded(random_.integer(-16, 16))); },
+        [&] { return pow(1.5 + sin(a), number()); },
+        [&] { return fmod(a, 2 + b * b); },
+        [&] { return remainder(a, 1 + b * b); },
+        [&] { return fma(a, b, s()); },
+        [&] { return max(a, b); },
+        [&] { return min(a, b * b); },
+        [&] { return duet::stumpff<2>(recorded(a * a)); },
+        [&] { return duet::stumpff<1>(recorded(3 * abs(b))); },
+        [&] { return duet::stumpff<3>(recorded(a * a * b * b)); },
+        [&] { return duet::arc_ratio(recorded(a * a + 0.01), b); },
+        [&] { return v().dot(v()); },
+        [&] { return v()[random_.integer(0, 2)]; },
+        [&] { return m().trace() + m()(0, 2); },
+        [&] { return norm(q()); },
+        [&] { return norm(p()).value() + real_part(l()).dot(dual_part(l())); },
+        [&] { return condition(a, b); }};
+    return all[random_.integer(0, 54)]();
   }
   recorded condition(const recorded& a, const recorded& b) {
     const duet::recorded_condition holds[] = {
@@ -257,119 +202,73 @@ private:
         holds[random_.integer(0, 5)], [&] { return a * b + 2; }, [&] { return b - sin(a); });
   }
   V vector() {
-    switch (random_.integer(0, 14)) {
-    case 0:
-      return v() + v();
-    case 1:
-      return v() - V(number() * v());
-    case 2:
-      return s() * v();
-    case 3:
-      return v() / (1 + s() * s());
-    case 4:
-      return v().cross(v());
-    case 5:
-      return duet::rotate(q(), v());
-    case 6:
-      return m() * v();
-    case 7:
-      return duet::log(q()).vec();
-    case 8: {
-      const V a = v() + V(recorded(2), recorded(0), recorded(0));
-      return a / sqrt(a.dot(a));
-    }
-    case 9:
-      return q().vec();
-    case 10:
-      return dual_part(l());
-    case 11:
-      return real_part(l());
-    case 12:
-      return translation(p());
-    case 13: {
-      const V a = v(), b = v();
-      return select(
-          s() < s(), [&] { return a; }, [&] { return b; });
-    }
-    default:
-      return duet::rotation_vector(q());
-    }
+    const std::function<V()> all[] = {[&]() -> V { return v() + v(); },
+                                      [&]() -> V { return v() - V(number() * v()); },
+                                      [&]() -> V { return s() * v(); },
+                                      [&]() -> V { return v() / (1 + s() * s()); },
+                                      [&]() -> V { return v().cross(v()); },
+                                      [&]() -> V { return duet::rotate(q(), v()); },
+                                      [&]() -> V { return m() * v(); },
+                                      [&]() -> V { return duet::log(q()).vec(); },
+                                      [&]() -> V {
+                                        const V a = v() + V(recorded(2), recorded(0), recorded(0));
+                                        return a / sqrt(a.dot(a));
+                                      },
+                                      [&]() -> V { return q().vec(); },
+                                      [&]() -> V { return dual_part(l()); },
+                                      [&]() -> V { return real_part(l()); },
+                                      [&]() -> V { return translation(p()); },
+                                      [&]() -> V {
+                                        const V a = v(), b = v();
+                                        return select(
+                                            s() < s(), [&] { return a; }, [&] { return b; });
+                                      },
+                                      [&]() -> V { return duet::rotation_vector(q()); }};
+    return all[random_.integer(0, 14)]();
   }
   M matrix() {
-    switch (random_.integer(0, 6)) {
-    case 0:
-      return m() + m();
-    case 1:
-      return m() * m();
-    case 2:
-      return m().transpose();
-    case 3:
-      return s() * m();
-    case 4:
-      return v() * v().transpose();
-    case 5:
-      return duet::rotation_matrix(q());
-    default:
-      return m() - M(number() * M::Identity());
-    }
+    const std::function<M()> all[] = {[&]() -> M { return m() + m(); },
+                                      [&]() -> M { return m() * m(); },
+                                      [&]() -> M { return m().transpose(); },
+                                      [&]() -> M { return s() * m(); },
+                                      [&]() -> M { return v() * v().transpose(); },
+                                      [&]() -> M { return duet::rotation_matrix(q()); },
+                                      [&]() -> M { return m() - M(number() * M::Identity()); }};
+    return all[random_.integer(0, 6)]();
   }
   Q rotation() {
-    switch (random_.integer(0, 11)) {
-    case 0:
-      return q() * q();
-    case 1:
-      return conj(q());
-    case 2:
-      return inverse(q());
-    case 3:
-      return duet::exp(V(v() * recorded(0.5)));
-    case 4:
-      return normalized(q());
-    case 5:
-      return duet::slerp(q(), q(), s());
-    case 6:
-      return duet::slerp(q(), q(), s(), duet::slerp_arc::as_given);
-    case 7:
-      return duet::pow(q(), s());
-    case 8:
-      return q() * s() + q();
-    case 9:
-      return real_part(p());
-    case 10:
-      return duet::exp(Q(q() * recorded(0.3)));
-    default:
-      return duet::from_rotation_vector(v());
-    }
+    const std::function<Q()> all[] = {
+        [&]() -> Q { return q() * q(); },
+        [&]() -> Q { return conj(q()); },
+        [&]() -> Q { return inverse(q()); },
+        [&]() -> Q { return duet::exp(V(v() * recorded(0.5))); },
+        [&]() -> Q { return normalized(q()); },
+        [&]() -> Q { return duet::slerp(q(), q(), s()); },
+        [&]() -> Q { return duet::slerp(q(), q(), s(), duet::slerp_arc::as_given); },
+        [&]() -> Q { return duet::pow(q(), s()); },
+        [&]() -> Q { return q() * s() + q(); },
+        [&]() -> Q { return real_part(p()); },
+        [&]() -> Q { return duet::exp(Q(q() * recorded(0.3))); },
+        [&]() -> Q { return duet::from_rotation_vector(v()); }};
+    return all[random_.integer(0, 11)]();
   }
   L line() {
-    switch (random_.integer(0, 4)) {
-    case 0:
-      return l() + l();
-    case 1:
-      return duet::make_dual_vector(v(), v());
-    case 2:
-      return l().cross(l());
-    case 3:
-      return (p() * P(D(recorded(0)), l()[0], l()[1], l()[2]) * conj(p())).vec();
-    default:
-      return duet::log(p()).vec();
-    }
+    const std::function<L()> all[] = {
+        [&]() -> L { return l() + l(); }, [&]() -> L { return duet::make_dual_vector(v(), v()); },
+        [&]() -> L { return l().cross(l()); },
+        [&]() -> L { return (p() * P(D(recorded(0)), l()[0], l()[1], l()[2]) * conj(p())).vec(); },
+        [&]() -> L { return duet::log(p()).vec(); }};
+    return all[random_.integer(0, 4)]();
   }
   P pose() {
-    switch (random_.integer(0, 5)) {
-    case 0:
-      return p() * p();
-    case 1:
-      return conj(p());
-    case 2:
-      return duet::exp(L(l() * D(recorded(0.3), recorded(0.1))));
-    case 3:
-      return duet::sclerp(p(), p(), s());
-    case 4:
-      return duet::pose(normalized(q()), v());
-    default:
-      return inverse(p());
-    }
+    const std::function<P()> all[] = {
+        [&]() -> P { return p() * p(); },
+        [&]() -> P { return conj(p()); },
+        [&]() -> P { return duet::exp(L(l() * D(recorded(0.3), recorded(0.1)))); },
+        [&]() -> P { return duet::sclerp(p(), p(), s()); },
+        [&]() -> P { return duet::pose(normalized(q()), v()); },
+        [&]() -> P { return inverse(p()); }};
+    return all[random_.integer(0, 5)]();
   }
   void add_step() {
     const int which = random_.integer(0, 11);
@@ -769,8 +668,6 @@ int number_of(const char* variable, int otherwise) {
   return text == nullptr ? otherwise : std::atoi(text);
 }
 
-} // namespace
-
 TEST_CASE("random formulas of all kinds: three routes against 50 digits, and texts") {
   worst_errors worst;
   const int first = number_of("DUET_RANDOM_FORMULAS_SEED", 1);
@@ -786,4 +683,5 @@ TEST_CASE("random formulas of all kinds: three routes against 50 digits, and tex
   CHECK(worst.count > count / 2);
 }
 
+} // namespace
 } // namespace test_expression_formulas_of_all_kinds

@@ -106,8 +106,6 @@ void check_function_of_two(const char* name, const F& function,
     return function(s, t);                                                                         \
   })
 
-} // namespace
-
 TEST_CASE("functions of one scalar") {
   CHECK_BESIDE_DUALS(sqrt);
   CHECK_BESIDE_DUALS(cbrt);
@@ -203,8 +201,6 @@ TEST_CASE("third and mixed derivatives are those of the rules too") {
   CHECK(swapped(x = a, y = b) == doctest::Approx(exact).epsilon(1e-14));
 }
 
-namespace {
-
 int slopes_counted = 0;
 
 struct counted_rule {
@@ -222,8 +218,6 @@ struct counted : duet::expression::detail::function<counted, counted_rule> {
   [[maybe_unused]] static constexpr duet::expression::detail::function_name name = {"counted", ""};
 };
 
-} // namespace
-
 TEST_CASE("a second derivative evaluates the rule's slope once") {
   const auto second = derivative(derivative(duet::expression::apply<counted>(x), x), x);
   slopes_counted = 0;
@@ -231,4 +225,5 @@ TEST_CASE("a second derivative evaluates the rule's slope once") {
   CHECK(slopes_counted == 1);
 }
 
+} // namespace
 } // namespace test_expression_functions

@@ -17,8 +17,6 @@ auto formula_of(const X& a, const X& b, const X& d) {
   return sin(a * b) * exp(-d / (1 + a * a)) + b * cos(d) * d - a / b;
 }
 
-} // namespace
-
 TEST_CASE("gradient, Hessian and directional derivative against dual numbers") {
   constexpr symbol<"a"> a;
   constexpr symbol<"b"> b;
@@ -63,4 +61,5 @@ TEST_CASE("zeros are known") {
   CHECK(H(0, 1) == 0); // no 0 · ∞
 }
 
+} // namespace
 } // namespace test_expression_gradient

@@ -27,8 +27,6 @@ equality verdict(const F& f, const G& g, const assumptions& known) {
   return is_equal(trace(f, symbol_x, symbol_y), trace(g, symbol_x, symbol_y), known).verdict;
 }
 
-} // namespace
-
 // Two terms in x and y, then what is assumed.
 #define DUET_VERDICT(expected, first, second, ...)                                                 \
   CHECK_MESSAGE(verdict([]([[maybe_unused]] auto x, [[maybe_unused]] auto y) { return first; },    \
@@ -181,11 +179,12 @@ TEST_CASE("is_equal: rotations") {
   CHECK(wrong.verdict == equality::refuted);
   CHECK(wrong.witness.size() == 8);
   CHECK(std::abs(wrong.first - wrong.second) > 1e-6);
-  const std::string message = duet_test::message_of<duet::invalid_input>(
-      [&] { static_cast<void>(is_equal(norm, product)); });
+  const std::string message =
+      duet_test::message_of<duet::invalid_input>([&] { (void)is_equal(norm, product); });
   CHECK(message.find("other inputs or outputs") != std::string::npos);
 }
 
 #undef DUET_VERDICT
 
+} // namespace
 } // namespace test_expression_is_equal

@@ -38,8 +38,6 @@ Eigen::MatrixXd kronecker(const P& b, const Q& a) {
   return result;
 }
 
-} // namespace
-
 TEST_CASE("gradients and Hessians by vectors and by the entries of a matrix, column by column") {
   const Eigen::Matrix4d M = Eigen::Vector4d(1, 2, 3, 4) * Eigen::RowVector4d(0.5, -1, 0, 2);
   const Eigen::Vector4d x0(0.1, -0.7, 1.3, 0.4);
@@ -106,4 +104,5 @@ TEST_CASE("what a matrix does not depend on leaves no infinities times zero") {
   CHECK(J(1, 0) == 0);
 }
 
+} // namespace
 } // namespace test_expression_matrix_gradients

@@ -55,8 +55,6 @@ const auto helix = duet::make_dual_vector(
     vector3<double>(vector3<double>(.1, .2, -.3).cross(vector3<double>(0, 0.6, 0.8)) +
                     0.2 * vector3<double>(0, 0.6, 0.8)));
 
-} // namespace
-
 TEST_CASE("N14-N19: derivatives of rigid motions are those of numbers") {
   const auto line = line_through({.1, .2, .3}, {0, .6, .8});
   check_formula("N14, N15", with_all(A * conj(screw(line, sin(u))) * B *
@@ -144,8 +142,6 @@ TEST_CASE("Jacobians by scalars, vectors, rotations and poses") {
   check(duet::frame::hybrid);
 }
 
-namespace {
-
 constexpr symbol<"t1"> t1;
 constexpr symbol<"t2"> t2;
 constexpr symbol<"t3"> t3;
@@ -155,53 +151,6 @@ constexpr symbol<"t6"> t6;
 constexpr symbol<"t7"> t7;
 
 constexpr auto all_joints = wrt(t1, t2, t3, t4, t5, t6, t7);
-
-/// A product of exponentials of the joints' screws, taken from the chain at θ = 0.
-template <int n>
-void check_arm(const char* name, const duet::serial_chain<n>& chain) {
-  CAPTURE(name);
-  using coordinates = Eigen::Matrix<double, n, 1>;
-  const Eigen::Matrix<double, 6, n> J0 =
-      duet::jacobian(chain, coordinates(coordinates::Zero()), duet::frame::spatial);
-  const auto line = [&](int i) { return duet::dual_vector_of(duet::vector6<double>(J0.col(i))); };
-  const auto first = screw(line(0), t1) * screw(line(1), t2) * screw(line(2), t3);
-  const auto six = first * (screw(line(3), t4) * screw(line(4), t5) * screw(line(5), t6));
-  const auto tip = chain.pose(coordinates(coordinates::Zero()));
-  duet_test::random_source random(11);
-  for (int k = 0; k < 5; ++k) {
-    coordinates x;
-    for (int i = 0; i < n; ++i) {
-      x[i] = k == 0 ? 0 : random.uniform(-3, 3);
-    }
-    const auto check = [&](auto frame) {
-      const auto expected = duet::jacobian(chain, x, frame);
-      if constexpr (n == 7) {
-        const auto arm = six * screw(line(6), t7) * tip;
-        const auto [a, J] = jacobian(arm, all_joints, frame)(
-            t1 = x[0], t2 = x[1], t3 = x[2], t4 = x[3], t5 = x[4], t6 = x[5], t7 = x[6]);
-        CHECK(length(a - chain.pose(x)) < 1e-14);
-        CHECK((J - expected).norm() < 2e-14);
-      } else {
-        const auto [a, J] = jacobian(six * tip, wrt(t1, t2, t3, t4, t5, t6), frame)(
-            t1 = x[0], t2 = x[1], t3 = x[2], t4 = x[3], t5 = x[4], t6 = x[5]);
-        CHECK(length(a - chain.pose(x)) < 1e-14);
-        CHECK((J - expected).norm() < 2e-14);
-      }
-    };
-    check(duet::frame::spatial);
-    check(duet::frame::body);
-    check(duet::frame::hybrid);
-  }
-}
-
-} // namespace
-
-TEST_CASE("four arms as products of exponentials") {
-  check_arm("panda", duet::robots::panda().table());
-  check_arm("iiwa14", duet::robots::iiwa14().table());
-  check_arm("ur5e", duet::robots::ur5e().table());
-  check_arm("baxter_left", duet::robots::baxter_left().table());
-}
 
 TEST_CASE("an arm of turns about coordinate axes, whose Jacobian is written in place") {
   const auto arm = translation_along(axis::z, .333) * screw(axis::z, t1) * screw(axis::y, t2) *
@@ -239,4 +188,5 @@ TEST_CASE("an arm of turns about coordinate axes, whose Jacobian is written in p
   CHECK((J2.jacobian - by_duals.jacobian).norm() < 4e-15);
 }
 
+} // namespace
 } // namespace test_expression_poses

@@ -14,8 +14,8 @@
 #include <duet/expression/graph/recorded.hpp>
 #include <duet/expression/graph/reverse.hpp>
 
-// Random formulas of three variables by independent routes: dual numbers forward, reverse
-// accumulation, the rules of textbooks, and text that is read again.
+// Random formulas of three variables: the rules of textbooks against dual numbers, and proofs that
+// forward and reverse gradients are equal.
 
 namespace test_expression_random_formulas {
 namespace {
@@ -36,50 +36,31 @@ std::vector<recorded> add_variables(formula_graph& f) {
 
 /// An operation on two numbers, all of which have a value everywhere.
 recorded operation_on(int which, const recorded& a, const recorded& b, double number) {
-  switch (which) {
-  case 0:
-    return a + b;
-  case 1:
-    return a - b;
-  case 2:
-  case 3:
-    return a * b;
-  case 4:
-    return a / (2 + b * b);
-  case 5:
-    return sin(a);
-  case 6:
-    return cos(a);
-  case 7:
-    return exp(-a * a);
-  case 8:
-    return sqrt(1 + a * a);
-  case 9:
-    return log(1.5 + cos(a));
-  case 10:
-    return atan2(a, 1 + b * b);
-  case 11:
-    return pow(1.2 + sin(a), b);
-  case 12:
-    return pow(a, 3);
-  case 13:
-    return tanh(a);
-  case 14:
-    return number * a;
-  case 15:
-    return hypot(a, 1 + b);
-  case 16:
-    return duet::stumpff<1>(recorded(a * a));
-  case 17:
-    return duet::arc_ratio(recorded(0.1 + a * a), b);
-  case 18:
-    return select(
-        a < b, [&] { return 2 * a; }, [&] { return b * b; });
-  case 19:
-    return erf(a);
-  default:
-    return -a;
-  }
+  const std::function<recorded()> all[] = {
+      [&] { return a + b; },
+      [&] { return a - b; },
+      [&] { return a * b; },
+      [&] { return a / (2 + b * b); },
+      [&] { return sin(a); },
+      [&] { return cos(a); },
+      [&] { return exp(-a * a); },
+      [&] { return sqrt(1 + a * a); },
+      [&] { return log(1.5 + cos(a)); },
+      [&] { return atan2(a, 1 + b * b); },
+      [&] { return pow(1.2 + sin(a), b); },
+      [&] { return pow(a, 3); },
+      [&] { return tanh(a); },
+      [&] { return number * a; },
+      [&] { return hypot(a, 1 + b); },
+      [&] { return duet::stumpff<1>(recorded(a * a)); },
+      [&] { return duet::arc_ratio(recorded(0.1 + a * a), b); },
+      [&] {
+        return select(
+            a < b, [&] { return 2 * a; }, [&] { return b * b; });
+      },
+      [&] { return erf(a); },
+      [&] { return -a; }};
+  return all[which]();
 }
 
 formula_graph random_formula(duet_test::random_source& random) {
@@ -89,7 +70,7 @@ formula_graph random_formula(duet_test::random_source& random) {
   for (int k = 0; k < size; ++k) {
     const auto any = [&] { return values[std::size_t(random.integer(0, int(values.size()) - 1))]; };
     const recorded a = any(), b = any();
-    const recorded y = operation_on(random.integer(0, 20), a, b, random.uniform(-2, 2));
+    const recorded y = operation_on(random.integer(0, 19), a, b, random.uniform(-2, 2));
     if (!y.is_constant()) {
       values.push_back(y);
     }
@@ -103,10 +84,7 @@ bool agree(double a, double b, double tolerance) {
          (a != a && b != b);
 }
 
-struct inner_tag;
-struct outer_tag;
 using gradient_dual = duet::dual<double, 3>;
-using twice_dual = duet::dual<duet::dual<double, 1, inner_tag>, 1, outer_tag>;
 
 /// The gradient by dual numbers, recorded.
 formula_graph forward_gradient(const formula_graph& f) {
@@ -126,9 +104,7 @@ formula_graph forward_gradient(const formula_graph& f) {
   return result;
 }
 
-} // namespace
-
-TEST_CASE("random formulas: derivatives by four routes, and text that is read again") {
+TEST_CASE("random formulas: derivatives by textbook rules, and proofs that two routes are equal") {
   duet_test::random_source random(11);
   int proved = 0;
   constexpr int count = 400;
@@ -142,25 +118,8 @@ TEST_CASE("random formulas: derivatives by four routes, and text that is read ag
       at.push_back(random.uniform(-1.5, 1.5));
       moving.push_back(gradient_dual::variable(at.back(), i));
     }
-    const double value = evaluate(f, at)[0];
     const gradient_dual forward = evaluate(f, moving)[0];
-    const std::vector<double> reverse = evaluate(reverse_hessian(f, names), at);
-    CHECK(agree(reverse[0], value, 1e-14));
-    for (int i = 0; i < 3; ++i) {
-      CHECK(agree(reverse[std::size_t(1 + i)], forward.partial(i), 1e-13));
-      for (int j = 0; j <= i; ++j) {
-        std::vector<twice_dual> twice;
-        for (int n = 0; n < 3; ++n) {
-          using inner = duet::dual<double, 1, inner_tag>;
-          twice.emplace_back(inner(at[std::size_t(n)], n == i ? 1 : 0), inner(n == j ? 1 : 0, 0));
-        }
-        const double second = evaluate(f, twice)[0].epsilon().epsilon();
-        CHECK(agree(reverse[std::size_t(4 + i + 3 * j)], second, 1e-11));
-      }
-    }
     const formula_graph read = read_formula(text);
-    const double again = evaluate(read, at)[0];
-    CHECK((again == value || (again != again && value != value)));
     CHECK(agree(evaluate(derivative(read, "x"), at)[0], forward.partial(0), 1e-11));
     if (k % 4 == 0) {
       const auto verdict = is_equal(reverse_gradient(f, names), forward_gradient(f)).verdict;
@@ -171,4 +130,5 @@ TEST_CASE("random formulas: derivatives by four routes, and text that is read ag
   CHECK(proved > count / 4 / 2); // others have functions of equal arguments in other forms
 }
 
+} // namespace
 } // namespace test_expression_random_formulas

@@ -27,7 +27,7 @@ double value(const std::string& text, const std::vector<double>& inputs = {}) {
   return values(text, inputs).at(0);
 }
 std::string message(const std::string& text) {
-  return duet_test::message_of<duet::invalid_input>([&] { static_cast<void>(read_formula(text)); });
+  return duet_test::message_of<duet::invalid_input>([&] { (void)read_formula(text); });
 }
 std::string repeated(const std::string& text, int count) {
   std::string result;
@@ -36,8 +36,6 @@ std::string repeated(const std::string& text, int count) {
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("read_formula: operators have the precedence of mathematics") {
   struct row {
@@ -369,7 +367,7 @@ TEST_CASE("to_text: a traced function becomes text, and what has no text is an e
   const std::vector<double> inputs{0.3, 0.5, 0.5, -0.5, 0.5, 1, 2, 3};
   CHECK(evaluate<double>(f, inputs) == evaluate(g, inputs));
   const std::string problem = duet_test::message_of<duet::invalid_input>(
-      [&] { static_cast<void>(to_text(trace([](auto x) { return x; }, A))); });
+      [&] { (void)to_text(trace([](auto x) { return x; }, A)); });
   CHECK(problem ==
         "duet: to_text: the output 'y' has 8 numbers (expected scalars, vectors of three "
         "numbers, and rotations)");
@@ -383,4 +381,5 @@ TEST_CASE("to_text: a traced function becomes text, and what has no text is an e
   CHECK(constant(u = 1.0) == doctest::Approx(1 + std::acos(0.0)).epsilon(1e-15));
 }
 
+} // namespace
 } // namespace test_expression_read_formula

@@ -52,8 +52,6 @@ auto with_all(const F& f) {
   return f + c<0> * (u * (dot(w, v) + dot(vec(q), vec(p))) * f);
 }
 
-} // namespace
-
 TEST_CASE("N1-N9: derivatives of formulas are those of numbers") {
   const auto turning = exp(u * w);               // N4
   const auto wobbling = exp(u * w + sin(u) * v); // no axis stands still
@@ -112,14 +110,10 @@ TEST_CASE("directional derivatives by vectors and rotations") {
   CHECK((by_q(q = q0, v = v0, p = q_dot, w = w0) - expected).norm() < 1e-15);
 }
 
-namespace {
-
 template <class A, class B>
 constexpr bool have_same_node(const A&, const B&) {
   return std::is_same_v<typename A::node_type, typename B::node_type>;
 }
-
-} // namespace
 
 TEST_CASE("simplification of rotations") {
   static_assert(have_same_node(conj(conj(q)), q));
@@ -130,4 +124,5 @@ TEST_CASE("simplification of rotations") {
   CHECK(cross(v, v)(v = vector3<double>(1, 2, 3)) == vector3<double>(0, 0, 0));
 }
 
+} // namespace
 } // namespace test_expression_rotations

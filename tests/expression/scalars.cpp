@@ -16,80 +16,20 @@ using duet_test::ulps;
 constexpr symbol<"x"> x;
 constexpr symbol<"y"> y;
 
-/// The same code on a symbol and on numbers.
-template <class F>
-void check_function(const char* name, const F& function, double at) {
-  CAPTURE(name);
-  CAPTURE(at);
+TEST_CASE("arithmetic and choices: expression derivatives are dual derivatives") {
+  const auto function = [](const auto& t) {
+    using std::pow;
+    return t / (1 + t) - (2 - t) * -t / t + 3 / t + pow(t, t);
+  };
   const auto f = function(x);
   const auto first = derivative(f, x);
   const auto second = derivative(first, x);
-  CHECK(f(x = at) == doctest::Approx(function(at)).epsilon(1e-15));
-  const auto expected = duet::derivatives<2>(function, at);
-  CHECK(first(x = at) == doctest::Approx(expected[1]).epsilon(4e-15));
-  CHECK(second(x = at) == doctest::Approx(expected[2]).epsilon(2e-14));
-}
-
-#define CHECK_FUNCTION(function, at)                                                               \
-  check_function(                                                                                  \
-      #function,                                                                                   \
-      [](const auto& t) {                                                                          \
-        using std::function;                                                                       \
-        return function(t);                                                                        \
-      },                                                                                           \
-      at)
-
-} // namespace
-
-TEST_CASE("functions of one scalar: expression derivatives are dual derivatives") {
-  for (const double at : {0.3, 0.8}) {
-    CHECK_FUNCTION(sqrt, at);
-    CHECK_FUNCTION(cbrt, at);
-    CHECK_FUNCTION(exp, -at);
-    CHECK_FUNCTION(exp2, at);
-    CHECK_FUNCTION(expm1, at);
-    CHECK_FUNCTION(log, at);
-    CHECK_FUNCTION(log2, at);
-    CHECK_FUNCTION(log10, at);
-    CHECK_FUNCTION(log1p, at);
-    CHECK_FUNCTION(sin, at);
-    CHECK_FUNCTION(cos, at);
-    CHECK_FUNCTION(tan, at);
-    CHECK_FUNCTION(asin, at);
-    CHECK_FUNCTION(acos, at);
-    CHECK_FUNCTION(atan, 3 * at);
-    CHECK_FUNCTION(sinh, at);
-    CHECK_FUNCTION(cosh, at);
-    CHECK_FUNCTION(tanh, at);
-    CHECK_FUNCTION(asinh, at);
-    CHECK_FUNCTION(acosh, 1 + at);
-    CHECK_FUNCTION(atanh, at);
-    CHECK_FUNCTION(erf, at);
-    CHECK_FUNCTION(erfc, at);
-    CHECK_FUNCTION(tgamma, 1 + at);
-    CHECK_FUNCTION(lgamma, 2 + at);
-    CHECK_FUNCTION(abs, -at);
+  for (const double at : {0.7, 1.9}) {
+    const auto expected = duet::derivatives<2>(function, at);
+    CHECK(f(x = at) == doctest::Approx(expected[0]).epsilon(1e-15));
+    CHECK(first(x = at) == doctest::Approx(expected[1]).epsilon(4e-15));
+    CHECK(second(x = at) == doctest::Approx(expected[2]).epsilon(2e-14));
   }
-}
-
-TEST_CASE("functions of two scalars and choices") {
-  const auto check = [](const auto& function) {
-    check_function("of two", function, 0.7);
-    check_function("of two", function, 1.9);
-  };
-  check([](const auto& t) {
-    using std::atan2;
-    return atan2(t, 1.2) + atan2(0.3, t * t);
-  });
-  check([](const auto& t) {
-    using std::hypot;
-    return hypot(t, 2 * t - 1.3);
-  });
-  check([](const auto& t) {
-    using std::pow;
-    return pow(t, 2.5) + pow(t, t) + pow(1.7, t) + pow(t, 3) + pow(t, -1.0);
-  });
-  check([](const auto& t) { return t / (1 + t) - (2 - t) * -t / t + 3 / t; });
   CHECK(derivative(lerp(x, y, x * y), x)(x = 0.3, y = 0.4) ==
         doctest::Approx(1 - 0.12 + (0.4 - 0.3) * 0.4));
   CHECK(derivative(fma(x, x, y), x)(x = 3.0, y = 1.0) == 6);
@@ -177,8 +117,6 @@ TEST_CASE("constant expressions") {
   CHECK(f(x = 1, y = 2) == -0.5);
 }
 
-namespace {
-
 template <class A, class B>
 constexpr bool are_same(const A&, const B&) {
   return std::is_same_v<A, B>;
@@ -187,8 +125,6 @@ template <class A, class B>
 constexpr bool have_same_node(const A&, const B&) {
   return std::is_same_v<typename A::node_type, typename B::node_type>;
 }
-
-} // namespace
 
 TEST_CASE("simplification, by type") {
   static_assert(have_same_node(x + c<0>, x));
@@ -232,7 +168,7 @@ TEST_CASE("constants written in the code differ by place, even where they are eq
   const auto twice = wave(2) + wave(2);
   CHECK(twice(x = 0.3) == doctest::Approx(2 * std::sin(0.6)).epsilon(1e-15));
   try {
-    static_cast<void>(wave(2) + wave(3));
+    (void)(wave(2) + wave(3));
     CHECK(false);
   } catch (const duet::invalid_input& error) {
     CHECK(
@@ -242,4 +178,5 @@ TEST_CASE("constants written in the code differ by place, even where they are eq
   }
 }
 
+} // namespace
 } // namespace test_expression_scalars

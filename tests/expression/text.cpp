@@ -16,8 +16,6 @@ constexpr symbol<"theta1"> theta1;
 constexpr symbol<"omega_max"> omega_max;
 constexpr symbol<"mass"> mass;
 
-} // namespace
-
 TEST_CASE("text, with no parentheses too few or too many") {
   CHECK(to_text(x + y - (x - y)) == "x + y - (x - y)");
   CHECK(to_text(x * (y + 1) / (2 * y)) == "x * (y + 1) / (2 * y)");
@@ -180,4 +178,5 @@ TEST_CASE("LaTeX of what does not commute") {
   CHECK(to_latex(solve(A, 2 * A * v)) == R"(2 A^{-1} A \vec{v})");
 }
 
+} // namespace
 } // namespace test_expression_text

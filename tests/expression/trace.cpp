@@ -44,8 +44,6 @@ double difference(const X& a, const X& b) {
   return result;
 }
 
-} // namespace
-
 TEST_CASE("trace: scalars, vectors, rotations and poses have the values of the function") {
   const auto scalar = [](auto x, auto a) {
     using std::exp;
@@ -99,10 +97,10 @@ TEST_CASE("trace: dual numbers through a traced function, and a trace of dual nu
 TEST_CASE("trace: a branch on a recorded value is an error that names it") {
   const auto branch = [](auto x) { return x < 0.5 ? x : x * x; };
   const std::string message =
-      duet_test::message_of<duet::invalid_input>([&] { static_cast<void>(trace(branch, u)); });
+      duet_test::message_of<duet::invalid_input>([&] { (void)trace(branch, u); });
   CHECK(message.find("branches on u < 0.5") != std::string::npos);
   const std::string needs = duet_test::message_of<duet::invalid_input>(
-      [&] { static_cast<void>(trace([](auto x) { return x * int(x + 1); }, u)); });
+      [&] { (void)trace([](auto x) { return x * int(x + 1); }, u); });
   CHECK(needs.find("needs the number u + 1") != std::string::npos);
   const auto choice = trace(
       [](auto x) {
@@ -216,8 +214,6 @@ TEST_CASE("graph_of: formulas with their derivatives") {
   CHECK(graph_of(motion(arm, u, duet::frame::spatial)).outputs().size() == 3);
 }
 
-namespace {
-
 const auto rosenbrock = [](const auto& x) {
   using T = typename std::decay_t<decltype(x)>::Scalar;
   T sum(0);
@@ -236,8 +232,6 @@ const auto product_of_sines = [](const auto& x) {
   }
   return product;
 };
-
-} // namespace
 
 TEST_CASE_TEMPLATE("reverse_gradient: as forward, at most three times the value's operations", Size,
                    std::integral_constant<int, 2>, std::integral_constant<int, 6>,
@@ -268,7 +262,7 @@ TEST_CASE_TEMPLATE("reverse_gradient: as forward, at most three times the value'
   check(product_of_sines);
 }
 
-TEST_CASE("reverse_gradient and reverse_hessian of functions at values") {
+TEST_CASE("reverse_gradient of a function at values") {
   const auto at = [](int n) {
     Eigen::VectorXd x(n);
     for (int i = 0; i < n; ++i) {
@@ -281,33 +275,15 @@ TEST_CASE("reverse_gradient and reverse_hessian of functions at values") {
   CHECK(y == expected.value);
   CHECK((g - expected.gradient).cwiseAbs().maxCoeff() <
         1e-13 * expected.gradient.cwiseAbs().maxCoeff());
-
-  const auto f =
-      trace([](auto x, auto a) { return sin(x * a[0]) * exp(a[1]) + a.dot(a) / (2 + x); }, u, v);
-  const formula_graph second = reverse_hessian(f, {"u", "v"});
-  const auto exact = duet::hessian(
-      [](const auto& x) {
-        using T = typename std::decay_t<decltype(x)>::Scalar;
-        using std::exp;
-        using std::sin;
-        const T square = x[1] * x[1] + x[2] * x[2] + x[3] * x[3];
-        return T(sin(x[0] * x[1]) * exp(x[2]) + square / (2 + x[0]));
-      },
-      Eigen::Vector4d(0.3, v0[0], v0[1], v0[2]));
-  const std::vector<double> values =
-      evaluate(second, std::vector<double>{0.3, v0[0], v0[1], v0[2]});
-  REQUIRE(values.size() == 21);
-  for (Eigen::Index i = 0; i < 16; ++i) {
-    CHECK(std::abs(values[5 + std::size_t(i)] - exact.hessian.data()[i]) < 1e-14);
-  }
 }
 
-TEST_CASE("reverse_gradient: every function has the slope of the dual numbers") {
-  const auto check = [](const char* name, const auto& f, const std::vector<double>& at) {
+TEST_CASE("reverse_gradient: zeros, equal arguments and axes have the slopes of dual numbers") {
+  const std::vector<double> numbers{-2, -1, 0, 0.5, 1, 3};
+  const auto check = [&](const char* name, const auto& f) {
     CAPTURE(name);
     const formula_graph derived = reverse_gradient(trace(f, u, t), {"u", "t"});
-    for (const double a : at) {
-      for (const double b : at) {
+    for (const double a : numbers) {
+      for (const double b : numbers) {
         const auto expected =
             duet::gradient([&](const auto& x) { return f(x[0], x[1]); }, Eigen::Vector2d(a, b));
         const std::vector<double> values = evaluate(derived, std::vector<double>{a, b});
@@ -321,124 +297,12 @@ TEST_CASE("reverse_gradient: every function has the slope of the dual numbers") 
       }
     }
   };
-  const std::vector<double> positive{0.2, 0.7, 1.3, 4.5}, signs{-1.3, -0.2, 0.4, 2.1};
-  const std::vector<double> small{-0.8, -0.3, 0.2, 0.6};
-#define DUET_CHECK_SLOPE(name, at)                                                                 \
-  check(                                                                                           \
-      #name,                                                                                       \
-      [](const auto& x, const auto& y) {                                                           \
-        using std::name;                                                                           \
-        return name(x) * y;                                                                        \
-      },                                                                                           \
-      at)
-  DUET_CHECK_SLOPE(sqrt, positive);
-  DUET_CHECK_SLOPE(cbrt, signs);
-  DUET_CHECK_SLOPE(exp, signs);
-  DUET_CHECK_SLOPE(exp2, signs);
-  DUET_CHECK_SLOPE(expm1, signs);
-  DUET_CHECK_SLOPE(log, positive);
-  DUET_CHECK_SLOPE(log2, positive);
-  DUET_CHECK_SLOPE(log10, positive);
-  DUET_CHECK_SLOPE(log1p, positive);
-  DUET_CHECK_SLOPE(sin, signs);
-  DUET_CHECK_SLOPE(cos, signs);
-  DUET_CHECK_SLOPE(tan, signs);
-  DUET_CHECK_SLOPE(asin, small);
-  DUET_CHECK_SLOPE(acos, small);
-  DUET_CHECK_SLOPE(atan, signs);
-  DUET_CHECK_SLOPE(sinh, signs);
-  DUET_CHECK_SLOPE(cosh, signs);
-  DUET_CHECK_SLOPE(tanh, signs);
-  DUET_CHECK_SLOPE(asinh, signs);
-  DUET_CHECK_SLOPE(atanh, small);
-  DUET_CHECK_SLOPE(erf, signs);
-  DUET_CHECK_SLOPE(erfc, signs);
-  DUET_CHECK_SLOPE(abs, signs);
-  DUET_CHECK_SLOPE(floor, signs);
-#undef DUET_CHECK_SLOPE
-  check(
-      "acosh",
-      [](const auto& x, const auto& y) {
-        using std::acosh;
-        return acosh(1 + x) * y;
-      },
-      positive);
-  check(
-      "atan2",
-      [](const auto& x, const auto& y) {
-        using std::atan2;
-        return atan2(x, y);
-      },
-      signs);
-  check(
-      "hypot",
-      [](const auto& x, const auto& y) {
-        using std::hypot;
-        return hypot(x, y);
-      },
-      signs);
-  check(
-      "pow",
-      [](const auto& x, const auto& y) {
-        using std::pow;
-        return pow(x, y);
-      },
-      positive);
-  check(
-      "whole powers",
-      [](const auto& x, const auto& y) {
-        using std::pow;
-        return pow(x, 5) / pow(y, -3);
-      },
-      signs);
-  check(
-      "fma",
-      [](const auto& x, const auto& y) {
-        using std::fma;
-        return fma(x, y, y);
-      },
-      signs);
-  check(
-      "quotient", [](const auto& x, const auto& y) { return x / y - y / (x * x); }, signs);
-  // zeros, equal arguments and signs
-  const std::vector<double> structured{-2, -1, 0, 0.5, 1, 3};
-  check(
-      "pow of zeros",
-      [](const auto& x, const auto& y) {
-        using std::pow;
-        return pow(x * x, y + 3);
-      },
-      structured);
-  check(
-      "hypot of equal numbers and zeros",
-      [](const auto& x, const auto& y) {
-        using std::hypot;
-        return hypot(x, y + 4) + hypot(x, x + 7);
-      },
-      structured);
-  check(
-      "atan2 on the axes",
-      [](const auto& x, const auto& y) {
-        using std::atan2;
-        return atan2(x, y + 0.25) * y;
-      },
-      structured);
-  check(
-      "powers of zeros",
-      [](const auto& x, const auto& y) {
-        using std::pow;
-        return pow(x, 2) * pow(y, 3) + pow(x, 1) + pow(x, 0);
-      },
-      structured);
-  check(
-      "rotation",
-      [](const auto& x, const auto& y) {
-        using T = std::decay_t<decltype(x)>;
-        return duet::log(duet::exp(vector3<T>(x, y, T(x * y))) *
-                         duet::exp(vector3<T>(y, T(0.5), x)))
-            .y();
-      },
-      signs);
+  using std::atan2, std::hypot, std::pow;
+  check("pow", [](const auto& x, const auto& y) { return pow(x * x, y + 3); });
+  check("hypot", [](const auto& x, const auto& y) { return hypot(x, y + 4) + hypot(x, x + 7); });
+  check("atan2", [](const auto& x, const auto& y) { return atan2(x, y + 0.25) * y; });
+  check("whole powers",
+        [](const auto& x, const auto& y) { return pow(x, 2) * pow(y, 3) + pow(x, 1) + pow(x, 0); });
 }
 
 TEST_CASE("graph_of: inputs are in the order in which symbols appear, with every compiler") {
@@ -453,4 +317,5 @@ TEST_CASE("graph_of: inputs are in the order in which symbols appear, with every
   CHECK(names == "third first second ");
 }
 
+} // namespace
 } // namespace test_expression_trace

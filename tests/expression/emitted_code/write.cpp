@@ -580,7 +580,7 @@ largest = [0, 0];
 template <class Emit>
 void require_refused(const char* what, const Emit& emit) {
   try {
-    static_cast<void>(emit());
+    (void)emit();
   } catch (const duet::invalid_input&) {
     return;
   }
