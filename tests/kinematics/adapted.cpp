@@ -50,8 +50,6 @@ urdf_chain<16> from_file() {
   return chain;
 }
 
-} // namespace
-
 TEST_CASE("with_tool, with_base: poses, link frames and Jacobians equal the products") {
   duet_test::for_each_arm([](const auto& arm) {
     const auto equipped = with_tool(arm, tool);
@@ -256,4 +254,5 @@ TEST_CASE("with_locked_joint, with_limits, with_tool: errors name the joint and 
         }).find("not a unit quaternion") != std::string::npos);
 }
 
+} // namespace
 } // namespace test_kinematics_adapted

@@ -48,8 +48,6 @@ void check_sequences(const Chain& arm, int count) {
   }
 }
 
-} // namespace
-
 TEST_CASE("pose_coordinates_jacobian: equals dual numbers, and J2 times it is the spatial Jacobian "
           "(N20, N21)") {
   duet_test::for_each_arm([](const auto& arm) {
@@ -75,4 +73,5 @@ TEST_CASE("euler_jacobian: equals dual numbers for all twelve sequences") {
   check_sequences(duet_test::every_joint(), 8);
 }
 
+} // namespace
 } // namespace test_kinematics_analytic_jacobian

@@ -82,8 +82,6 @@ void check_in_all_frames(const C& chain) {
   check(chain, duet::frame::hybrid);
 }
 
-} // namespace
-
 TEST_CASE("formula_of a chain: pose, Jacobian and its rate are those of the chain") {
   check_in_all_frames(duet::robots::panda_arm::chain);
   check_in_all_frames(duet::robots::ur5e_arm::chain);
@@ -102,4 +100,5 @@ TEST_CASE("formula_of the Panda takes as few operations as one needs by hand") {
   CHECK(body.multiplications == 80);
 }
 
+} // namespace
 } // namespace test_kinematics_chain_formula

@@ -63,8 +63,6 @@ std::string message(const F& f) {
   return duet_test::message_of<loop_closure_failure>(f);
 }
 
-} // namespace
-
 TEST_CASE("constrained_mechanism: a crank-rocker agrees with the closed form over two turns in "
           "both assembly modes") {
   const four_bar bars{.2, .5, .4, .55};
@@ -99,7 +97,7 @@ TEST_CASE("constrained_mechanism: a dead point is approached and reported, not p
     }
     for (const double beyond : {1e-6, .1, 2.0}) {
       try {
-        static_cast<void>(loop(dead + beyond));
+        (void)loop(dead + beyond);
         FAIL("it closes beyond the dead point");
       } catch (const loop_closure_failure& e) {
         CHECK(e.parameter().size() == 1);
@@ -185,4 +183,5 @@ TEST_CASE("constrained_mechanism: a five-bar with two parameters agrees with the
         }).find("duet: constrained_mechanism: the loops do not close beyond u = (2.") == 0);
 }
 
+} // namespace
 } // namespace test_kinematics_closed_loop

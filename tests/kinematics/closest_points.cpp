@@ -130,8 +130,6 @@ void check_with_50_digits(const capsule<>& a, const capsule<>& b) {
   }
 }
 
-} // namespace
-
 TEST_CASE("closest_points: capsules and obstacles agree with a numerical search") {
   duet_test::random_source random(1);
   for (int k = 0; k < 150; ++k) {
@@ -350,4 +348,5 @@ TEST_CASE("require_shape: invalid shapes are rejected") {
   CHECK_THROWS_AS(require_shape(half_space<>{vector(0, 0, 1), nan}, "it"), invalid_input);
 }
 
+} // namespace
 } // namespace test_kinematics_closest_points

@@ -15,8 +15,6 @@ using duet_test::coordinates;
 using duet_test::for_each_frame;
 using duet_test::max_abs_difference;
 
-} // namespace
-
 TEST_CASE("jacobian: tip, links and points equal dual numbers (N18, N20)") {
   duet_test::for_each_arm([](const auto& arm) {
     const auto point = arm.link(arm.size() - 2).at_point({.3, -.2, .5});
@@ -122,4 +120,5 @@ TEST_CASE("joint_efforts: τ = Jᵀ F agrees in all frames and has the power of 
   }
 }
 
+} // namespace
 } // namespace test_kinematics_jacobian

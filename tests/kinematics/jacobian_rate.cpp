@@ -22,8 +22,6 @@ coordinates<N> rates(duet_test::random_source& random) {
   return result;
 }
 
-} // namespace
-
 TEST_CASE("jacobian_with_rate, kinematic_hessian: equal derivatives of the Jacobian") {
   duet_test::random_source random(5);
   duet_test::for_each_arm([&](const auto& arm) {
@@ -117,4 +115,5 @@ TEST_CASE("jacobian_rate: the hybrid acceleration is p̈, the spatial and body o
   }
 }
 
+} // namespace
 } // namespace test_kinematics_jacobian_rate

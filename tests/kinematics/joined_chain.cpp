@@ -9,10 +9,9 @@
 #include <Eigen/Core>
 
 namespace test_kinematics_joined_chain {
+namespace {
 
 using namespace duet;
-
-namespace {
 
 /// A carriage on a helix of radius ½, which rotates twice as fast as it runs around it.
 const auto on_helix = [](const auto& x) {
@@ -38,8 +37,6 @@ void check_jacobian(Frame frame) {
   const auto by_duals = jacobian([](const auto& x) { return arm.pose(x); }, theta, frame);
   CHECK(jacobian(arm, theta, frame).isApprox(by_duals.jacobian, 1e-14));
 }
-
-} // namespace
 
 TEST_CASE("joined_chain: the pose is the product of the parts, the Jacobian that of dual numbers") {
   const configuration theta = some();
@@ -77,11 +74,12 @@ TEST_CASE("joined_chain: limits, and inputs of the wrong size") {
   CHECK(lower_limits(arm)[6] == -1);
   CHECK(join_chains(custom_joint{on_helix}).limits(0).upper ==
         std::numeric_limits<double>::infinity());
-  CHECK(duet_test::message_of<invalid_input>([] { static_cast<void>(arm.limits(14)); }) ==
+  CHECK(duet_test::message_of<invalid_input>([] { (void)arm.limits(14); }) ==
         "duet: joined_chain: joint 14 does not exist, the chain has 14 joints");
   CHECK(duet_test::message_of<invalid_input>([] {
-          static_cast<void>(arm.pose(std::vector<double>(3)));
+          (void)arm.pose(std::vector<double>(3));
         }).find("3 coordinates (expected 14)") != std::string::npos);
 }
 
+} // namespace
 } // namespace test_kinematics_joined_chain

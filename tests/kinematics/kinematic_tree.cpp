@@ -56,8 +56,6 @@ auto along(const VectorXd& q, const VectorXd& v, const T& t) {
   return x;
 }
 
-} // namespace
-
 TEST_CASE("kinematic_tree: coordinates have the names, order and limits of the joints") {
   const kinematic_tree tree(all_joints());
   CHECK(tree.size() == 1 + 6 + 3 + 1 + 1 + 3);
@@ -434,93 +432,6 @@ TEST_CASE("kinematic_tree: mimic joints narrow the limits of the mimicked joint"
                       "its mimic is not finite");
 }
 
-TEST_CASE("kinematic_tree: Jacobians of mimic joints equal those through a linear coupling") {
-  auto robot = all_joints();
-  const kinematic_tree follows(robot);
-  for (tree_joint& joint : robot.joints) {
-    joint.mimic.reset();
-  }
-  const kinematic_tree tree(robot);
-  const auto coupling = [](const auto& y) {
-    using S = std::decay_t<decltype(y[0] + 0.)>;
-    std::vector<S> q;
-    for (int i = 0; i < 15; ++i) {
-      q.push_back(y[i]);
-      if (i == 11) { // the coordinate after `turn` mimics `grip`
-        q.push_back(-2.5 * y[0] + .1);
-      }
-    }
-    q.push_back(.5 * (-2.5 * y[0] + .1) - .2);
-    return q;
-  };
-  CHECK(tree.size() == 17);
-  for (const VectorXd& y : coordinates_of(follows, 3)) {
-    for (const char* name : {"thumb", "screw", "tool"}) {
-      const relative_frame at{follows.link(name), follows.link("finger")};
-      const auto coupled = jacobian<duet_test::shared_tag>(
-          [&](const auto& x) { return tree.pose(coupling(x), at); }, y, frame::body);
-      CHECK(max_abs_difference(coupled.jacobian, jacobian(follows, y, frame::body, at)) < 1e-14);
-    }
-    const auto centre = jacobian<duet_test::shared_tag>(
-        [&](const auto& x) { return centre_of_mass(tree, coupling(x)); }, y);
-    CHECK(max_abs_difference(centre.jacobian, centre_of_mass_jacobian(follows, y)) < 1e-14);
-  }
-}
-
-TEST_CASE("kinematic_tree: Jacobians and rates equal dual numbers through a coupling of all "
-          "joints") {
-  const kinematic_tree tree(all_joints());
-  const auto waves = [](const auto& y) {
-    using std::sin;
-    std::vector<std::decay_t<decltype(y[0] + 0.)>> q;
-    for (int i = 0; i < 15; ++i) {
-      q.push_back(sin(y[i % 4] + .3 * i) * y[(i + 1) % 4] + .1 * i);
-    }
-    return q;
-  };
-  const auto hand = tree.link("hand").at_point({.1, .2, .3});
-  const relative_frame relative{hand, tree.link("screw")};
-  duet_test::random_source random(3);
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector4d y = random_vector(4, random), v = random_vector(4, random);
-    const auto c = jacobian<duet_test::shared_tag>(waves, y);
-    const VectorXd q_dot = c.jacobian * v;
-    const Eigen::MatrixXd c_rate =
-        directional_derivative<duet_test::outer_shared_tag>(
-            [&](const auto& x) { return jacobian<duet_test::shared_tag>(waves, x).jacobian; }, y, v)
-            .derivative;
-    const auto check = [&](const auto& at) {
-      for_each_frame([&](auto frame) {
-        const auto m = [&](const auto& x) {
-          return jacobian<duet_test::shared_tag>(
-                     [&](const auto& u) { return tree.pose(waves(u), at); }, x, frame)
-              .jacobian;
-        };
-        const auto both = directional_derivative<duet_test::outer_shared_tag>(m, y, v);
-        const auto closed = jacobian_with_rate(tree, c.value, q_dot, frame, at);
-        CHECK(max_abs_difference(both.value, closed.jacobian * c.jacobian) < 1e-13);
-        CHECK(max_abs_difference(both.derivative,
-                                 closed.rate * c.jacobian + closed.jacobian * c_rate) <
-              1e-13 * (1 + both.derivative.cwiseAbs().maxCoeff()));
-      });
-    };
-    check(hand);
-    check(relative);
-    check(tree.link("finger").link);
-    const auto m = [&](const auto& x) {
-      return jacobian<duet_test::shared_tag>(
-                 [&](const auto& u) { return centre_of_mass(tree, waves(u)); }, x)
-          .jacobian;
-    };
-    const auto both = directional_derivative<duet_test::outer_shared_tag>(m, y, v);
-    const Eigen::MatrixXd first = centre_of_mass_jacobian(tree, c.value);
-    CHECK(max_abs_difference(both.value, first * c.jacobian) < 2e-14);
-    CHECK(max_abs_difference(both.derivative,
-                             centre_of_mass_jacobian_rate(tree, c.value, q_dot) * c.jacobian +
-                                 first * c_rate) < 1e-13);
-  }
-}
-
 TEST_CASE("kinematic_tree: invalid descriptions are rejected with link, joint and value") {
   const auto error_of = [](const robot_description& robot) {
     return duet_test::message_of([&] { (void)kinematic_tree(robot); });
@@ -619,4 +530,5 @@ TEST_CASE("kinematic_tree::chain: chains up and down the tree have its relative 
   CHECK(complete.chain("elbow", "tool").size() == 1);
 }
 
+} // namespace
 } // namespace test_kinematics_kinematic_tree

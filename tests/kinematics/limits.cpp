@@ -31,8 +31,6 @@ urdf_chain<16> from_file() {
   return chain;
 }
 
-} // namespace
-
 TEST_CASE("with_limits: changes the limits, but no pose and no velocity limit") {
   duet_test::for_each_arm([](const auto& arm) {
     const auto before = arm;
@@ -141,4 +139,5 @@ TEST_CASE("with_limits: errors name the joint and the value") {
         }) == "duet: with_limits: joint 4: the limits 2 to 1 contain no coordinate");
 }
 
+} // namespace
 } // namespace test_kinematics_limits

@@ -13,6 +13,10 @@
 
 namespace duet_test {
 
+inline Eigen::VectorXd vector_of(std::initializer_list<double> x) {
+  return Eigen::Map<const Eigen::VectorXd>(x.begin(), Eigen::Index(x.size()));
+}
+
 /// Frame at a point, with the axes of the link.
 inline duet::placement<double> at_point(double x, double y, double z = 0) {
   return placement_at(0, 0, 0, x, y, z);

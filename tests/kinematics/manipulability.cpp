@@ -39,8 +39,6 @@ auto volume_by_elimination(const M& m) {
   return S(sqrt(product));
 }
 
-} // namespace
-
 TEST_CASE("manipulability: equals √det(JJᵀ), and its gradient 50-digit dual numbers") {
   for (const auto& arm : {robots::panda().table(), robots::baxter_left().table(),
                           robots::iiwa14().table(), duet_test::every_joint()}) {
@@ -146,4 +144,5 @@ TEST_CASE("manipulability: a bounded_chain equals the serial_chain of the same j
                            manipulability_gradient(panda, regular).gradient) < 1e-14);
 }
 
+} // namespace
 } // namespace test_kinematics_manipulability

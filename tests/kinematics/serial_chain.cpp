@@ -38,8 +38,6 @@ struct by_matrices {
 const Eigen::Vector3d x_axis = Eigen::Vector3d::UnitX();
 const Eigen::Vector3d z_axis = Eigen::Vector3d::UnitZ();
 
-} // namespace
-
 static_assert(robots::panda().size() == 7);
 static_assert(robots::ur5e().size() == 6);
 static_assert(robots::panda().limits(3).upper == -.0698);
@@ -309,4 +307,5 @@ TEST_CASE("serial_chain: vectorised sines give the derivatives of long double") 
   CHECK(std::isnan(panda.pose(broken).w().value()));
 }
 
+} // namespace
 } // namespace test_kinematics_serial_chain

@@ -8,12 +8,11 @@
 #include <duet/kinematics/sweep.hpp>
 
 namespace test_kinematics_sweep {
+namespace {
 
 using namespace duet;
 using duet_test::message_of;
 using duet_test::ulps_apart;
-
-namespace {
 
 /// Sines of duet and of the C library are within 1 ulp; the errors of seven joints add up.
 constexpr double limit = 16;
@@ -34,8 +33,6 @@ std::vector<angles> configurations(std::size_t count) {
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("poses, jacobians: a sweep equals single evaluations for any number of threads") {
   const auto known = robots::panda();
@@ -188,4 +185,5 @@ TEST_CASE("Hessians, efforts, analytical Jacobians and manipulability: batches e
       regular);
 }
 
+} // namespace
 } // namespace test_kinematics_sweep

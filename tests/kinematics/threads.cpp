@@ -36,8 +36,6 @@ void check_in_threads(std::size_t count, const F& f) {
   }
 }
 
-} // namespace
-
 TEST_CASE("serial_chain: several threads give identical results") {
   const bounded_chain<16> chain = robots::panda().table();
   const auto all = duet_test::configurations(robots::panda().table(), 60);
@@ -50,4 +48,5 @@ TEST_CASE("constrained_mechanism: several threads give identical results") {
   check_in_threads(60, [&](std::size_t i) { return slider(std::sin(double(i))); });
 }
 
+} // namespace
 } // namespace test_kinematics_threads
