@@ -89,8 +89,6 @@ std::string changed(std::string text, const std::string& from, const std::string
   return text.replace(text.find(from), from.size(), to);
 }
 
-} // namespace
-
 TEST_CASE("COLLADA: all types of faces are split into triangles") {
   check_vertices(read(of_mesh(sources + triangle)), {p[0], p[1], p[2]});
   check_vertices(read(of_mesh(sources + "<lines count=\"1\">" + input + "<p>0 1</p></lines>" +
@@ -228,4 +226,5 @@ TEST_CASE("Assimp: other formats are read, and errors are messages of one line")
   std::remove(ply.c_str());
 }
 
+} // namespace
 } // namespace test_io_collada

@@ -29,8 +29,6 @@ std::string error_of(const std::string& content) {
   return text.substr(begin.size());
 }
 
-} // namespace
-
 TEST_CASE("read_loops: reads all constraint types, points, axes, angles and comments") {
   const loop_constraints loops = read("\xef\xbb\xbf# closes the frame\n"
                                       "hinge coupler .5 0 0  rocker 0.4 -1e-1 0 # in front\r\n"
@@ -114,4 +112,5 @@ TEST_CASE("read_loops: errors name line and value") {
   std::filesystem::remove(path);
 }
 
+} // namespace
 } // namespace test_io_loop_file

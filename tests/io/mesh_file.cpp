@@ -55,8 +55,6 @@ const std::string facet =
     "  facet normal 0 0 1\n    outer loop\n      vertex 0 0 0\n      vertex 1e-1 0 0\n"
     "      vertex 0 +2 -3\n    endloop\n  endfacet\n";
 
-} // namespace
-
 TEST_CASE("read_mesh: binary STL with a text-like header and padding") {
   for (const char* ending : {".stl", ".STL"}) {
     const auto m = read_mesh(write(ending, binary(3)));
@@ -193,4 +191,5 @@ TEST_CASE("read_mesh: unknown formats and missing files are rejected") {
         "duet: .: is a folder, not a file");
 }
 
+} // namespace
 } // namespace test_io_mesh_file

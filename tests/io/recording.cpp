@@ -30,8 +30,6 @@ std::string issues_of(const duet::recording<screw>& r) {
   return text;
 }
 
-} // namespace
-
 TEST_CASE("load_recording: a file without invalid rows gives its table, with times from 0 on") {
   write("# timestamp tx ty tz qx qy qz qw\n-2 1 2 3 0 0 0 1\n-0.5 1 2 3 0 0 0.6 0.8\n");
   const auto r = duet::load_recording<screw>(path);
@@ -101,7 +99,7 @@ TEST_CASE("load_recording: differences of nanoseconds since 1970 have all digits
   CHECK(largest < 1.2e-16);
   CHECK(r.start == 1403636580.838555648);
   CHECK(r.remark == "a EuRoC file: timestamps in ns");
-  CHECK(duet_test::message_of([] { static_cast<void>(duet::load_table<screw>(path)); }) ==
+  CHECK(duet_test::message_of([] { (void)duet::load_table<screw>(path); }) ==
         "duet: " + path +
             ":3: parameter 1403636580.8385556 does not increase, the row before has "
             "1403636580.8385556");
@@ -163,8 +161,7 @@ TEST_CASE(
 TEST_CASE("load_recording: errors for files without valid rows and for ragged rows") {
   const auto error_message = [](const std::string& text) {
     write(text);
-    return duet_test::message_of<duet::file_error>(
-        [] { static_cast<void>(duet::load_recording<screw>(path)); });
+    return duet_test::message_of<duet::file_error>([] { (void)duet::load_recording<screw>(path); });
   };
   CHECK(error_message("") == "duet: " + path + ": holds no usable rows");
   CHECK(error_message("0 1 2 3 0 0 0 0\n") == "duet: " + path + ": holds no usable rows");
@@ -178,4 +175,5 @@ TEST_CASE("load_recording: errors for files without valid rows and for ragged ro
   std::remove(path.c_str());
 }
 
+} // namespace
 } // namespace test_io_recording

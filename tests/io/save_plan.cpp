@@ -20,8 +20,6 @@ using vector = Eigen::Matrix<double, 2, 1>;
 
 const std::string path = "test_io_save_plan.csv";
 
-} // namespace
-
 TEST_CASE("save_plan, save_trajectory: files contain all digits") {
   motion_plan plan;
   CHECK_THROWS_AS(save_plan(path, plan), invalid_input);
@@ -84,9 +82,9 @@ TEST_CASE("save_plan: names of joints as columns; join_plans: plans that meet") 
   CHECK(both.tau.back() == 2);
   CHECK(both.iterations == 10);
   CHECK(both.reason == stop_reason::reached);
-  CHECK_THROWS_WITH_AS(static_cast<void>(join_plans(first, other)),
+  CHECK_THROWS_WITH_AS((void)join_plans(first, other),
                        "duet: join_plans: joint 1 ends at 0, but starts at 1", invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(join_plans(first, {})), invalid_input);
+  CHECK_THROWS_AS((void)join_plans(first, {}), invalid_input);
 
   save_plan(path, both, {"shoulder", "elbow"});
   std::ifstream in(path);
@@ -99,4 +97,5 @@ TEST_CASE("save_plan: names of joints as columns; join_plans: plans that meet") 
                        "duet: save_plan: 1 names of joints (expected 2)", invalid_input);
 }
 
+} // namespace
 } // namespace test_io_save_plan

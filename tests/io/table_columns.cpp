@@ -33,7 +33,7 @@ duet::lookup_table<T> loaded(const std::string& text, const table_columns& colum
 template <class T = screw>
 std::string error_message(const std::string& text, const table_columns& columns = {}) {
   const std::string message =
-      duet_test::message_of<duet::file_error>([&] { static_cast<void>(loaded<T>(text, columns)); });
+      duet_test::message_of<duet::file_error>([&] { (void)loaded<T>(text, columns); });
   std::remove(path.c_str());
   const std::string begin = "duet: " + path + ":";
   REQUIRE(message.starts_with(begin));
@@ -49,8 +49,6 @@ void check_pose(const duet::lookup_table<screw>& table, double time = 0.5) {
   CHECK(duet::rotation(table.elements[0]) == normalized(q));
   CHECK((duet::translation(table.elements[0]) - vector3<double>(1, 2, 3)).norm() < 1e-15);
 }
-
-} // namespace
 
 TEST_CASE("load_table with a stated header: every order of the columns, with other columns") {
   const std::array<std::string, 9> names{"t", "x", "y", "z", "qw", "qx", "qy", "qz", "speed"};
@@ -249,4 +247,5 @@ TEST_CASE("load_table: names with a prefix, detected or stated") {
         "2: right.pose.orientation.z is not a number: 'up'");
 }
 
+} // namespace
 } // namespace test_io_table_columns

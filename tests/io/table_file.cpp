@@ -80,8 +80,6 @@ const std::string header_of_euroc =
     "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
     "q_RS_z []\n";
 
-} // namespace
-
 TEST_CASE("save_table, load_table: rotations have the same bits when read back") {
   const scratch_file file("rotations.csv");
   rotations table;
@@ -352,7 +350,7 @@ TEST_CASE("load_table with euler_columns: Euler angles of every sequence and uni
 
   const auto error_message = [&](const std::string& content, const euler_columns& angles) {
     const std::string message =
-        duet_test::message_of<duet::file_error>([&] { static_cast<void>(read(content, angles)); });
+        duet_test::message_of<duet::file_error>([&] { (void)read(content, angles); });
     const std::string begin = "duet: " + file.path + ":";
     REQUIRE(message.starts_with(begin));
     return message.substr(begin.size());
@@ -374,14 +372,14 @@ TEST_CASE("load_table with euler_columns: Euler angles of every sequence and uni
         "2: yaw is not a number: 'north'");
   // Without `euler_columns` Euler angles are rejected.
   file.write("t,roll,pitch,yaw\n0,1,2,3\n");
-  const std::string message = duet_test::message_of<duet::file_error>(
-      [&] { static_cast<void>(duet::load_table<double>(file.path)); });
+  const std::string message =
+      duet_test::message_of<duet::file_error>([&] { (void)duet::load_table<double>(file.path); });
   CHECK(message.find("names no column qw") != message.npos);
   CHECK(message.ends_with("Euler angles need `euler_columns`"));
 
   const auto rejection = [](duet::euler_sequence s, const char* third) {
     return duet_test::message_of<duet::invalid_input>([&] {
-      static_cast<void>(euler_columns(s, {"a", "b", third}, angle_unit::radian));
+      (void)euler_columns(s, {"a", "b", third}, angle_unit::radian);
     });
   };
   CHECK(rejection({0, 0, 1}, "c") ==
@@ -434,7 +432,7 @@ TEST_CASE(
                                               "6,1,0.5,world,1,2,3,0,0,0.8,0.6\n");
   const auto error_message = [&] {
     return duet_test::message_of<duet::file_error>(
-        [&] { static_cast<void>(duet::load_table<screw>(file.path)); });
+        [&] { (void)duet::load_table<screw>(file.path); });
   };
   CHECK(
       error_message().find(":3: field.header.stamp 0.5 is not an integer number of nanoseconds") !=
@@ -564,8 +562,7 @@ TEST_CASE("load_table: columns are identified by the names in a header; ambiguou
 
   const auto error_message = [&](const std::string& text) {
     write(text);
-    return duet_test::message_of<duet::file_error>(
-        [&] { static_cast<void>(duet::load_table<double>(path)); });
+    return duet_test::message_of<duet::file_error>([&] { (void)duet::load_table<double>(path); });
   };
   const auto names_known_columns = [](const std::string& message) {
     return message.ends_with(known_columns);
@@ -615,7 +612,7 @@ TEST_CASE("load_table: errors name the line, the column and the value") {
   const auto error_message = [&](const std::string& text) {
     file.write(text);
     const std::string message = duet_test::message_of<duet::invalid_input>(
-        [&] { static_cast<void>(duet::load_table<screw>(file.path)); });
+        [&] { (void)duet::load_table<screw>(file.path); });
     const std::string begin = "duet: " + file.path + ":";
     REQUIRE(message.starts_with(begin));
     return message.substr(begin.size());
@@ -673,9 +670,9 @@ TEST_CASE("load_table: errors name the line, the column and the value") {
   CHECK(error_message(identity + "1 0 0 nan 0 1 0 0 0 0 1 0\n") == "2: column 4 is nan");
   CHECK(error_message(identity + "1 0 0 0 0 1 0 0 0 0 1 0,\n") == "2: 12 columns expected, got 1");
 
-  CHECK(duet_test::message_of([] { static_cast<void>(duet::load_table<screw>(".")); }) ==
+  CHECK(duet_test::message_of([] { (void)duet::load_table<screw>("."); }) ==
         "duet: .: is a folder, not a file");
-  CHECK(duet_test::message_of([] { static_cast<void>(duet::load_table<screw>("no/file.txt")); }) ==
+  CHECK(duet_test::message_of([] { (void)duet::load_table<screw>("no/file.txt"); }) ==
         "duet: no/file.txt: cannot be read");
 }
 
@@ -685,7 +682,7 @@ TEST_CASE("load_table, KITTI: errors for a file of times that does not match the
   const auto error_message = [&](const std::string& text) {
     times.write(text);
     return duet_test::message_of<duet::file_error>(
-        [&] { static_cast<void>(duet::load_table<screw>(file.path, times.path)); });
+        [&] { (void)duet::load_table<screw>(file.path, times.path); });
   };
   CHECK(error_message("0\n") ==
         "duet: " + file.path + ":3: more rows than the 1 times of " + times.path);
@@ -737,4 +734,5 @@ TEST_CASE("save_table, load_table: a locale with decimal commas has no effect") 
   std::locale::global(before);
 }
 
+} // namespace
 } // namespace test_io_table_file

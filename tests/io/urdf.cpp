@@ -36,8 +36,6 @@ std::string joint_to_c(const std::string& inside, const std::string& type = "con
          inside + "</joint>\n";
 }
 
-} // namespace
-
 TEST_CASE("read_urdf: origins, axes and limits follow the format") {
   write(links + first +
         joint_to_c("<origin xyz=\" .1 2e-1\t+0.3 \" rpy=\"0.1 0.2 0.3\"/><axis xyz=\"0 1 0\"/>"));
@@ -433,4 +431,5 @@ TEST_CASE("read_urdf: files of real robots agree with the built-in arms") {
   CHECK(read_urdf(folder + "ur5_robot.urdf", "base_link", "tool0").size() == 6);
 }
 
+} // namespace
 } // namespace test_io_urdf

@@ -45,8 +45,6 @@ std::string error_of_srdf(const std::string& inside) {
   return message.starts_with(begin) ? message.substr(begin.size()) : message;
 }
 
-} // namespace
-
 TEST_CASE("read_urdf, read_urdf_tree: collision shapes of links") {
   write(robot_with(
       "<collision name=\"first\"><origin xyz=\"1 2 3\" rpy=\"0 0 1\"/><geometry>"
@@ -157,4 +155,5 @@ TEST_CASE("read_urdf_tree: files of real robots have their number of shapes") {
   }
 }
 
+} // namespace
 } // namespace test_io_urdf_shapes

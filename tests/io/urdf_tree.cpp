@@ -36,8 +36,6 @@ std::string joint_of(const std::string& name, const std::string& type, const std
 
 const std::string links = "<link name=\"a\"/><link name=\"b\"/><link name=\"c\"/>\n";
 
-} // namespace
-
 TEST_CASE("read_urdf_tree: joint types, mimic joints, masses and lines of a complete file") {
   write(
       "<link name=\"tip\"/>\n"
@@ -217,4 +215,5 @@ TEST_CASE("read_urdf_tree: chains of every robot file equal those of read_urdf")
   CHECK(chains >= 60);
 }
 
+} // namespace
 } // namespace test_io_urdf_tree

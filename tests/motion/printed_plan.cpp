@@ -41,8 +41,6 @@ double lag(const Plan& plan, std::size_t poses) {
   return result;
 }
 
-} // namespace
-
 TEST_CASE("N24: every step is ScLERP followed by N23, from the end of the previous step") {
   const auto goal = arm.pose(near_gripper_down());
   for (const double beta : {.3, 1., 1.8, 2.5}) {
@@ -151,4 +149,5 @@ TEST_CASE("N25: invalid paths are rejected") {
   CHECK_THROWS_AS((void)printed_path_plan(arm, outside, circle(10)), invalid_input);
 }
 
+} // namespace
 } // namespace test_motion_printed_plan

@@ -14,8 +14,6 @@ namespace {
 using namespace duet;
 using duet_test::max_abs_difference;
 
-} // namespace
-
 TEST_CASE("N22: B γ̇ moves the tip by γ̇ with least-norm joint rates") {
   const auto arm = robots::panda();
   const auto all = duet_test::configurations(arm.table(), 20);
@@ -121,4 +119,5 @@ TEST_CASE("N22: a rank-deficient Jacobian in one lane is rejected") {
   CHECK_THROWS_AS((void)resolved_rate_matrix(arm, theta), invalid_input);
 }
 
+} // namespace
 } // namespace test_motion_resolved_motion
