@@ -26,7 +26,6 @@
 // The special functions of Boost.Math called with dual and Taylor numbers.
 
 namespace test_interop_boost_math {
-
 namespace {
 
 using D = duet::dual<double>;
@@ -95,8 +94,6 @@ void check(const char* name, F f, std::initializer_list<double> points, wide len
   check(
       name, f, [=](wide x) { return difference(f, x, length); }, points, length / 2);
 }
-
-} // namespace
 
 namespace bm = boost::math;
 
@@ -254,4 +251,5 @@ TEST_CASE("Boost.Math over dual: known errors at arguments that Boost compares w
   CHECK(std::abs(bm::ellint_2(zero).derivative(2) + double(pi) / 2) <= tolerance);
 }
 
+} // namespace
 } // namespace test_interop_boost_math

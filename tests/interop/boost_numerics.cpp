@@ -15,10 +15,9 @@
 // Root finders and quadrature of Boost.Math, with dual numbers as parameters.
 
 namespace test_interop_boost_numerics {
+namespace {
 
 using duet::innermost;
-
-namespace {
 
 using D = duet::dual<double>;
 using T = duet::taylor<double, 2>;
@@ -50,8 +49,6 @@ constexpr double p0 = 5;
 const double root = std::cbrt(p0);
 const double root_slope = root / (3 * p0);
 const double root_curvature = -2 * root / (9 * p0 * p0);
-
-} // namespace
 
 TEST_CASE("newton_raphson_iterate: the derivative is one step behind the value") {
   const auto solve = [](const auto& p, double start, std::uintmax_t iterations) {
@@ -111,7 +108,6 @@ TEST_CASE("brent_find_minima: finds the minimiser; the envelope theorem gives th
 }
 
 // ∫₀¹ e^{px} dx = (e^p − 1)/p, and ∫₀^b of the same with a limit that moves.
-namespace {
 
 constexpr double rate = 1.25;
 const double grown = std::exp(rate);
@@ -143,8 +139,6 @@ void check_limit(Integrate integrate, double units) {
   CHECK(near(y.epsilon(), grown, units));
 }
 
-} // namespace
-
 TEST_CASE("quadrature: integrands and limits may depend on a dual number") {
   const auto gauss = [](auto f, auto a, auto b) {
     return quadrature::gauss<decltype(a), 15>::integrate(f, a, b);
@@ -172,4 +166,5 @@ TEST_CASE("trapezoidal: exact for periodic functions") {
   CHECK(near(y.epsilon(), 2 * pi * std::cyl_bessel_i(1, 1.0)));
 }
 
+} // namespace
 } // namespace test_interop_boost_numerics

@@ -20,7 +20,6 @@
 // dual numbers, against the variational equations.
 
 namespace test_interop_boost_odeint {
-
 namespace {
 
 namespace odeint = boost::numeric::odeint;
@@ -113,8 +112,6 @@ using array_state = std::array<D, 2>;
 using vector_state = std::vector<D>;
 using eigen_state = Eigen::Matrix<D, 2, 1>;
 
-} // namespace
-
 TEST_CASE("runge_kutta4: constant steps give the sensitivities") {
   check_constant_steps<odeint::runge_kutta4<array_state>, array_state>();
   check_constant_steps<odeint::runge_kutta4<vector_state>, vector_state>();
@@ -197,4 +194,5 @@ TEST_CASE("odeint over Taylor: second sensitivities of an oscillator agree with 
   CHECK(std::abs(x[0].derivative(2) - (end * s - w * end * end * c) / (4 * w * w * w)) <= 1e-11);
 }
 
+} // namespace
 } // namespace test_interop_boost_odeint

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/multiprecision.hpp"
-#include "support/test.hpp"
 
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
@@ -12,20 +11,19 @@
 #include <duet/interop/ceres.hpp>
 #include <duet/quaternion/rotation.hpp>
 
+#include <Eigen/Core>
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/gradient_checker.h>
-#include <ceres/problem.h>
 #include <ceres/rotation.h>
-#include <ceres/solver.h>
-#include <Eigen/Core>
 
 #include <memory>
+
+#include "support/test.hpp"
 
 // Manifolds, ambient Jacobians and cost functions for Ceres: against differences in 50 digits,
 // Ceres' own manifolds and Jets.
 
 namespace test_interop_ceres {
-
 namespace {
 
 using duet::quaternion_order;
@@ -36,10 +34,6 @@ constexpr std::array orders{quaternion_order::wxyz, quaternion_order::xyzw};
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using owned = std::unique_ptr<ceres::CostFunction>;
-
-vector3 random_vector(duet::random_source& random, double size) {
-  return size * vector3(random.normal(), random.normal(), random.normal());
-}
 
 /// At the identity, near it and near half turns, both signs, and anywhere.
 std::vector<duet::quaternion<double>> rotations() {
@@ -244,8 +238,6 @@ void check_manifold(const Block& block, const std::array<double, Block::size>& x
   CHECK(error_of(minus, minus_50) <= 2e-15);
 }
 
-} // namespace
-
 TEST_CASE("ambient: Jacobians agree with 50 digits, on the unit sphere and off it") {
   double worst = 0;
   for (const auto order : orders) {
@@ -364,8 +356,6 @@ TEST_CASE("blocks: what is stored is loaded") {
   }
 }
 
-namespace {
-
 struct reprojection_error {
   double u, v;
 
@@ -413,47 +403,11 @@ struct for_jets : F {
   }
 };
 
-// the rotation vector from a to b, by ceres/rotation.h for Jets
-struct between_by_jets {
-  template <class T>
-  bool operator()(const T* a, const T* b, T* residuals) const {
-    const T inverse[4] = {a[0], -a[1], -a[2], -a[3]};
-    T product[4];
-    ceres::QuaternionProduct(inverse, b, product);
-    ceres::QuaternionToAngleAxis(product, residuals);
-    return true;
-  }
-};
-
 struct distance_of_points { // of two points that coincide in x and y, one of them fixed there
   template <class T>
   bool operator()(const T* a, T* residuals) const {
     using std::sqrt;
     residuals[0] = sqrt((a[0] - 1.) * (a[0] - 1.)) + a[1];
-    return true;
-  }
-};
-
-// the angle of a rotation that is the identity
-struct angle_of_rotation {
-  template <class T>
-  bool operator()(const T* q, T* residuals) const {
-    using std::acos;
-    residuals[0] = 2. * acos(q[0]);
-    return true;
-  }
-};
-
-// q minimises |q a_i - b_i|; half of the residuals are by Jets, half by duals.
-struct rotated_point {
-  vector3 a, b;
-  template <class T>
-  bool operator()(const T* q, T* residuals) const {
-    const T from[3] = {T(a[0]), T(a[1]), T(a[2])};
-    ceres::UnitQuaternionRotatePoint(q, from, residuals);
-    for (int i = 0; i < 3; ++i) {
-      residuals[i] -= b[i];
-    }
     return true;
   }
 };
@@ -493,8 +447,6 @@ void check_equal(const std::vector<double>& a, const std::vector<double>& b, dou
   CHECK(worst <= tolerance);
 }
 
-} // namespace
-
 TEST_CASE("cost_function: functors with ceres/rotation.h give what Jets give") {
   const std::array<double, 7> camera{.1, -.3, .2, 1, 2, 5, 3};
   const std::array<double, 3> point{.4, .7, -.2};
@@ -514,36 +466,6 @@ TEST_CASE("cost_function: functors with ceres/rotation.h give what Jets give") {
     const std::vector<const double*> y{numbers.data(), point.data()};
     check_equal(evaluated(*all, y), evaluated(*all_by_jets, y), 1e-13);
   }
-}
-
-TEST_CASE("cost_function: of rotations and poses, as Jets on the manifold") {
-  const duet::rotation_block block(quaternion_order::wxyz);
-  const auto f = [](const auto& a, const auto& b) { return rotation_vector(conj(a) * b); };
-  const owned by_duals(duet::cost_function(f, block, block)),
-      by_jets(new ceres::AutoDiffCostFunction<between_by_jets, 3, 4, 4>(new between_by_jets));
-  const ceres::QuaternionManifold of_ceres;
-  duet::random_source random(2);
-  double worst = 0;
-  for (int k = 0; k < 50; ++k) {
-    const auto a = stored(block, duet::from_rotation_vector(random_vector(random, 1)));
-    const auto b = stored(block, duet::from_rotation_vector(random_vector(random, 1)));
-    const auto ours = evaluated(*by_duals, {a.data(), b.data()});
-    const auto jets = evaluated(*by_jets, {a.data(), b.data()});
-    Eigen::Matrix<double, 4, 3, Eigen::RowMajor> plus[2];
-    of_ceres.PlusJacobian(a.data(), plus[0].data());
-    of_ceres.PlusJacobian(b.data(), plus[1].data());
-    using rows = Eigen::Map<const Eigen::Matrix<double, 3, 4, Eigen::RowMajor>>;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto of = [&](const std::vector<double>& all) {
-        return (rows(all.data() + 3 + 12 * i) * plus[i]).eval();
-      };
-      worst = std::max(worst, (of(ours) - of(jets)).cwiseAbs().maxCoeff());
-    }
-    for (std::size_t i = 0; i < 3; ++i) {
-      worst = std::max(worst, std::abs(ours[i] - jets[i]));
-    }
-  }
-  CHECK(worst <= 1e-12); // near half turns both are ill-conditioned
 }
 
 TEST_CASE("cost_function: every kind of block passes Ceres' check of gradients") {
@@ -628,24 +550,6 @@ TEST_CASE("cost_function: finite where Jets are NaN") {
   CHECK(by_duals == std::array<double, 2>{0, 1});
   CHECK(ceres_cost->Evaluate(&x, &value, &jets));
   CHECK(std::isnan(by_jets[0]));
-
-  const std::array<double, 4> q{1, 0, 0, 0};
-  const owned of_rotation(duet::cost_function(
-      [](const auto&rotation) {
-        using std::acos;
-        return 2 * acos(rotation.w());
-      },
-      duet::rotation_block(quaternion_order::wxyz))),
-      of_jets(new ceres::AutoDiffCostFunction<angle_of_rotation, 1, 4>(new angle_of_rotation));
-  std::array<double, 4> jacobian{}, of_jacobian{};
-  duals = jacobian.data();
-  jets = of_jacobian.data();
-  x = q.data();
-  CHECK(of_rotation->Evaluate(&x, &value, &duals));
-  CHECK(std::all_of(jacobian.begin(), jacobian.end(), [](double d) { return std::isfinite(d); }));
-  CHECK(of_jets->Evaluate(&x, &value, &jets));
-  CHECK_FALSE(std::all_of(of_jacobian.begin(), of_jacobian.end(),
-                          [](double d) { return std::isfinite(d); }));
 }
 
 TEST_CASE("cost_function: false instead of exceptions") {
@@ -679,40 +583,5 @@ TEST_CASE("cost_function: false instead of exceptions") {
   CHECK_FALSE(functor->Evaluate(&block, &residual, &out));
 }
 
-TEST_CASE("manifolds: minima are those of Ceres' manifolds, with functors beside") {
-  const auto solved = [](ceres::Manifold* manifold, bool has_functors) {
-    duet::random_source random(3);
-    const auto q = duet::from_rotation_vector(vector3(.4, -1, 2));
-    const duet::rotation_block block(quaternion_order::wxyz);
-    auto numbers = stored(block, duet::quaternion<double>(1.));
-    ceres::Problem problem;
-    for (int i = 0; i < 10; ++i) {
-      const vector3 a = random_vector(random, 1), b = rotate(q, a) + random_vector(random, .01);
-      ceres::CostFunction* cost = nullptr;
-      if (has_functors && i % 2 == 0) {
-        cost = new ceres::AutoDiffCostFunction<rotated_point, 3, 4>(new rotated_point{a, b});
-      } else {
-        cost = duet::cost_function(
-            [a, b]<class T>(const duet::quaternion<T>& x) -> duet::vector3<T> {
-              return rotate(x, a) - b.cast<T>();
-            },
-            block);
-      }
-      problem.AddResidualBlock(cost, nullptr, numbers.data());
-    }
-    problem.SetManifold(numbers.data(), manifold);
-    ceres::Solver::Options options;
-    options.function_tolerance = options.parameter_tolerance = options.gradient_tolerance = 1e-15;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-    CHECK(summary.termination_type == ceres::CONVERGENCE);
-    return Eigen::Vector4d(numbers.data());
-  };
-  const Eigen::Vector4d q = solved(new duet::rotation_manifold(quaternion_order::wxyz), false);
-  CHECK(std::abs(q.norm() - 1) <= 1e-14);
-  CHECK((q - solved(new duet::rotation_manifold(quaternion_order::wxyz), true)).norm() <= 1e-9);
-  CHECK((q - solved(new ceres::QuaternionManifold, true)).norm() <= 1e-9);
-  CHECK((q - solved(new ceres::QuaternionManifold, false)).norm() <= 1e-9);
-}
-
+} // namespace
 } // namespace test_interop_ceres

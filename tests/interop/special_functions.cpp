@@ -12,8 +12,8 @@
 
 #include <initializer_list>
 
-// The special functions of <cmath> over Taylor numbers: values by the standard library, derivatives
-// to the third by differences of the defining integrals and series in 100 digits.
+// The special functions of <cmath> over Taylor numbers: derivatives to the third by differences of
+// the defining integrals and series in 100 digits.
 
 namespace test_interop_special_functions {
 namespace {
@@ -28,9 +28,9 @@ struct outermost_tag;
 const R pi = acos(R(-1));
 constexpr double pi_half = 1.5707963267948966;
 
-/// f against the values `standard` and derivatives of `exact`.
-template <class F, class Standard, class Exact>
-void check(const char* name, F f, Standard standard, Exact exact, std::initializer_list<double> at,
+/// f and its derivatives against those of `exact`.
+template <class F, class Exact>
+void check(const char* name, F f, Exact exact, std::initializer_list<double> at,
            double limit = 64) {
   worst_error worst(name);
   for (const double x : at) {
@@ -41,7 +41,6 @@ void check(const char* name, F f, Standard standard, Exact exact, std::initializ
     for (std::size_t k = 1; k < 5; ++k) {
       reference[k] = central_difference(exact, R(x), int(k), length);
     }
-    CHECK_MESSAGE(std::abs(y.value() - standard(x)) <= 1e-13 * (std::abs(standard(x)) + 1), name);
     for (std::size_t k = 0; k <= 3; ++k) {
       if (abs(reference[k]) < 1e-25) { // 0 except for the error of the difference
         CHECK_MESSAGE(std::abs(y.derivative(int(k))) <= 1e-14, name);
@@ -89,17 +88,13 @@ R bessel_series(const R& nu, const R& z, int sign) {
   return sum;
 }
 
-} // namespace
-
 TEST_CASE("special functions: Bessel functions") {
   for (const int nu : {0, 1, 2, 5}) {
     check(
         "J", [=](const auto& x) { return cyl_bessel_j(nu, x); },
-        [=](double x) { return std::cyl_bessel_j(double(nu), x); },
         [=](const R& x) { return bessel_series(nu, x, -1); }, {0.25, 1, 2.4, 7.5, 13});
     check(
         "I", [=](const auto& x) { return cyl_bessel_i(nu, x); },
-        [=](double x) { return std::cyl_bessel_i(double(nu), x); },
         [=](const R& x) { return bessel_series(nu, x, 1); }, {0.25, 1, 2.4, 7.5, 13});
   }
   for (const double nu : {1.0 / 3, 1.5, 2.25}) { // also at 1e-8, where the leading power dominates
@@ -107,15 +102,12 @@ TEST_CASE("special functions: Bessel functions") {
     const auto at = {1e-8, 0.25, 1.0, 7.5};
     check(
         "J", [=](const auto& x) { return cyl_bessel_j(nu, x); },
-        [=](double x) { return std::cyl_bessel_j(nu, x); },
         [=](const R& x) { return bessel_series(order, x, -1); }, at);
     check(
         "I", [=](const auto& x) { return cyl_bessel_i(nu, x); },
-        [=](double x) { return std::cyl_bessel_i(nu, x); },
         [=](const R& x) { return bessel_series(order, x, 1); }, at);
     check(
         "Y", [=](const auto& x) { return cyl_neumann(nu, x); },
-        [=](double x) { return std::cyl_neumann(nu, x); },
         [=](const R& x) -> R {
           return (cos(R(order * pi)) * bessel_series(order, x, -1) - bessel_series(-order, x, -1)) /
                  sin(R(order * pi));
@@ -123,7 +115,6 @@ TEST_CASE("special functions: Bessel functions") {
         at);
     check(
         "K", [=](const auto& x) { return cyl_bessel_k(nu, x); },
-        [=](double x) { return std::cyl_bessel_k(nu, x); },
         [=](const R& x) -> R {
           return pi / 2 * (bessel_series(-order, x, 1) - bessel_series(order, x, 1)) /
                  sin(R(order * pi));
@@ -133,19 +124,15 @@ TEST_CASE("special functions: Bessel functions") {
   // K_½ = √(π/2x) e^−x, Y_½ = −√(2/πx) cos x
   check(
       "K", [](const auto& x) { return cyl_bessel_k(0.5, x); },
-      [](double x) { return std::cyl_bessel_k(0.5, x); },
       [](const R& x) -> R { return sqrt(R(pi / (2 * x))) * exp(R(-x)); }, {0.5, 1, 4});
   check(
       "Y", [](const auto& x) { return cyl_neumann(0.5, x); },
-      [](double x) { return std::cyl_neumann(0.5, x); },
       [](const R& x) -> R { return -sqrt(R(2 / (pi * x))) * cos(x); }, {0.5, 1, 4, 9});
   check(
       "j", [](const auto& x) { return sph_bessel(1, x); },
-      [](double x) { return std::sph_bessel(1, x); },
       [](const R& x) -> R { return sin(x) / (x * x) - cos(x) / x; }, {0.5, 1, 4, 9});
   check(
       "y", [](const auto& x) { return sph_neumann(1, x); },
-      [](double x) { return std::sph_neumann(1, x); },
       [](const R& x) -> R { return -cos(x) / (x * x) - sin(x) / x; }, {0.5, 1, 4, 9});
   const auto at_zero = cyl_bessel_j(1, duet::taylor<double, 3>::variable(0));
   CHECK(at_zero.derivative(1) == 0.5);
@@ -211,12 +198,10 @@ TEST_CASE("special functions: elliptic integrals") {
   };
   check(
       "K", [](const auto& k) { return comp_ellint_1(k); },
-      [](double k) { return std::comp_ellint_1(k); }, [=](const R& k) { return series(k, false); },
-      {-0.4, 0, 0.001, 0.3, 0.45});
+      [=](const R& k) { return series(k, false); }, {-0.4, 0, 0.001, 0.3, 0.45});
   check(
       "E", [](const auto& k) { return comp_ellint_2(k); },
-      [](double k) { return std::comp_ellint_2(k); }, [=](const R& k) { return series(k, true); },
-      {-0.4, 0, 0.001, 0.3, 0.45});
+      [=](const R& k) { return series(k, true); }, {-0.4, 0, 0.001, 0.3, 0.45});
 
   // The derivative with respect to φ is the integrand.
   const auto check_integral = [](const auto& f, const auto& standard, const auto& integrand) {
@@ -243,7 +228,7 @@ TEST_CASE("special functions: elliptic integrals") {
 
 TEST_CASE("special functions: exponential integral, zeta and beta") {
   check(
-      "Ei", [](const auto& x) { return expint(x); }, [](double x) { return std::expint(x); },
+      "Ei", [](const auto& x) { return expint(x); },
       [](const R& x) -> R { // γ + log|x| + Σ xᵏ/(k k!)
         R sum("0.57721566490153286060651209008240243104215933593992359880576723488486772677766467");
         sum += log(R(abs(x)));
@@ -257,7 +242,6 @@ TEST_CASE("special functions: exponential integral, zeta and beta") {
       {-3, -0.5, 0.6, 2, 7});
   check(
       "zeta", [](const auto& s) { return riemann_zeta(s); },
-      [](double s) { return std::riemann_zeta(s); },
       [](const R& s) -> R { // by the alternating series, accelerated (Cohen, Villegas, Zagier)
         const int n = 50;
         R d = pow(R(3 + sqrt(R(8))), n);
@@ -272,7 +256,7 @@ TEST_CASE("special functions: exponential integral, zeta and beta") {
       },
       {-1.5, 0, 0.5, 2, 4.5});
   check(
-      "beta", [](const auto& x) { return beta(x, 3); }, [](double x) { return std::beta(x, 3.0); },
+      "beta", [](const auto& x) { return beta(x, 3); },
       [](const R& x) -> R { return 2 / (x * (x + 1) * (x + 2)); }, {0.5, 1, 2, 4.5});
   const auto mixed = beta(duet::second_order_dual<double, 2>::variable(1, 0),
                           duet::second_order_dual<double, 2>::variable(1, 1));
@@ -302,34 +286,27 @@ TEST_CASE("special functions: orthogonal polynomials, also at the ends of their 
   const auto at = {-1.0, -0.6, 0.0, 0.3, 1.0};
   check(
       "P4", [](const auto& x) { return legendre(4, x); },
-      [](double x) { return std::legendre(4, x); },
       [](const R& x) -> R { return (35 * x * x * x * x - 30 * x * x + 3) / 8; }, at);
   check(
       "P42", [](const auto& x) { return assoc_legendre(4, 2, x); },
-      [](double x) { return std::assoc_legendre(4, 2, x); },
       [](const R& x) -> R { return (1 - x * x) * (105 * x * x - 15) / 2; }, at);
   check(
       "P31", [](const auto& x) { return assoc_legendre(3, 1, x); },
-      [](double x) { return std::assoc_legendre(3, 1, x); },
       [](const R& x) -> R { return sqrt(R(1 - x * x)) * (15 * x * x - 3) / 2; }, {-0.6, 0, 0.3});
   check(
       "Y31", [](const auto& t) { return sph_legendre(3, 1, t); },
-      [](double t) { return std::sph_legendre(3, 1, t); },
       [](const R& t) -> R {
         return -sqrt(R(7 / (48 * pi))) * sin(t) * (15 * cos(t) * cos(t) - 3) / 2;
       },
       {0.3, 1, 2.5});
   check(
       "H4", [](const auto& x) { return hermite(4, x); },
-      [](double x) { return std::hermite(4, x); },
       [](const R& x) -> R { return 16 * x * x * x * x - 48 * x * x + 12; }, at);
   check(
       "L3", [](const auto& x) { return laguerre(3, x); },
-      [](double x) { return std::laguerre(3, x); },
       [](const R& x) -> R { return (-x * x * x + 9 * x * x - 18 * x + 6) / 6; }, {0, 0.3, 1});
   check(
       "L21", [](const auto& x) { return assoc_laguerre(2, 1, x); },
-      [](double x) { return std::assoc_laguerre(2, 1, x); },
       [](const R& x) -> R { return x * x / 2 - 3 * x + 3; }, {0, 0.3, 1});
 }
 
@@ -441,4 +418,5 @@ TEST_CASE("special functions: sinc, Lambert's W and the like of Boost.Math are d
             .epsilon(1e-14));
 }
 
+} // namespace
 } // namespace test_interop_special_functions
