@@ -33,8 +33,6 @@ std::string said(bool is_terminal, double interval) {
   return text;
 }
 
-} // namespace
-
 TEST_CASE(
     "progress_line: one line on a terminal, several lines elsewhere, nothing for a short run") {
   CHECK(said(false, 0) ==
@@ -85,4 +83,5 @@ TEST_CASE("progress_line: serves as progress callback of a run") {
   std::fclose(file);
 }
 
+} // namespace
 } // namespace test_examples_progress_line

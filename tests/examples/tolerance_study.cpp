@@ -11,10 +11,9 @@
 #include <Eigen/LU>
 
 namespace test_examples_tolerance_study {
+namespace {
 
 using namespace tolerance_study;
-
-namespace {
 
 const std::vector<double> heights{-0.19, -0.1, 0, 0.07, 0.2};
 
@@ -46,8 +45,6 @@ sensitivity by_hand(const wheel_carrier::state& s, const hardpoints& points) {
   }
   return result;
 }
-
-} // namespace
 
 TEST_CASE("toleranced_carrier: without errors, toe-in and camber are those of the wheel carrier") {
   const hardpoints points = wheel_carrier::example_hardpoints();
@@ -124,4 +121,5 @@ TEST_CASE("statistics_of: mean, deviation and quantiles of known numbers are exa
   CHECK(two.high == 2.95);
 }
 
+} // namespace
 } // namespace test_examples_tolerance_study

@@ -13,10 +13,9 @@
 #include <duet/spline/interpolate.hpp>
 
 namespace test_examples_wheel_carrier {
+namespace {
 
 using namespace wheel_carrier;
-
-namespace {
 
 struct reference {
   double u;
@@ -61,8 +60,6 @@ const experiment& the_experiment() {
   static const experiment result;
   return result;
 }
-
-} // namespace
 
 TEST_CASE("carrier: position, orientation and derivatives agree with the reference values") {
   const carrier mechanism(example_hardpoints());
@@ -163,7 +160,7 @@ TEST_CASE("carrier: rods that cannot close throw loop_closure_failure with the h
   hardpoints points = example_hardpoints();
   points.rods[2].chassis[1] = 0.8;
   try {
-    static_cast<void>(carrier(points).at(-0.19));
+    (void)carrier(points).at(-0.19);
     FAIL("they close");
   } catch (const duet::loop_closure_failure& error) {
     CHECK(error.parameter().front() == doctest::Approx(-0.1334868).epsilon(1e-6));
@@ -191,4 +188,5 @@ TEST_CASE("two_digits: two significant digits, with spaces in groups of three") 
   CHECK(example::two_digits(1234567.) == "1 200 000");
 }
 
+} // namespace
 } // namespace test_examples_wheel_carrier

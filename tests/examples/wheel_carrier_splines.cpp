@@ -10,10 +10,9 @@
 #include <duet/spline/rotation_vector_spline.hpp>
 
 namespace test_examples_wheel_carrier_splines {
+namespace {
 
 using namespace wheel_carrier;
-
-namespace {
 
 /// The largest dδ_E over the travel, percent.
 template <class Spline>
@@ -26,8 +25,6 @@ double worst_acceleration(const std::vector<state>& states, const Spline& s) {
   }
   return worst;
 }
-
-} // namespace
 
 TEST_CASE("P7: rotation-vector splines through the 0.003-rad table have small dδ_E") {
   const carrier mechanism(example_hardpoints());
@@ -54,4 +51,5 @@ TEST_CASE("P7: rotation-vector splines through the 0.003-rad table have small d�
         0.005);
 }
 
+} // namespace
 } // namespace test_examples_wheel_carrier_splines
