@@ -59,8 +59,6 @@ triangle_mesh octahedron(double a, double b, double c) {
   return result;
 }
 
-} // namespace
-
 TEST_CASE(
     "bounding_capsule: contains a cylinder, and no capsule along its axis has a smaller volume") {
   for (const double r : {1e-3, .1, .5, 1., 3.}) {
@@ -249,4 +247,5 @@ TEST_CASE("bounding_capsules: shapes of trees and chains have the poses of their
         }) == "duet: ./nowhere/hand.stl: cannot be read");
 }
 
+} // namespace
 } // namespace test_robotics_capsules_of

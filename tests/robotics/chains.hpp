@@ -12,6 +12,23 @@ namespace duet_test {
 using any_chain = duet::bounded_chain<16>;
 using any_joints = duet::detail::joint_vector<double, -16>;
 
+/// Panda, iiwa14, UR5e and the Baxter's left arm.
+inline std::vector<any_chain> known_arms() {
+  using namespace duet::robots;
+  return {panda().table(), iiwa14().table(), ur5e().table(), baxter_left().table()};
+}
+
+/// Three prismatic and three revolute joints whose axes meet in one point.
+inline any_chain portal(const duet::joint_limits<>& lengths, const duet::joint_limits<>& angles) {
+  std::array<duet::joint<>, 6> joints;
+  for (std::size_t i = 0; i < 6; ++i) {
+    joints[i].kind = i < 3 ? duet::joint_kind::prismatic : duet::joint_kind::revolute;
+    joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
+    joints[i].limits = i < 3 ? lengths : angles;
+  }
+  return duet::serial_chain<6>(joints);
+}
+
 /// Uniform within the limits and one full turn.
 inline any_joints configuration(const any_chain& arm, random_source& random) {
   using std::numbers::pi;

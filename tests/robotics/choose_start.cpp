@@ -39,8 +39,6 @@ bool is_complete_plan(const chain& arm, const start_search_result& found, const 
   return true;
 }
 
-} // namespace
-
 TEST_CASE("find_start_configuration: finds a start for every path of a known joint path") {
   duet_test::random_source random(91);
   const std::array<chain, 5> arms{robots::ur5e().table(), robots::panda().table(),
@@ -122,7 +120,7 @@ TEST_CASE(
   }
   const auto nowhere = [](const auto& x) { return 0 * x[0] + std::nan(""); };
   CHECK(duet_test::message_of<invalid_input>(
-            [&] { static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, nowhere)); })
+            [&] { (void)find_start_configuration(arm, path, 0, 1, {}, nowhere); })
             .starts_with("duet: find_start_configuration: the objective is nan at all starts, for "
                          "example at the joints ("));
 }
@@ -271,23 +269,23 @@ TEST_CASE("find_start_configuration: invalid options, intervals and postures are
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto path = [&](double) { return arm.pose(theta); };
-  CHECK_THROWS_WITH_AS(static_cast<void>(find_start_configuration(arm, path, 1, 1)),
+  CHECK_THROWS_WITH_AS((void)find_start_configuration(arm, path, 1, 1),
                        "duet: find_start_configuration: the parameter of the path goes from 1 to 1 "
                        "(expected an increasing, finite interval)",
                        invalid_input);
   CHECK_THROWS_WITH_AS(
-      static_cast<void>(find_start_configuration(arm, path, 0, 1, {.max_starts = 0})),
+      (void)find_start_configuration(arm, path, 0, 1, {.max_starts = 0}),
       "duet: find_start_configuration: max_starts is 0 (expected a positive number)",
       invalid_input);
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(find_start_configuration(arm, path, 0, 1, {.sampling = 2})),
-      "duet: find_start_configuration: sampling is 2 (expected within (0, 1])", invalid_input);
+  CHECK_THROWS_WITH_AS((void)find_start_configuration(arm, path, 0, 1, {.sampling = 2}),
+                       "duet: find_start_configuration: sampling is 2 (expected within (0, 1])",
+                       invalid_input);
   const preferred_posture few{vector(vector::Zero(5))};
   const char* const what = "duet: preferred_posture: 5 coordinates (expected 6, one per joint)";
-  CHECK_THROWS_WITH_AS(static_cast<void>(find_start_configuration(arm, path, 0, 1, {}, few)), what,
+  CHECK_THROWS_WITH_AS((void)find_start_configuration(arm, path, 0, 1, {}, few), what,
                        invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(follow_path(arm, theta, path, 0, 1, {}, few)), what,
-                       invalid_input);
+  CHECK_THROWS_WITH_AS((void)follow_path(arm, theta, path, 0, 1, {}, few), what, invalid_input);
 }
 
+} // namespace
 } // namespace test_robotics_choose_start

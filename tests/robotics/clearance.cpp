@@ -28,8 +28,6 @@ scene cage() {
            half_space<>{{0, 0, 1}, -.1}}};
 }
 
-} // namespace
-
 TEST_CASE("clearance: smallest distance, and its gradient nᵀ J at the closest point") {
   const auto arm = robots::panda().table();
   const scene s = cage();
@@ -78,12 +76,12 @@ TEST_CASE("clearance: infinite without obstacles; invalid scenes are rejected") 
   CHECK_THROWS_WITH_AS(require_scene(arm, s),
                        "duet: the radius of obstacle 0 is nan (expected a non-negative number)",
                        invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(clearance(arm, theta, s)),
+  CHECK_THROWS_WITH_AS((void)clearance(arm, theta, s),
                        "duet: the radius of obstacle 0 is nan (expected a non-negative number)",
                        invalid_input);
   scene slanted = cage();
   slanted.obstacles.push_back(half_space<>{{0, 0, 2}, -1});
-  CHECK_THROWS_WITH_AS(static_cast<void>(clearance(arm, theta, slanted)),
+  CHECK_THROWS_WITH_AS((void)clearance(arm, theta, slanted),
                        "duet: the normal of obstacle 3 is not a unit vector", invalid_input);
   s.bodies[4].link = 8;
   CHECK_THROWS_WITH_AS(require_scene(arm, s),
@@ -111,4 +109,5 @@ TEST_CASE("clearance: nan coordinates give a nan distance, independent of the or
   CHECK(clearance(arm, theta, scene{{upper}, obstacles}).distance < 1);
 }
 
+} // namespace
 } // namespace test_robotics_clearance

@@ -21,13 +21,10 @@ using duet_test::four_bar;
 using duet_test::max_abs_difference;
 using duet_test::placement_at;
 using duet_test::revolute_joint;
+using duet_test::vector_of;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-VectorXd vector(std::initializer_list<double> x) {
-  return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
-}
 
 constexpr int kinds = int(constraint_kind::distance) + 1;
 
@@ -52,8 +49,6 @@ dual_quaternion<double> seen(const closed_chain_mechanism& mechanism, const Vect
   };
   return conj(at(loop.first)) * at(loop.second);
 }
-
-} // namespace
 
 TEST_CASE("closed_chain_mechanism: every constraint type has its number of equations and aligns "
           "its frames") {
@@ -144,7 +139,7 @@ TEST_CASE("closed_chain_mechanism: results do not depend on the unit of length")
   for (int k = 0; k < kinds; ++k) {
     const closed_chain_mechanism in_m = constrained_body(constraint_kind(k)),
                                  in_mm = constrained_body(constraint_kind(k), mm);
-    const VectorXd guess = vector({.3, -.4, .2, .5, 1.1, -.7});
+    const VectorXd guess = vector_of({.3, -.4, .2, .5, 1.1, -.7});
     VectorXd scaled = guess;
     scaled.head<3>() *= mm;
     CHECK(in_mm.length() == doctest::Approx(mm * in_m.length()).epsilon(1e-15));
@@ -162,7 +157,7 @@ TEST_CASE("find_assembly_configurations: a four-bar has the solutions of Freuden
   const closed_chain_mechanism mechanism = four_bar(a, b, c, d);
   for (const double theta : {-2.5, 0., .4, 2., 3.1}) {
     const auto search =
-        find_assembly_configurations(mechanism, {0}, vector({theta}), {.random_starts = 30});
+        find_assembly_configurations(mechanism, {0}, vector_of({theta}), {.random_starts = 30});
     CHECK(search.missing_probability() == 0);
     REQUIRE(search.positions.size() == 2);
     const double k = a * std::cos(theta) - d, s = a * std::sin(theta);
@@ -178,12 +173,12 @@ TEST_CASE("find_assembly_configurations: a four-bar has the solutions of Freuden
       CHECK(nearest < 1e-13);
     }
   }
-  CHECK(
-      find_assembly_configurations(four_bar(.2, .5, .4, 3), {0}, vector({0}), {.random_starts = 10})
-          .positions.empty());
+  CHECK(find_assembly_configurations(four_bar(.2, .5, .4, 3), {0}, vector_of({0}),
+                                     {.random_starts = 10})
+            .positions.empty());
   CHECK(
       duet_test::message_of<loop_closure_failure>([] {
-        (void)four_bar(.2, .5, .4, 3).assemble(vector({0, 0, 0}));
+        (void)four_bar(.2, .5, .4, 3).assemble(vector_of({0, 0, 0}));
       })
           .starts_with(
               "duet: closed_chain_mechanism: no configuration near the initial guess, residual "));
@@ -197,7 +192,7 @@ TEST_CASE("find_assembly_configurations: joint limits bound the guesses and are 
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"coupler", at_point(.5, 0)}, {"rocker", at_point(.4, 0)}}}});
   const auto search =
-      find_assembly_configurations(mechanism, {0}, vector({2}), {.random_starts = 40});
+      find_assembly_configurations(mechanism, {0}, vector_of({2}), {.random_starts = 40});
   int within = 0;
   for (const assembly_configuration& each : search.positions) {
     CHECK(each.within_limits == (each.coordinates[2] >= 0 && each.coordinates[2] <= 3));
@@ -208,7 +203,7 @@ TEST_CASE("find_assembly_configurations: joint limits bound the guesses and are 
 
 TEST_CASE("closed: fixed coordinates keep their values, and the step is the shortest") {
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  const VectorXd q = mechanism.assemble(vector({2, -1.6, 2}), {0});
+  const VectorXd q = mechanism.assemble(vector_of({2, -1.6, 2}), {0});
   CHECK(q[0] == 2);
   CHECK(std::abs(q[2] - 2.002371114722) < 1e-12);
   const VectorXd again = mechanism.assemble(q);
@@ -216,7 +211,7 @@ TEST_CASE("closed: fixed coordinates keep their values, and the step is the shor
   // A guess next to the curve of configurations returns to it orthogonally to its tangent.
   const Eigen::JacobiSVD<MatrixXd> svd(mechanism.constraint_jacobian(q), Eigen::ComputeFullV);
   const VectorXd tangent = svd.matrixV().col(2);
-  const VectorXd nearby = q + 1e-4 * vector({.3, .5, -.2});
+  const VectorXd nearby = q + 1e-4 * vector_of({.3, .5, -.2});
   CHECK(std::abs((mechanism.assemble(nearby) - nearby).dot(tangent)) < 1e-8);
 }
 
@@ -248,13 +243,13 @@ TEST_CASE("closed_chain_mechanism: errors name the constraint, the frame and the
         }) == "duet: frame_with_z_axis: the direction (0, 0, 0) is zero or not finite");
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
   CHECK(message_of([&] {
-          (void)mechanism.assemble(vector({0, 0, 0}), {3});
+          (void)mechanism.assemble(vector_of({0, 0, 0}), {3});
         }) == "duet: closed_chain_mechanism: coordinate 3 does not exist, the mechanism has 3");
   CHECK(message_of([&] {
-          (void)mechanism.assemble(vector({0, 0, std::nan("")}));
+          (void)mechanism.assemble(vector_of({0, 0, std::nan("")}));
         }) == "duet: closed_chain_mechanism: the initial guess is not finite");
   CHECK(message_of([&] {
-          (void)mechanism.assemble(vector({0, 0}));
+          (void)mechanism.assemble(vector_of({0, 0}));
         }) == "duet: kinematic_tree: 2 coordinates (expected 3)");
   CHECK(message_of([&] { (void)find_assembly_configurations(mechanism, {0}, VectorXd()); }) ==
         "duet: find_assembly_configurations: 0 values for 1 fixed coordinates");
@@ -295,4 +290,5 @@ TEST_CASE("find_assembly_configurations: stops at the missing probability or at 
   CHECK(int(curve.positions.size()) == curve.converged);
 }
 
+} // namespace
 } // namespace test_robotics_closed_tree

@@ -2,15 +2,25 @@
 #pragma once
 
 #include "../../src/robotics/tip_pose.hpp"
-#include "support/test.hpp"
 
-#include <duet/duet.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/motion_plan.hpp>
+#include <duet/kinematics/serial_chain.hpp>
 #include <duet/robotics/all_inverse_kinematics.hpp>
 
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
 
 /// \file
 /// Complete search for the parameter up to which an arm of six joints can follow a path.

@@ -27,97 +27,6 @@ M random_matrix(duet_test::random_source& random, M m) {
   return m;
 }
 
-} // namespace
-
-TEST_CASE("gram_factors: solve systems; an unknown without a positive pivot is 0") {
-  duet_test::random_source random(4);
-  for (int k = 0; k < 10; ++k) {
-    const detail::gram_matrix root = random_matrix(random, detail::gram_matrix());
-    const vector6<double> x = random_matrix(random, vector6<double>());
-    // Only the lower half of a = root rootᵀ + 1/100 is used. The last unknown has a pivot of zero
-    // or below in `cut`.
-    const detail::gram_matrix a = root * root.transpose() + .01 * detail::gram_matrix::Identity();
-    detail::gram_matrix lower = a;
-    lower.triangularView<Eigen::StrictlyUpper>().setConstant(NAN);
-    detail::gram_matrix cut = lower;
-    cut.row(5).setZero();
-    cut(5, 5) = -k % 2;
-    const vector6<double> b = a * x;
-    const detail::gram_factors full(lower), reduced(cut);
-    CHECK(full.is_positive());
-    CHECK((full.solve(b) - x).norm() < 1e-10 * x.norm());
-    CHECK(!reduced.is_positive());
-    const vector6<double> found = reduced.solve(b);
-    CHECK(found[5] == 0);
-    CHECK((a * found - b).head<5>().norm() < 1e-10 * x.norm());
-  }
-}
-
-TEST_CASE("least_distance: agrees with Dykstra's alternating projections") {
-  duet_test::random_source random(1);
-  int moved = 0;
-  for (int k = 0; k < 200; ++k) {
-    const int n = random.integer(1, 10), m = random.integer(0, 20);
-    const vector inside = random_matrix(random, vector(n));
-    std::vector<inequality<vector>> inequalities;
-    for (int i = 0; i < m; ++i) {
-      const vector normal = random_matrix(random, vector(n));
-      inequalities.push_back({normal, normal.dot(inside) - .3 * std::abs(random.normal())});
-    }
-    if (m > 0) { // the same twice, and one that says nothing
-      inequalities.push_back(inequalities[0]);
-      inequalities.push_back({vector::Zero(n), -1});
-    }
-    const auto x = detail::least_distance(inequalities, n);
-    REQUIRE(x);
-    for (const auto& each : inequalities) {
-      CHECK(each.normal.dot(*x) - each.bound > -1e-10);
-    }
-    // Optimal: x·(y − x) ≥ 0 for all other solutions y.
-    CHECK(x->dot(inside - *x) > -1e-9);
-    // Dykstra's alternating projections end at the same point.
-    if (n < 4) {
-      vector y = vector::Zero(n);
-      std::vector<vector> increments(inequalities.size(), y);
-      for (int round = 0; round < 500; ++round) {
-        for (std::size_t i = 0; i < inequalities.size(); ++i) {
-          const vector from = y + increments[i];
-          const double length2 = std::max(inequalities[i].normal.squaredNorm(), 1e-300);
-          y = from + inequalities[i].normal *
-                         (std::max(0.0, inequalities[i].bound - inequalities[i].normal.dot(from)) /
-                          length2);
-          increments[i] = from - y;
-        }
-      }
-      CHECK((y - *x).norm() < 1e-3);
-      moved += x->norm() > .1;
-    }
-  }
-  CHECK(moved > 10);
-}
-
-TEST_CASE("least_distance: infeasible inequalities have no solution") {
-  duet_test::random_source random(2);
-  for (int k = 0; k < 100; ++k) {
-    const int n = random.integer(1, 8), m = random.integer(1, 20);
-    // A positive combination of all is 0 ≥ 1e-3.
-    std::vector<inequality<vector>> inequalities;
-    inequality<vector> sum{vector::Zero(n), 0};
-    for (int i = 0; i < m; ++i) {
-      inequalities.push_back({random_matrix(random, vector(n)), -std::abs(random.normal())});
-      const double u = random.uniform(.1, 2);
-      sum.normal += u * inequalities.back().normal;
-      sum.bound += u * inequalities.back().bound;
-    }
-    inequalities.push_back({-sum.normal, 1e-3 - sum.bound});
-    CHECK(!detail::least_distance(inequalities, n));
-  }
-  using list = std::vector<inequality<vector>>;
-  CHECK(!detail::least_distance(list{{vector::Zero(3), 1e-3}}, 3));
-  CHECK(detail::least_distance(list{{vector::Zero(3), -1e-3}}, 3) == vector(vector::Zero(3)));
-  CHECK(detail::least_distance(list{}, 3) == vector(vector::Zero(3)));
-}
-
 TEST_CASE("constrained_step: satisfies twist, limits and inequalities and is nearest to the "
           "preferred step") {
   duet_test::random_source random(3);
@@ -177,4 +86,5 @@ TEST_CASE("constrained_step: without redundancy returns the only step or none") 
   CHECK(!detail::constrained_step(j, six(2 * e), none, six(-far), far, inequalities).step);
 }
 
+} // namespace
 } // namespace test_robotics_constrained_step

@@ -78,11 +78,10 @@ TEST_CASE("differentiable_branch: derivatives with respect to the geometry of th
 TEST_CASE("differentiable_branch: throws no_convergence where branches meet") {
   six theta;
   theta << .3, -1.1, 1.4, -.5, 0, .2;
-  CHECK_THROWS_AS(static_cast<void>(differentiable_branch(arm, theta, arm.pose(theta))),
-                  no_convergence);
-  CHECK_THROWS_WITH_AS(static_cast<void>(differentiable_branch(
-                           arm, Eigen::VectorXd(Eigen::VectorXd::Zero(7)), arm.pose(theta))),
-                       "duet: differentiable_branch: 7 coordinates (expected 6)", invalid_input);
+  CHECK_THROWS_AS((void)differentiable_branch(arm, theta, arm.pose(theta)), no_convergence);
+  CHECK_THROWS_WITH_AS(
+      (void)differentiable_branch(arm, Eigen::VectorXd(Eigen::VectorXd::Zero(7)), arm.pose(theta)),
+      "duet: differentiable_branch: 7 coordinates (expected 6)", invalid_input);
 }
 
 } // namespace

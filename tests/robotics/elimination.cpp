@@ -43,8 +43,6 @@ double difference(const loop_equation& loop, const six_coordinates& a, const six
   return largest;
 }
 
-} // namespace
-
 /// Elimination is tested alone, because Newton's method and other orders of the joints would hide
 /// wrong initial guesses.
 TEST_CASE(
@@ -75,4 +73,5 @@ TEST_CASE(
   }
 }
 
+} // namespace
 } // namespace test_robotics_elimination

@@ -34,8 +34,6 @@ void check_reached(const Plan& plan, double last) {
   CHECK(plan.joints.front() == gripper_down());
 }
 
-} // namespace
-
 TEST_CASE("follow_path: passes through each pose of a list along screw motions") {
   const poses list = corners();
   const auto path = [&](double u) {
@@ -125,9 +123,8 @@ TEST_CASE("follow_path: an objective that is nan at the start is rejected") {
   };
   const char* const what = "duet: follow_path: the objective is nan at the start, joints "
                            "(0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
-  CHECK_THROWS_WITH_AS(static_cast<void>(follow_path(arm, start, path, 0, 1, {}, nowhere)), what,
-                       invalid_input);
-  CHECK_THROWS_WITH_AS(static_cast<void>(plan_screw_motion(arm, start, path(1), {}, nowhere)), what,
+  CHECK_THROWS_WITH_AS((void)follow_path(arm, start, path, 0, 1, {}, nowhere), what, invalid_input);
+  CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, path(1), {}, nowhere), what,
                        invalid_input);
 }
 
@@ -166,4 +163,5 @@ TEST_CASE("follow_path: invalid paths and starts are rejected") {
                   invalid_input);
 }
 
+} // namespace
 } // namespace test_robotics_follow_path

@@ -114,6 +114,16 @@ bool is_initialized() {
   return has_values;
 }
 
+/// Checks each, and names it.
+template <class... T>
+void check() {
+  const auto check_one = []<class U>(const U*) {
+    INFO(__PRETTY_FUNCTION__);
+    CHECK(is_initialized<U>());
+  };
+  (check_one(static_cast<const T*>(nullptr)), ...);
+}
+
 struct without_value {
   Vector3d direction;
   int count = 0;
@@ -122,130 +132,38 @@ struct without_value {
 TEST_CASE("default-initialized aggregates have the documented default values") {
   CHECK_FALSE(is_initialized<without_value>());
 
-#define DUET_CHECK(...) CHECK_MESSAGE((is_initialized<__VA_ARGS__>()), #__VA_ARGS__)
-  DUET_CHECK(comparison_options);
-  DUET_CHECK(jacobian_options);
-  DUET_CHECK(jacobian_judgement);
-  DUET_CHECK(jacobian_slip);
-  DUET_CHECK(jacobian_counterexample);
-  DUET_CHECK(worst_errors);
-  DUET_CHECK(counterexample);
-  DUET_CHECK(comparison);
-  DUET_CHECK(real_numbers);
-  DUET_CHECK(vectors<3>);
-  DUET_CHECK(arrays<2, real_numbers>);
-  DUET_CHECK(derivative_and_error<double>);
-  DUET_CHECK(derivative_and_error<Vector3d>);
-  DUET_CHECK(rotations);
-  DUET_CHECK(quaternions);
-  DUET_CHECK(rigid_motions);
-  DUET_CHECK(execution);
-  DUET_CHECK(progress);
-  DUET_CHECK(csv_row);
-  DUET_CHECK(value_and_derivative<Vector3d, Vector3d>);
-  DUET_CHECK(value_and_gradient<double, Vector3d>);
-  DUET_CHECK(value_gradient_and_hessian<double, Vector3d, Matrix3d>);
-  DUET_CHECK(newton_options);
-  DUET_CHECK(loss_function);
-  DUET_CHECK(nonlinear_least_squares_options);
-  DUET_CHECK(nonlinear_least_squares_result<Vector3d>);
-  DUET_CHECK(value_and_jacobian<Vector3d, Matrix3d>);
-  DUET_CHECK(value_gradient_and_product<double, Vector3d>);
-  DUET_CHECK(value_and_mixed_hessian<double, Matrix3d>);
-  DUET_CHECK(symmetric_eigen_result<Vector3d, Matrix3d>);
-  DUET_CHECK(singular_value_decomposition<Matrix3d, Vector3d, Matrix3d>);
-  DUET_CHECK(scaled_pose<double>);
-  DUET_CHECK(nearest_result<double>);
-  DUET_CHECK(plane<double>);
-  DUET_CHECK(screw_motion<double>);
-  DUET_CHECK(constrained_mechanism_options);
-  DUET_CHECK(collision_box);
-  DUET_CHECK(collision_cylinder);
-  DUET_CHECK(collision_capsule);
-  DUET_CHECK(collision_sphere);
-  DUET_CHECK(collision_mesh);
-  DUET_CHECK(collision_shape);
-  DUET_CHECK(euler_sequence);
-  DUET_CHECK(dh_row<double>);
-  DUET_CHECK(jacobian_and_rate<Matrix3d>);
-  DUET_CHECK(placement<double>);
-  DUET_CHECK(joint_limits<double>);
-  DUET_CHECK(joint<double>);
-  DUET_CHECK(custom_joint<std::identity>);
-  DUET_CHECK(attached_frame<double>);
-  DUET_CHECK(relative_frame);
-  DUET_CHECK(driven_motion_options);
-  DUET_CHECK(assembly_configuration);
-  DUET_CHECK(assembly_search_result);
-  DUET_CHECK(assembly_search_options);
-  DUET_CHECK(dead_point);
-  DUET_CHECK(branch_point);
-  DUET_CHECK(motion_trace);
-  DUET_CHECK(trace_options);
-  DUET_CHECK(triangle_mesh);
-  DUET_CHECK(mobility_result);
-  DUET_CHECK(link_inertia);
-  DUET_CHECK(tree_link);
-  DUET_CHECK(joint_mimic);
-  DUET_CHECK(tree_joint);
-  DUET_CHECK(robot_description);
-  DUET_CHECK(constraint_frame);
-  DUET_CHECK(loop_constraint);
-  DUET_CHECK(loop_constraints);
-  DUET_CHECK(urdf_joint);
-  DUET_CHECK(urdf_unknown_element);
-  DUET_CHECK(urdf_summary);
-  DUET_CHECK(link_pair);
-  DUET_CHECK(urdf_link);
-  DUET_CHECK(inverse_kinematics_solution);
-  DUET_CHECK(all_inverse_kinematics_result);
-  DUET_CHECK(bounding_capsules_result);
-  DUET_CHECK(collision_pair);
-  DUET_CHECK(scene);
-  DUET_CHECK(chain_clearance<double>);
-  DUET_CHECK(proximity<double>);
-  DUET_CHECK(inverse_kinematics_options);
-  DUET_CHECK(inverse_kinematics_result);
-  DUET_CHECK(joint_state<Vector3d>);
-  DUET_CHECK(pose_error);
-  DUET_CHECK(plan_options);
-  DUET_CHECK(motion_plan);
-  DUET_CHECK(preferred_posture<Vector3d>);
-  DUET_CHECK(twist_constraint);
-  DUET_CHECK(task_space_region);
-  DUET_CHECK(printed_plan_options);
-  DUET_CHECK(self_motion_options);
-  DUET_CHECK(self_motion_curve);
-  DUET_CHECK(sphere<double>);
-  DUET_CHECK(box<double>);
-  DUET_CHECK(half_space<double>);
-  DUET_CHECK(start_options);
-  DUET_CHECK(start_search_result);
-  DUET_CHECK(time_parametrisation_options);
-  DUET_CHECK(adaptive_table_options);
-  DUET_CHECK(clamped<>);
-  DUET_CHECK(clamped<twist>);
-  DUET_CHECK(end_acceleration<>);
-  DUET_CHECK(fully_clamped<>);
-  DUET_CHECK(fit_options);
-  DUET_CHECK(chain_formula_options);
-  DUET_CHECK(motion_covariance<double, 3>);
-  DUET_CHECK(interpolation_report);
-  DUET_CHECK(span_hint);
-  DUET_CHECK(lookup_table<double>);
-  DUET_CHECK(bspline_span<4, double>);
-  DUET_CHECK(knot_jacobian_result<double, 4>);
-  DUET_CHECK(curve_jacobian<double, 4, 3, body_frame>);
-  DUET_CHECK(point_jacobian_result<double, 4>);
-  DUET_CHECK(split_jacobian<double, 4, 3, body_frame>);
-  DUET_CHECK(motion<double>);
-  DUET_CHECK(motion<dual<double, 1, screw_tag>>);
-  DUET_CHECK(printed_derivatives<double>);
-  DUET_CHECK(recording_issue);
-  DUET_CHECK(table_columns);
-  DUET_CHECK(recording<double>);
-  DUET_CHECK(lane_mask<double, 4>);
-#undef DUET_CHECK
+  check<comparison_options, jacobian_options, jacobian_judgement, jacobian_slip,
+        jacobian_counterexample, worst_errors, counterexample, comparison, real_numbers, vectors<3>,
+        arrays<2, real_numbers>, derivative_and_error<double>, derivative_and_error<Vector3d>,
+        rotations, quaternions, rigid_motions, execution, progress, csv_row,
+        value_and_derivative<Vector3d, Vector3d>, value_and_gradient<double, Vector3d>,
+        value_gradient_and_hessian<double, Vector3d, Matrix3d>, newton_options, loss_function,
+        nonlinear_least_squares_options, nonlinear_least_squares_result<Vector3d>,
+        value_and_jacobian<Vector3d, Matrix3d>, value_gradient_and_product<double, Vector3d>,
+        value_and_mixed_hessian<double, Matrix3d>, symmetric_eigen_result<Vector3d, Matrix3d>,
+        singular_value_decomposition<Matrix3d, Vector3d, Matrix3d>, scaled_pose<double>,
+        nearest_result<double>, plane<double>, screw_motion<double>, constrained_mechanism_options,
+        collision_box, collision_cylinder, collision_capsule, collision_sphere, collision_mesh,
+        collision_shape, euler_sequence, dh_row<double>, jacobian_and_rate<Matrix3d>,
+        placement<double>, joint_limits<double>, joint<double>, custom_joint<std::identity>,
+        attached_frame<double>, relative_frame, driven_motion_options, assembly_configuration,
+        assembly_search_result, assembly_search_options, dead_point, branch_point, motion_trace,
+        trace_options, triangle_mesh, mobility_result, link_inertia, tree_link, joint_mimic,
+        tree_joint, robot_description, constraint_frame, loop_constraint, loop_constraints,
+        urdf_joint, urdf_unknown_element, urdf_summary, link_pair, urdf_link,
+        inverse_kinematics_solution, all_inverse_kinematics_result, bounding_capsules_result,
+        collision_pair, scene, chain_clearance<double>, proximity<double>,
+        inverse_kinematics_options, inverse_kinematics_result, joint_state<Vector3d>, pose_error,
+        plan_options, motion_plan, preferred_posture<Vector3d>, twist_constraint, task_space_region,
+        printed_plan_options, self_motion_options, self_motion_curve, sphere<double>, box<double>,
+        half_space<double>, start_options, start_search_result, time_parametrisation_options,
+        adaptive_table_options, clamped<>, clamped<twist>, end_acceleration<>, fully_clamped<>,
+        fit_options, chain_formula_options, motion_covariance<double, 3>, interpolation_report,
+        span_hint, lookup_table<double>, bspline_span<4, double>, knot_jacobian_result<double, 4>,
+        curve_jacobian<double, 4, 3, body_frame>, point_jacobian_result<double, 4>,
+        split_jacobian<double, 4, 3, body_frame>, motion<double>,
+        motion<dual<double, 1, screw_tag>>, printed_derivatives<double>, recording_issue,
+        table_columns, recording<double>, lane_mask<double, 4>>();
 
   // These cannot be made without values.
   static_assert(!std::is_default_constructible_v<capsule<double>>);

@@ -9,24 +9,18 @@
 #include <duet/duet.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 
-#include <span>
-
 namespace test_robotics_inverse_kinematics {
 namespace {
 
 using namespace duet;
 using duet_test::configuration;
 using duet_test::is_within_limits;
+using duet_test::known_arms;
 /// Chain of any number of joints, so that the search is compiled once.
 using chain = bounded_chain<16>;
 using result = inverse_kinematics_result;
 using vector = detail::joint_vector<double, -16>;
 using std::numbers::pi;
-
-std::vector<chain> arms() {
-  return {robots::panda().table(), robots::iiwa14().table(), robots::ur5e().table(),
-          robots::baxter_left().table()};
-}
 
 /// Error of the tip by matrices: for a rotation by φ, |R − 1| = 2√2 |sin φ/2|.
 pose_error deviation_by_matrices(const chain& arm, const vector& theta,
@@ -49,21 +43,11 @@ bool is_solution(const chain& arm, const result& found, const dual_quaternion<do
          std::abs(deviation.rotation - found.deviation.rotation) < rounding;
 }
 
-bool are_identical(const result& a, const result& b) {
-  return a.joints == b.joints && a.deviation.translation == b.deviation.translation &&
-         a.deviation.rotation == b.deviation.rotation && a.iterations == b.iterations &&
-         a.restarts == b.restarts && a.reason == b.reason;
-}
-
-/// Three prismatic and three revolute joints whose axes meet in one point.
+/// Slides whose first alone has limits.
 chain gantry(double lower, double upper) {
-  std::array<joint<>, 6> joints;
-  for (std::size_t i = 0; i < 6; ++i) {
-    joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
-    joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
-  }
-  joints[0].limits = {lower, upper};
-  return serial_chain<6>(joints);
+  chain result = duet_test::portal({}, {});
+  result.set_limits(0, {lower, upper});
+  return result;
 }
 
 dual_quaternion<double> at(double x, double y, double z,
@@ -71,14 +55,12 @@ dual_quaternion<double> at(double x, double y, double z,
   return pose(from_rotation_vector(rotation_part), Eigen::Vector3d(x, y, z));
 }
 
-} // namespace
-
 TEST_CASE("inverse_kinematics: reachable poses of four arms are found from random starts") {
   const std::uint64_t seed = 31;
   CAPTURE(seed);
   duet_test::random_source random(seed);
-  for (const chain& arm : arms()) {
-    CAPTURE(&arm - arms().data());
+  for (const chain& arm : known_arms()) {
+    CAPTURE(&arm - known_arms().data());
     int solved = 0;
     for (int k = 0; k < 100; ++k) {
       const auto goal = arm.pose(configuration(arm, random));
@@ -91,7 +73,7 @@ TEST_CASE("inverse_kinematics: reachable poses of four arms are found from rando
 
 TEST_CASE("inverse_kinematics: goals and starts at singularities and limits") {
   duet_test::random_source random(32);
-  for (const chain& arm : arms()) {
+  for (const chain& arm : known_arms()) {
     const vector lower = lower_limits(arm), upper = upper_limits(arm);
     const vector zero = vector::Zero(arm.size());
     vector folded = zero;
@@ -116,7 +98,7 @@ TEST_CASE("inverse_kinematics: independent of the sign of the goal; separate sma
   const vector start = configuration(arm, random);
   const auto goal = arm.pose(configuration(arm, random));
   const auto found = inverse_kinematics(arm, goal, start);
-  CHECK(are_identical(found, inverse_kinematics(arm, -goal, start)));
+  CHECK(found.joints == inverse_kinematics(arm, -goal, start).joints);
   const auto close = inverse_kinematics(arm, goal, start, {.tolerance = 1e-13});
   CHECK(is_solution(arm, close, goal, 1e-13));
   // Separate tolerances of length and angle.
@@ -156,45 +138,8 @@ TEST_CASE("inverse_kinematics: all joint types; revolute joints are wrapped into
                     ur5e.pose(beyond)));
 }
 
-TEST_CASE("inverse_kinematics: results do not depend on the unit of length") {
-  const auto in_units = [](double unit) {
-    std::array<joint<>, 6> joints;
-    for (std::size_t i = 0; i < 6; ++i) {
-      joints[i].origin.translation = {.25 * unit, .125 * unit, 0};
-      joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
-    }
-    return chain(serial_chain<6>(joints));
-  };
-  const chain metres = in_units(1), units = in_units(1024);
-  const vector theta = vector::LinSpaced(6, -1, 1);
-  const vector start = vector::Constant(6, .1);
-  const inverse_kinematics_options few{.tolerance = 1e-15, .max_restarts = 0, .max_iterations = 5};
-  const auto found = inverse_kinematics(units, units.pose(theta), start, few);
-  CHECK(found.iterations == 5);
-  CHECK(found.joints == inverse_kinematics(metres, metres.pose(theta), start, few).joints);
-}
-
 TEST_CASE("inverse_kinematics: independent of the unit with prismatic joints and out of reach") {
   // With units whose ratio is a power of two, results are equal to the last bit.
-  const auto stanford = [](double unit) {
-    const std::array<dh_row<>, 6> rows{
-        {{.d = .412 * unit, .alpha = -pi / 2, .limits = {-2.9, 2.9}},
-         {.d = .154 * unit, .alpha = pi / 2, .limits = {-2.9, 2.9}},
-         {.limits = {.3048 * unit, 1.27 * unit}, .kind = joint_kind::prismatic},
-         {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
-         {.alpha = pi / 2, .limits = {-1.5, 1.5}},
-         {.d = .263 * unit, .limits = {-2.9, 2.9}}}};
-    return chain(from_dh(rows));
-  };
-  const auto portal = [](double unit) {
-    std::array<joint<>, 6> joints;
-    for (std::size_t i = 0; i < 6; ++i) {
-      joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
-      joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
-      joints[i].limits = i < 3 ? joint_limits<>{-unit, 2 * unit} : joint_limits<>{-3, 3};
-    }
-    return chain(serial_chain<6>(joints));
-  };
   const auto screw = [](double unit) {
     std::array<joint<>, 6> joints;
     for (std::size_t i = 0; i < 6; ++i) {
@@ -243,8 +188,10 @@ TEST_CASE("inverse_kinematics: independent of the unit with prismatic joints and
     CHECK((may_fail || solved == 40));
     return restarts;
   };
-  CHECK(compare(stanford(1), stanford(unit), false) > 0); // random configurations, too
-  compare(portal(1), portal(unit), false);
+  CHECK(compare(duet_test::stanford_arm(1), duet_test::stanford_arm(unit), false) >
+        0); // random configurations, too
+  compare(duet_test::portal({-1, 2}, {-3, 3}), duet_test::portal({-unit, 2 * unit}, {-3, 3}),
+          false);
   compare(screw(1), screw(unit), true);
 }
 
@@ -335,7 +282,7 @@ TEST_CASE("inverse_kinematics: a pose within a tolerance, for arms with fewer th
     }
   }
   // A whole pose, and invalid tolerances.
-  const auto panda = arms()[0];
+  const auto panda = known_arms()[0];
   const auto goal = panda.pose(configuration(panda, random));
   CHECK(is_solution(panda,
                     inverse_kinematics(panda, pose_goal(goal, 0), configuration(panda, random)),
@@ -348,13 +295,7 @@ TEST_CASE("inverse_kinematics: a pose within a tolerance, for arms with fewer th
 
 TEST_CASE("inverse_kinematics: out of reach, the result is the nearest pose") {
   // For three prismatic joints the solution is known, with several limits active at once.
-  std::array<joint<>, 6> joints;
-  for (std::size_t i = 0; i < 6; ++i) {
-    joints[i].kind = i < 3 ? joint_kind::prismatic : joint_kind::revolute;
-    joints[i].axis = {double(i % 3 == 0), double(i % 3 == 1), double(i % 3 == 2)};
-    joints[i].limits = i < 3 ? joint_limits<>{-1, 1} : joint_limits<>{-1.2, 1.2};
-  }
-  const chain portal = serial_chain<6>(joints);
+  const chain portal = duet_test::portal({-1, 1}, {-1.2, 1.2});
   const auto slid = inverse_kinematics(portal, at(3, .25, -5, {.3, -.2, .4}),
                                        vector::Zero(6).eval(), {.max_restarts = 0});
   CHECK(slid.reason == stop_reason::out_of_reach);
@@ -367,7 +308,7 @@ TEST_CASE("inverse_kinematics: out of reach, the result is the nearest pose") {
 
   // For arms: the gradient by dual numbers vanishes, and no random configuration is nearer.
   duet_test::random_source random(42);
-  for (const chain& arm : arms()) {
+  for (const chain& arm : known_arms()) {
     double scale = detail::length_of(detail::components(arm.tip().offset.translation));
     for (int i = 1; i < arm.size(); ++i) {
       scale += detail::length_of(arm.steps()[std::size_t(i)].offset);
@@ -443,93 +384,57 @@ TEST_CASE("squared_error_of: gradient and Hessian agree with dual numbers") {
   }
 }
 
-TEST_CASE(
-    "inverse_kinematics: many goals give the results of single calls, for any number of threads") {
-  const chain arm = robots::baxter_left().table();
-  duet_test::random_source random(36);
-  const vector start = configuration(arm, random);
-  std::vector<dual_quaternion<double>> goals;
-  for (int k = 0; k < 20; ++k) {
-    goals.push_back(arm.pose(configuration(arm, random)));
-  }
-  goals[3] = at(.9, .2, .9);
-  const inverse_kinematics_options options{.max_restarts = 10, .seed = 5};
-  std::vector<result> one_by_one, out(goals.size());
-  for (const auto& goal : goals) {
-    one_by_one.push_back(inverse_kinematics(arm, goal, start, options));
-  }
-  for (const unsigned threads : {1U, 2U, 3U}) {
-    std::fill(out.begin(), out.end(), result{});
-    inverse_kinematics(arm, goals, start, out, options, execution{threads});
-    CHECK(std::equal(out.begin(), out.end(), one_by_one.begin(), are_identical));
-    std::fill(out.begin(), out.end(), result{});
-    const auto enough = [](const progress& p) { return p.done < 4; };
-    std::size_t completed = 0;
-    try {
-      inverse_kinematics(arm, goals, start, out, options, {threads, enough});
-    } catch (const cancelled& early) {
-      completed = early.completed();
-    }
-    CHECK(completed >= 4);
-    CHECK(completed < 4 + threads);
-    CHECK(std::equal(out.begin(), out.begin() + std::ptrdiff_t(completed), one_by_one.begin(),
-                     are_identical));
-  }
-  CHECK_THROWS_WITH_AS(
-      inverse_kinematics(arm, goals, start, std::span(out).first(7), {}, all_cores),
-      "duet: inverse_kinematics: 20 goals, but room for 7 results", invalid_input);
-  goals[17] = at(0, 0, 0) * 2.0;
-  goals[18] = goals[18] * std::nan("");
-  out[0].iterations = -1;
-  CHECK_THROWS_WITH_AS(
-      inverse_kinematics(arm, goals, start, out, {}, all_cores),
-      "duet: inverse_kinematics: goal 17 is not a unit dual quaternion: |p|^2 = 4, "
-      "p.q = 0 (expected 1 and 0)",
-      invalid_input);
-  CHECK(out[0].iterations == -1); // nothing was begun
-}
-
 TEST_CASE("inverse_kinematics: invalid goals, starts and options are rejected") {
   const chain arm = robots::panda().table();
   const vector start = (lower_limits(arm) + upper_limits(arm)) / 2;
   const auto goal = arm.pose(start);
-  const auto half = make_dual_quaternion(quaternion<double>(1), quaternion<double>(.5));
-  CHECK_THROWS_WITH_AS(
-      (void)inverse_kinematics(arm, half, start),
-      "duet: inverse_kinematics: the goal is not a unit dual quaternion: |p|^2 = 1, "
-      "p.q = 0.5 (expected 1 and 0)",
-      invalid_input);
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, at(.1, std::nan(""), .3), start),
-                       "duet: inverse_kinematics: the translation of the goal is not finite: (nan, "
-                       "nan, nan)",
-                       invalid_input);
-  const auto not_a_rotation =
-      pose(quaternion<double>(1, 0, std::nan(""), 0), vector3<double>(1, 2, 3));
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, not_a_rotation, start),
-                       "duet: inverse_kinematics: the rotation of the goal is not finite: (1, 0, "
-                       "nan, 0)",
-                       invalid_input);
-  CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
-  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, goal, vector::Zero(6).eval()),
-                       "duet: serial_chain: 6 coordinates (expected 7)", invalid_input);
   vector broken = start;
   broken[4] = INFINITY;
-  CHECK_THROWS_WITH_AS(
-      (void)inverse_kinematics(arm, goal, broken),
-      "duet: inverse_kinematics: joint 4 of the start is inf (expected a finite number)",
-      invalid_input);
-  CHECK_THROWS_WITH_AS(
-      (void)inverse_kinematics(arm, goal, start, {.tolerance = 0}),
-      "duet: inverse_kinematics: tolerance.translation is 0 (expected a positive number)",
-      invalid_input);
-  CHECK_THROWS_WITH_AS(
-      (void)inverse_kinematics(arm, goal, start, {.tolerance = {1e-6, -1}}),
-      "duet: inverse_kinematics: tolerance.rotation is -1 (expected a positive number)",
-      invalid_input);
-  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.tolerance = std::nan("")}),
-                  invalid_input);
-  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.max_restarts = -1}), invalid_input);
-  CHECK_THROWS_AS((void)inverse_kinematics(arm, goal, start, {.max_iterations = 0}), invalid_input);
+  struct row {
+    dual_quaternion<double> goal;
+    vector start;
+    inverse_kinematics_options options;
+    const char* message;
+  };
+  const double nan = std::nan("");
+  for (const row& each : std::initializer_list<row>{
+           {make_dual_quaternion(quaternion<double>(1), quaternion<double>(.5)),
+            start,
+            {},
+            "inverse_kinematics: the goal is not a unit dual quaternion: |p|^2 = 1, p.q = 0.5 "
+            "(expected 1 and 0)"},
+           {at(.1, nan, .3),
+            start,
+            {},
+            "inverse_kinematics: the translation of the goal is not finite: (nan, nan, nan)"},
+           {pose(quaternion<double>(1, 0, nan, 0), vector3<double>(1, 2, 3)),
+            start,
+            {},
+            "inverse_kinematics: the rotation of the goal is not finite: (1, 0, nan, 0)"},
+           {goal, vector::Zero(6), {}, "serial_chain: 6 coordinates (expected 7)"},
+           {goal,
+            broken,
+            {},
+            "inverse_kinematics: joint 4 of the start is inf (expected a finite number)"},
+           {goal,
+            start,
+            {.tolerance = 0},
+            "inverse_kinematics: tolerance.translation is 0 (expected a positive number)"},
+           {goal,
+            start,
+            {.tolerance = {1e-6, -1}},
+            "inverse_kinematics: tolerance.rotation is -1 (expected a positive number)"},
+           {goal,
+            start,
+            {.tolerance = nan},
+            "inverse_kinematics: tolerance.translation is nan (expected a positive number)"},
+           {goal, start, {.max_restarts = -1}, ""},
+           {goal, start, {.max_iterations = 0}, ""}}) {
+    const std::string message = duet_test::message_of(
+        [&] { (void)inverse_kinematics(arm, each.goal, each.start, each.options); });
+    CHECK(message.starts_with("duet: " + std::string(each.message)));
+  }
+  CHECK(inverse_kinematics(arm, at(1e200, 0, 0), start).reason == stop_reason::out_of_reach);
 }
 
 TEST_CASE("error_twist: is the twist of the shorter screw motion") {
@@ -576,4 +481,5 @@ TEST_CASE("inverse_kinematics: allocates no memory, including restarts") {
   CHECK(tried.restarts == 5);
 }
 
+} // namespace
 } // namespace test_robotics_inverse_kinematics

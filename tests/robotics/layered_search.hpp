@@ -2,16 +2,28 @@
 #pragma once
 
 #include "../../src/robotics/tip_pose.hpp"
+
 #include "robotics/complete_search.hpp"
 
-#include <duet/duet.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/motion_plan.hpp>
+#include <duet/kinematics/serial_chain.hpp>
 #include <duet/robotics/self_motion_curves.hpp>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 /// \file
 /// Search for the parameter up to which an arm of seven joints can follow a path with self-motions.

@@ -73,8 +73,8 @@ TEST_CASE("inverse kinematics has the same result for chains of 100 joints and a
   CHECK(found.reason == stop_reason::reached);
   check_pose(arm, found.joints, goal);
   CHECK(duet_test::message_of([] {
-          static_cast<void>(inverse_kinematics(snake<101>(), dual_quaternion<double>(1.),
-                                               Eigen::VectorXd::Zero(101).eval()));
+          (void)inverse_kinematics(snake<101>(), dual_quaternion<double>(1.),
+                                   Eigen::VectorXd::Zero(101).eval());
         }) == "duet: the chain has 101 joints (expected at most 100)");
 }
 

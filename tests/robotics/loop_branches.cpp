@@ -81,8 +81,6 @@ VectorXd some_position(const closed_chain_mechanism& mechanism, duet::random_sou
   }
 }
 
-} // namespace
-
 TEST_CASE("trace: a flat parallelogram continues as parallelogram or antiparallelogram") {
   const std::array bar{.3, .8, .3, .8};
   const driven_motion motion(bars(bar), Vector3d(1, -1, 1), {0});
@@ -445,4 +443,5 @@ TEST_CASE("driven_motion: continues straight through branch points") {
   }
 }
 
+} // namespace
 } // namespace test_robotics_loop_branches

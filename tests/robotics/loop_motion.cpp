@@ -16,16 +16,13 @@ using duet_test::four_bar;
 using duet_test::max_abs_difference;
 using duet_test::real_100;
 using duet_test::revolute_joint;
+using duet_test::vector_of;
 using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double degree = std::numbers::pi / 180;
-
-VectorXd vector(std::initializer_list<double> x) {
-  return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
-}
 
 /// The rocker's angle by Freudenstein's equation.
 template <class T>
@@ -67,11 +64,9 @@ std::array<T, 2> meeting_point(double foot, double crank, double coupler, const 
   return {ax + dx / 2 - up * dy, ay + dy / 2 + up * dx};
 }
 
-} // namespace
-
 TEST_CASE("driven_motion: a four-bar agrees with Freudenstein's equation over full turns up to "
           "third derivatives") {
-  const driven_motion by_crank(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0});
+  const driven_motion by_crank(four_bar(.2, .5, .4, .55), vector_of({2, -1, 1.7}), {0});
   for (double theta = -700 * degree; theta < 800 * degree; theta += 33 * degree) {
     const auto x = derivatives<3>(by_crank, theta);
     const auto expected =
@@ -95,7 +90,7 @@ TEST_CASE("driven_motion: derivatives of a spatial four-bar agree with 100-digit
                                                                    {"crank", at_point(.3, 0, .1)},
                                                                    {"rocker", at_point(.6, .1, 0)},
                                                                    .8}}});
-  const driven_motion motion(mechanism, vector({.4, 1}), {0});
+  const driven_motion motion(mechanism, vector_of({.4, 1}), {0});
   // Newton's method with 100 digits, for one unknown.
   const auto exact = [&](const real_100& theta) {
     std::vector<real_100> q{theta, real_100(motion(double(theta))[1])};
@@ -118,7 +113,7 @@ TEST_CASE("driven_motion: derivatives of a spatial four-bar agree with 100-digit
 TEST_CASE("driven_motion: point, Jacobian and Hessian of a driven five-bar equal the closed form") {
   const double foot = .3, crank = .5, coupler = .7;
   const closed_chain_mechanism mechanism = five_bar(foot, crank, coupler);
-  const VectorXd start = vector({2, -1, 1.2, 1});
+  const VectorXd start = vector_of({2, -1, 1.2, 1});
   CHECK(mobility(mechanism, mechanism.assemble(start)).mobility == 2);
   const driven_motion motion(mechanism, start, {0, 2});
   const auto tip = mechanism.tree().link("left_coupler").at_point({coupler, 0, 0});
@@ -153,7 +148,7 @@ TEST_CASE("driven_motion: a prismatic drive gives results independent of the uni
                                                                      {"slide", at_point(0, 0)},
                                                                      {"arm", at_point(.4 * mm, 0)},
                                                                      .5 * mm}}});
-    const driven_motion motion(mechanism, vector({.5 * mm, .2}), {0});
+    const driven_motion motion(mechanism, vector_of({.5 * mm, .2}), {0});
     const auto x = derivatives<2>(motion, .6 * mm);
     // (u − .4 cos α)² + (.3 + .4 sin α)² = .25
     const double alpha = x[0][1];
@@ -171,7 +166,7 @@ TEST_CASE("driven_motion, trace: dead points are located, reported and passed") 
   const double a = .3, b = .25, c = .2, d = .4;
   const double dead = std::acos((a * a + d * d - (b + c) * (b + c)) / (2 * a * d));
   const closed_chain_mechanism mechanism = four_bar(a, b, c, d);
-  const driven_motion by_crank(mechanism, vector({.5, 1, 2}), {0});
+  const driven_motion by_crank(mechanism, vector_of({.5, 1, 2}), {0});
   try {
     (void)by_crank(2.);
     FAIL("closes beyond the dead point");
@@ -208,7 +203,7 @@ TEST_CASE("driven_motion, trace: dead points are located, reported and passed") 
   CHECK(of_rocker >= 2);
   // A crank with full turns has no dead points.
   const motion_trace round =
-      trace(driven_motion(four_bar(.2, .5, .4, .55), vector({2, -1, 1.7}), {0}));
+      trace(driven_motion(four_bar(.2, .5, .4, .55), vector_of({2, -1, 1.7}), {0}));
   CHECK(round.is_closed);
   for (const dead_point& each : round.dead_points) {
     CHECK(each.coordinate != 0);
@@ -231,7 +226,7 @@ TEST_CASE("driven_motion: 200 random four-bars stop at the dead points of the cl
     const Vector2d elbow(a * std::cos(from), a * std::sin(from));
     const Vector2d end(d + c * std::cos(psi), c * std::sin(psi));
     const double beta = std::atan2(end[1] - elbow[1], end[0] - elbow[0]);
-    const driven_motion motion(four_bar(a, b, c, d), vector({from, beta - from, psi}), {0});
+    const driven_motion motion(four_bar(a, b, c, d), vector_of({from, beta - from, psi}), {0});
     // The first crank angle along the line at which the distance of the free ends is b ± c.
     double first = 2;
     for (const double reach : {b + c, std::abs(b - c)}) {
@@ -270,8 +265,8 @@ TEST_CASE("driven_motion: singular coordinates and invalid drives are rejected")
   const driven_motion about_z(
       closed_chain_mechanism(kinematic_tree(robot),
                              {{{constraint_kind::revolute, {"base", {}}, {"body", {}}}}}),
-      vector({0, 0, 1}), {2});
-  CHECK(max_abs_difference(about_z(6.), vector({0, 0, 6})) < 1e-12);
+      vector_of({0, 0, 1}), {2});
+  CHECK(max_abs_difference(about_z(6.), vector_of({0, 0, 6})) < 1e-12);
   const std::string text = message_of<loop_closure_failure>([&] { (void)about_z(7.); });
   CHECK(text.starts_with("duet: driven_motion: the loops do not close beyond ball.rz = 6.2831"));
   CHECK(text.ends_with(": continuation fails, branches touch or coordinates are singular"));
@@ -280,29 +275,30 @@ TEST_CASE("driven_motion: singular coordinates and invalid drives are rejected")
   CHECK(complete.branch_points.empty());
 
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  const VectorXd q = mechanism.assemble(vector({2, -1, 1.7}), {0});
+  const VectorXd q = mechanism.assemble(vector_of({2, -1, 1.7}), {0});
   CHECK(message_of([&] {
           driven_motion(mechanism, q, {0, 1});
         }) == "duet: driven_motion: 2 driven coordinates (expected 1, the degrees of freedom at "
               "the start)");
   const closed_chain_mechanism two = five_bar(.3, .5, .7);
   CHECK(message_of([&] {
-          driven_motion(two, vector({2, -1, 1.2, 1}), {0});
+          driven_motion(two, vector_of({2, -1, 1.2, 1}), {0});
         }) == "duet: driven_motion: left does not determine the rates of the other coordinates "
               "(dead point)");
   CHECK(message_of([&] { driven_motion(mechanism, q, {5}); }) ==
         "duet: closed_chain_mechanism: coordinate 5 does not exist, the mechanism has 3");
   const driven_motion motion(mechanism, q, {0});
   CHECK(message_of([&] {
-          (void)motion(vector({1, 2}));
+          (void)motion(vector_of({1, 2}));
         }) == "duet: driven_motion: 2 numbers (expected 1)");
   CHECK(message_of([&] { (void)motion(std::nan("")); }) ==
         "duet: driven_motion: the driven coordinates are not finite");
   CHECK(message_of([&] { (void)trace(motion, 1); }) ==
         "duet: trace: driven coordinate 1 does not exist, the motion has 1");
-  const driven_motion moved = motion.warm_started_at(vector({2.5}));
+  const driven_motion moved = motion.warm_started_at(vector_of({2.5}));
   CHECK(moved.start()[0] == 2.5);
   CHECK(max_abs_difference(moved(3.), motion(3.)) < 1e-13);
 }
 
+} // namespace
 } // namespace test_robotics_loop_motion

@@ -63,8 +63,6 @@ const auto small_first = [](const auto& theta) {
   return cos(theta[1]) + theta[0] * theta[0];
 };
 
-} // namespace
-
 TEST_CASE(
     "many goals: regions agree with single calls to the last bit, with and without objectives") {
   duet_test::random_source random(91);
@@ -89,6 +87,7 @@ TEST_CASE(
     check(arm, regions, start, options, no_objective{}, no_scene{});
     check(arm, std::span(regions), start, options, preferred_posture{start}, no_scene{});
     check(arm, regions, start, options, small_first, around);
+    check(arm, poses, start, options, no_objective{}, no_scene{});
     check(arm, poses, start, options, small_first, no_scene{});
     check(arm, poses, start, options, no_objective{}, around);
     const auto plain = inverse_kinematics(arm, poses[1], start, options, {}, around);
@@ -153,4 +152,5 @@ TEST_CASE("many goals: invalid arguments are rejected before the first search") 
   CHECK(out[0].iterations == -1);
 }
 
+} // namespace
 } // namespace test_robotics_many_goals

@@ -12,22 +12,17 @@ using duet_test::at_point;
 using duet_test::four_bar;
 using duet_test::revolute_joint;
 using duet_test::ring;
+using duet_test::vector_of;
 using Eigen::VectorXd;
-
-VectorXd vector(std::initializer_list<double> x) {
-  return Eigen::Map<const VectorXd>(x.begin(), Eigen::Index(x.size()));
-}
 
 /// A link whose twist angle has a given sine per length.
 std::array<double, 2> with_twist(double length, double ratio) {
   return {length, std::asin(length * ratio)};
 }
 
-} // namespace
-
 TEST_CASE("mobility: a planar four-bar moves despite three redundant equations") {
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  const VectorXd q = mechanism.assemble(vector({2, -1, 1.7}), {0});
+  const VectorXd q = mechanism.assemble(vector_of({2, -1, 1.7}), {0});
   const mobility_result m = mobility(mechanism, q);
   CHECK(m.mobility == 1);
   CHECK(m.kutzbach == -2);
@@ -36,7 +31,7 @@ TEST_CASE("mobility: a planar four-bar moves despite three redundant equations")
   CHECK(m.count_is_wrong());
   CHECK(!m.is_singular());
   CHECK(to_text(m) == "mobility 1: counted -2, first order 1 here, 1 nearby");
-  CHECK_THROWS_AS((void)mobility(mechanism, vector({2, -1, 1.7})), invalid_input);
+  CHECK_THROWS_AS((void)mobility(mechanism, vector_of({2, -1, 1.7})), invalid_input);
   const closed_chain_mechanism by_ball = four_bar(.2, .5, .4, .55, constraint_kind::spherical);
   CHECK(mobility(by_ball, q).kutzbach == 0);
   CHECK(mobility(by_ball, q).mobility == 1);
@@ -47,7 +42,7 @@ TEST_CASE("mobility: Bennett's and Goldberg's linkages have mobility 1, a genera
   const auto a = with_twist(.6, .9), b = with_twist(.9, .9), c = with_twist(.45, .9);
   const closed_chain_mechanism bennett = ring({a, b, a, b});
   const auto assemblies =
-      find_assembly_configurations(bennett, {0}, vector({.8}), {.random_starts = 30});
+      find_assembly_configurations(bennett, {0}, vector_of({.8}), {.random_starts = 30});
   REQUIRE(!assemblies.positions.empty());
   const VectorXd& q = assemblies.positions[0].coordinates;
   const mobility_result m = mobility(bennett, q);
@@ -64,7 +59,7 @@ TEST_CASE("mobility: Bennett's and Goldberg's linkages have mobility 1, a genera
 
   const closed_chain_mechanism goldberg = ring({{a[0] + c[0], a[1] + c[1]}, b, c, a, b});
   const auto of_five =
-      find_assembly_configurations(goldberg, {0}, vector({.8}), {.random_starts = 60});
+      find_assembly_configurations(goldberg, {0}, vector_of({.8}), {.random_starts = 60});
   REQUIRE(!of_five.positions.empty());
   int moving = 0;
   for (const assembly_configuration& each : of_five.positions) {
@@ -89,12 +84,12 @@ TEST_CASE("mobility: a stretched frame is first-order flexible and rigid") {
   const closed_chain_mechanism shaky(
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"second", at_point(.5, 0)}, {"ground", at_point(1.2, 0)}}}});
-  const mobility_result m = mobility(shaky, vector({0, 0}));
+  const mobility_result m = mobility(shaky, vector_of({0, 0}));
   CHECK(m.mobility == 0);
   CHECK(m.instantaneous == 1);
   CHECK(m.evidence == mobility_evidence::second_order_rigid);
   CHECK(m.is_singular());
-  CHECK_THROWS_WITH_AS(driven_motion(shaky, vector({0, 0}), {0}),
+  CHECK_THROWS_WITH_AS(driven_motion(shaky, vector_of({0, 0}), {0}),
                        "duet: driven_motion: a rate of first satisfies the equations to first "
                        "order only: the mechanism does not move",
                        invalid_input);
@@ -115,12 +110,12 @@ TEST_CASE("mobility: a stretched frame is first-order flexible and rigid") {
 TEST_CASE("mobility: a parallelogram has two rates if flat, or if it carries a first-order "
           "flexible frame") {
   const closed_chain_mechanism flat = four_bar(.3, .8, .3, .8);
-  const mobility_result m = mobility(flat, vector({0, 0, 0}));
+  const mobility_result m = mobility(flat, vector_of({0, 0, 0}));
   CHECK(m.mobility == 1);
   CHECK(m.instantaneous == 2);
   CHECK(m.local == 1);
   CHECK(m.is_singular());
-  CHECK(mobility(flat, vector({1, -1, 1})).instantaneous == 1);
+  CHECK(mobility(flat, vector_of({1, -1, 1})).instantaneous == 1);
 
   robot_description robot = flat.tree().description();
   robot.links.insert(robot.links.end(), {{"first"}, {"second"}});
@@ -130,7 +125,7 @@ TEST_CASE("mobility: a parallelogram has two rates if flat, or if it carries a f
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
         {constraint_kind::revolute, {"second", at_point(.3, 0)}, {"coupler", at_point(.6, .1)}}}});
-  const mobility_result n = mobility(both, vector({1, -1, 1, 0, 0}));
+  const mobility_result n = mobility(both, vector_of({1, -1, 1, 0, 0}));
   CHECK(n.mobility == 1);
   CHECK(n.instantaneous == 2);
   CHECK(n.local == 2); // first-order flexible everywhere
@@ -141,11 +136,11 @@ TEST_CASE(
   const kinematic_tree tree(duet_test::revolute_chain({{}, at_point(1, 0)}));
   const closed_chain_mechanism open(tree, {});
   CHECK(open.equation_count() == 0);
-  CHECK(mobility(open, vector({1, 2})).mobility == 2);
-  CHECK(open.independent_coordinates(vector({1, 2})) == std::vector<int>{0, 1});
-  CHECK(open.assemble(vector({1, 2})) == vector({1, 2}));
-  CHECK(driven_motion(open, vector({1, 2}), {0, 1})(vector({3, 4})) == vector({3, 4}));
-  CHECK_THROWS_AS(driven_motion(open, vector({1, 2}), {0}), invalid_input);
+  CHECK(mobility(open, vector_of({1, 2})).mobility == 2);
+  CHECK(open.independent_coordinates(vector_of({1, 2})) == std::vector<int>{0, 1});
+  CHECK(open.assemble(vector_of({1, 2})) == vector_of({1, 2}));
+  CHECK(driven_motion(open, vector_of({1, 2}), {0, 1})(vector_of({3, 4})) == vector_of({3, 4}));
+  CHECK_THROWS_AS(driven_motion(open, vector_of({1, 2}), {0}), invalid_input);
   robot_description robot;
   robot.links = {{"a"}, {"b"}};
   robot.joints = {{"weld", "a", "b", {joint_kind::fixed, at_point(1, 0)}}};
@@ -169,7 +164,7 @@ TEST_CASE("mobility: independent equations give the Grübler–Kutzbach count") 
         {constraint_kind::distance, {"base", at_point(x, y)}, {"plate", at_point(y, x, .1)}, 1.5});
   }
   const closed_chain_mechanism mechanism(kinematic_tree(robot), rods);
-  const VectorXd q = mechanism.assemble(vector({.1, .2, 1.4, .1, .2, .3}));
+  const VectorXd q = mechanism.assemble(vector_of({.1, .2, 1.4, .1, .2, .3}));
   const mobility_result m = mobility(mechanism, q);
   CHECK(m.mobility == 3);
   CHECK(m.kutzbach == 3);
@@ -177,4 +172,5 @@ TEST_CASE("mobility: independent equations give the Grübler–Kutzbach count") 
   CHECK(mechanism.independent_coordinates(q).size() == 3);
 }
 
+} // namespace
 } // namespace test_robotics_mobility

@@ -26,8 +26,6 @@ scene arm_among(std::vector<obstacle> obstacles) {
           .01};
 }
 
-} // namespace
-
 TEST_CASE("plan_screw_motion: the elbow avoids an obstacle while the tip stays on the screw") {
   for (const int seed : {354, 373, 903}) {
     duet_test::random_source random{std::uint64_t(seed)};
@@ -115,4 +113,5 @@ TEST_CASE("plan_screw_motion: limits are not reported as obstacles; invalid scen
                        "duet: the normal of obstacle 0 is not a unit vector", invalid_input);
 }
 
+} // namespace
 } // namespace test_robotics_obstacles

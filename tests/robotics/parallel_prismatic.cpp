@@ -86,8 +86,6 @@ double max_abs_difference(const chain& arm, const vector& theta,
       (transform_matrix(arm.pose(exact)) - transform_matrix(dual_quaternion<wide>(goal))).norm());
 }
 
-} // namespace
-
 TEST_CASE("all_inverse_kinematics: with parallel prismatic joints each solution of the revolute "
           "joints is found once") {
   duet_test::random_source random(311);
@@ -208,4 +206,5 @@ TEST_CASE(
   CHECK(made > 4);
 }
 
+} // namespace
 } // namespace test_robotics_parallel_prismatic

@@ -62,8 +62,6 @@ double smallest_singular_value(const vector& theta) {
 
 constexpr plan_options without_search = {.search_step = 0};
 
-} // namespace
-
 TEST_CASE("plan_screw_motion: reaches near goals along the screw") {
   duet_test::random_source random(1);
   for (int k = 0; k < 8; ++k) {
@@ -261,4 +259,5 @@ TEST_CASE("plan_screw_motion: invalid starts, goals and options are rejected") {
                   invalid_input);
 }
 
+} // namespace
 } // namespace test_robotics_plan_screw_motion

@@ -68,8 +68,6 @@ void check_gradients(const M& mechanism, const X& theta, const scene& s) {
   }
 }
 
-} // namespace
-
 TEST_CASE("self_collision_pairs: omits the same link, neighbours and excluded names") {
   const scene s = panda_bodies();
   CHECK(s.pairs.size() == 5);
@@ -212,4 +210,5 @@ TEST_CASE("plan_screw_motion: starts in self-collision and invalid pairs are rej
   fails("duet: scene: pair 5 consists of bodies 1 and 1 (expected two different indices below 4)");
 }
 
+} // namespace
 } // namespace test_robotics_self_collision

@@ -68,21 +68,6 @@ double smallest_singular_value(const chain& arm, const vector& theta) {
   return detail::smallest_singular_value_of(model.at(model.joints(theta)).jacobian);
 }
 
-} // namespace
-
-TEST_CASE("plans cross the wrist singularity: joint 5 from x to -x") {
-  duet_test::random_source random(1);
-  for (const chain& arm : {ur5e, puma}) {
-    for (int k = 0; k < 5; ++k) {
-      vector start = configuration(random, 2);
-      start[4] = random.uniform(.1, 1.5);
-      vector end = start;
-      end[4] = -end[4];
-      check_reached(arm, start, end);
-    }
-  }
-}
-
 TEST_CASE("joints 4 and 6 reorient rapidly on a path near the wrist singularity") {
   duet_test::random_source random(2);
   for (int k = 0; k < 5; ++k) {
@@ -420,4 +405,5 @@ TEST_CASE("complete_search: verdict for paths with known results") {
         all_inverse_kinematics(ur5e, out(ended.end - 1e-3)).solutions.size());
 }
 
+} // namespace
 } // namespace test_robotics_singular_paths

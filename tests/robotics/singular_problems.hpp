@@ -1,8 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include "support/test.hpp"
-
 #include <duet/core/random_source.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/kinematics/adapted.hpp>
@@ -11,6 +9,14 @@
 #include <duet/kinematics/serial_chain.hpp>
 
 #include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <vector>
 
 /// \file
 /// Screws through singularities and from them.

@@ -137,52 +137,6 @@ double sampled_optimum(const std::vector<detail::joint_cubic>& curve, const vect
   return time;
 }
 
-} // namespace
-
-TEST_CASE(
-    "nearest_speed: extreme squared path velocities are feasible, and no feasible point of a grid "
-    "is beyond") {
-  duet_test::random_source random(2);
-  for (int k = 0; k < 200; ++k) {
-    std::vector<detail::speed_bound> bounds;
-    for (int i = random.integer(0, 12); i > 0; --i) {
-      bounds.push_back({random.normal() / random.normal(), random.uniform(.01, 2)});
-    }
-    const double least = k % 2 == 0 ? 0 : random.uniform(0, .7);
-    const auto is_feasible = [&](double x, double y, double slack) {
-      return std::all_of(bounds.begin(), bounds.end(), [&](const auto& each) {
-        return std::abs(y + each.slope * x) <= each.reach + slack;
-      });
-    };
-    double smallest = 2, largest = -1;
-    for (int i = 0; i <= 100; ++i) {
-      for (int j = 0; j <= 100; ++j) {
-        if (is_feasible(i / 100.0, least + j * (.7 - least) / 100, 0)) {
-          smallest = std::min(smallest, i / 100.0);
-          largest = std::max(largest, i / 100.0);
-        }
-      }
-    }
-    const double max_x = detail::nearest_speed(bounds, 1, least, .7);
-    const double min_x = detail::nearest_speed(bounds, 0, least, .7);
-    if (largest < 0) {
-      // No point of the grid is feasible: either there is a feasible interval between its points,
-      // or the result is NaN or outside of the range.
-      CHECK((max_x >= min_x || (!(max_x == max_x) || max_x < 0 || min_x > 1)));
-      continue;
-    }
-    CHECK(max_x <= 1);
-    CHECK(max_x >= largest - 1e-12);
-    CHECK(min_x >= 0);
-    CHECK(min_x <= smallest + 1e-12);
-    // With the next velocity that belongs to it, all constraints are satisfied.
-    for (const double x : {min_x, max_x}) {
-      CHECK(
-          is_feasible(x, detail::feasible_path_velocities(bounds, x, least, .7).upper.value, 1e-9));
-    }
-  }
-}
-
 TEST_CASE("time_optimal_trajectory: one joint takes the time of the trapezoidal velocity profile") {
   for (const double distance : {1e-3, .1, 1.0, 30.0}) {
     const double v = 2, a = 5;
@@ -589,4 +543,5 @@ TEST_CASE("time_optimal_trajectory: the velocity and position limits of a chain 
                   invalid_input);
 }
 
+} // namespace
 } // namespace test_robotics_time_parametrised

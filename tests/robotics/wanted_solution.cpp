@@ -17,9 +17,11 @@ using duet_test::configuration;
 using duet_test::is_within_limits;
 using std::numbers::pi;
 
+/// Known arms and one with all kinds of joints.
 std::vector<chain> arms() {
-  return {robots::panda().table(), robots::iiwa14().table(), robots::ur5e().table(),
-          robots::baxter_left().table(), duet_test::every_joint()};
+  auto result = duet_test::known_arms();
+  result.push_back(duet_test::every_joint());
+  return result;
 }
 
 vector nearby(const chain& arm, vector theta, double max_change, duet_test::random_source& random) {
@@ -90,8 +92,6 @@ void put_spheres(scene& around, const chain& arm, const vector& known, const vec
     }
   }
 }
-
-} // namespace
 
 TEST_CASE(
     "preferred_posture: the result is a local minimum and not worse than the known solution") {
@@ -412,40 +412,37 @@ TEST_CASE("solutions with prismatic joints do not depend on the unit of length")
 TEST_CASE("preferences: invalid options, bounds and postures are rejected") {
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << 0, -.8, 0, -2.4, 0, 1.6, .8).finished();
-  CHECK_THROWS_WITH_AS(
-      static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start,
-                                           {.candidates = 0}, preferred_posture{start})),
-      "duet: inverse_kinematics: candidates is 0 (expected a positive number)", invalid_input);
+  CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, position_goal({.5, 0, .5}), start,
+                                                {.candidates = 0}, preferred_posture{start}),
+                       "duet: inverse_kinematics: candidates is 0 (expected a positive number)",
+                       invalid_input);
   scene none;
   none.margin = -1;
-  CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {},
-                                                       no_objective{}, none)),
-                  invalid_input);
+  CHECK_THROWS_AS(
+      (void)inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {}, no_objective{}, none),
+      invalid_input);
   vector max_change = vector::Constant(7, .1);
   max_change[2] = std::nan("");
-  CHECK_THROWS_WITH_AS(static_cast<void>(with_limits_about(arm, start, max_change)),
+  CHECK_THROWS_WITH_AS((void)with_limits_about(arm, start, max_change),
                        "duet: with_limits_about: joint 2: the interval 0 ± nan is not a number",
                        invalid_input);
   vector beyond = start;
   beyond[3] = .2; // the limit is -0.07
-  CHECK_THROWS_AS(
-      static_cast<void>(with_limits_about(arm, beyond, vector(vector::Constant(7, .1)))),
-      invalid_input);
+  CHECK_THROWS_AS((void)with_limits_about(arm, beyond, vector(vector::Constant(7, .1))),
+                  invalid_input);
   const vector few = vector::Zero(3);
-  CHECK_THROWS_WITH_AS(static_cast<void>(with_limits_about(arm, start, few)),
+  CHECK_THROWS_WITH_AS((void)with_limits_about(arm, start, few),
                        "duet: with_limits_about: 7 coordinates and 3 bounds for 7 moving joints",
                        invalid_input);
-  CHECK_THROWS_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}), few)),
-                  invalid_input);
+  CHECK_THROWS_AS((void)inverse_kinematics(arm, position_goal({.5, 0, .5}), few), invalid_input);
   vector unknown = start;
   unknown[2] = std::nan("");
   const auto check_message = [&](const auto& preference, const char* what) {
-    CHECK_THROWS_WITH_AS(static_cast<void>(inverse_kinematics(arm, position_goal({.5, 0, .5}),
-                                                              start, {}, preference)),
-                         what, invalid_input);
     CHECK_THROWS_WITH_AS(
-        static_cast<void>(inverse_kinematics(arm, arm.pose(start), start, {}, preference)), what,
+        (void)inverse_kinematics(arm, position_goal({.5, 0, .5}), start, {}, preference), what,
         invalid_input);
+    CHECK_THROWS_WITH_AS((void)inverse_kinematics(arm, arm.pose(start), start, {}, preference),
+                         what, invalid_input);
   };
   check_message(preferred_posture{few},
                 "duet: preferred_posture: 3 coordinates (expected 7, one per joint)");
@@ -461,9 +458,8 @@ TEST_CASE("nan objectives and goals: an error if nan everywhere, otherwise not a
   const chain arm = robots::panda().table();
   const vector start = (vector(7) << 0, -.75, 0, -2.5, 0, 1.5, .75).finished();
   const auto message = [&](const auto& goal, const auto& preference) {
-    return duet_test::message_of<invalid_input>([&] {
-      static_cast<void>(inverse_kinematics(arm, goal, start, {.max_restarts = 5}, preference));
-    });
+    return duet_test::message_of<invalid_input>(
+        [&] { (void)inverse_kinematics(arm, goal, start, {.max_restarts = 5}, preference); });
   };
   const std::string at_start = " joints (0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
   const std::string all = "duet: inverse_kinematics: the objective is nan at all solutions found, "
@@ -514,4 +510,5 @@ TEST_CASE("nan objectives and goals: an error if nan everywhere, otherwise not a
   CHECK(std::abs(translation(arm.pose(side.joints))[1] - .2) < 1e-5);
 }
 
+} // namespace
 } // namespace test_robotics_wanted_solution
