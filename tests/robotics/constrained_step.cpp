@@ -27,6 +27,30 @@ M random_matrix(duet_test::random_source& random, M m) {
   return m;
 }
 
+TEST_CASE("gram_factors: solve systems; an unknown without a positive pivot is 0") {
+  duet_test::random_source random(4);
+  for (int k = 0; k < 10; ++k) {
+    const detail::gram_matrix root = random_matrix(random, detail::gram_matrix());
+    const vector6<double> x = random_matrix(random, vector6<double>());
+    // Only the lower half of a = root rootᵀ + 1/100 is used. The last unknown has a pivot of zero
+    // or below in `cut`.
+    const detail::gram_matrix a = root * root.transpose() + .01 * detail::gram_matrix::Identity();
+    detail::gram_matrix lower = a;
+    lower.triangularView<Eigen::StrictlyUpper>().setConstant(NAN);
+    detail::gram_matrix cut = lower;
+    cut.row(5).setZero();
+    cut(5, 5) = -k % 2;
+    const vector6<double> b = a * x;
+    const detail::gram_factors full(lower), reduced(cut);
+    CHECK(full.is_positive());
+    CHECK((full.solve(b) - x).norm() < 1e-10 * x.norm());
+    CHECK(!reduced.is_positive());
+    const vector6<double> found = reduced.solve(b);
+    CHECK(found[5] == 0);
+    CHECK((a * found - b).head<5>().norm() < 1e-10 * x.norm());
+  }
+}
+
 TEST_CASE("constrained_step: satisfies twist, limits and inequalities and is nearest to the "
           "preferred step") {
   duet_test::random_source random(3);
