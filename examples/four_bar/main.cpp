@@ -14,7 +14,7 @@
 #include <duet/core/text/csv.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/derivative.hpp>
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/jacobian.hpp>
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/derivative/derivative.hpp>
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rate.hpp>
 #include <duet/quaternion/rotation.hpp>

@@ -75,7 +75,7 @@
 #include <duet/expression/text.hpp>
 #include <duet/kinematics/adapted.hpp>
 #include <duet/kinematics/chain_parameters.hpp>
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/jacobian_rate.hpp>
 #include <duet/kinematics/manipulability.hpp>

@@ -9,7 +9,7 @@
 #include <duet/dual_quaternion/displacement.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/kinematic_tree.hpp>
 #include <duet/kinematics/robot_description.hpp>

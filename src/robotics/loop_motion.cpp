@@ -7,7 +7,7 @@
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/dual/taylor.hpp>
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 #include <duet/robotics/closed_tree.hpp>
 #include <duet/robotics/loop_motion.hpp>
 

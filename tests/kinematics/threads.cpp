@@ -3,7 +3,7 @@
 #include "kinematics/arms.hpp"
 #include "kinematics/everything.hpp"
 
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 
 #include <thread>
 

@@ -7,7 +7,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual/promotion.hpp>
-#include <duet/kinematics/closed_loop.hpp>
+#include <duet/kinematics/constrained_mechanism.hpp>
 #include <duet/robotics/closed_tree.hpp>
 
 #include <Eigen/Core>

@@ -8,7 +8,7 @@
 // Planar linkages, against closed forms. (The wheel carrier, whose unknown is a rotation, is in
 // examples/wheel_carrier.)
 
-namespace test_kinematics_closed_loop {
+namespace test_kinematics_constrained_mechanism {
 namespace {
 
 using namespace duet;
@@ -184,4 +184,4 @@ TEST_CASE("constrained_mechanism: a five-bar with two parameters agrees with the
 }
 
 } // namespace
-} // namespace test_kinematics_closed_loop
+} // namespace test_kinematics_constrained_mechanism
