@@ -66,7 +66,7 @@ bool has_length(const numbers<double>& x, std::size_t i) {
 std::vector<formula> experiment_formulas() {
   return {
       make_formula(
-          "P5", R"(\delta = A\,[\psi', \theta', \phi']^\top)", "euler_rate_matrix",
+          "P5", R"(\delta = A_K\,[\psi', \theta', \phi']^\top)", "euler_rate_matrix",
           "quaternion/euler.hpp", {vector, vector},
           []<class T>(const numbers<T>& x) {
             return all<T>(
@@ -80,7 +80,7 @@ std::vector<formula> experiment_formulas() {
           }),
       make_formula(
           "P5",
-          R"(\tfrac{\partial\delta}{\partial u} = A'\,[\psi', \theta', \phi']^\top + A\,[\psi'', \theta'', \phi'']^\top)",
+          R"(\tfrac{\partial\delta}{\partial u} = A_K'\,[\psi', \theta', \phi']^\top + A_K\,[\psi'', \theta'', \phi'']^\top)",
           "derivative, euler_rate_matrix", "quaternion/euler.hpp", {vector, vector, vector},
           []<class T>(const numbers<T>& x) {
             const auto delta = [&](const auto& u) {
@@ -127,7 +127,7 @@ std::vector<formula> experiment_formulas() {
                    v_of(x, 3).norm() > .1 * v_of(x, 0).norm();
           }),
       make_formula(
-          "P7", R"(\theta = 2\,\lVert\log(q_i^* q_{i+1})\rVert)", "rotation_vector",
+          "P7", R"(\vartheta = 2\,\lVert\log(q_i^* q_{i+1})\rVert)", "rotation_vector",
           "quaternion/rotation.hpp", {argument::rotation, argument::rotation},
           []<class T>(const numbers<T>& x) {
             const auto p = duet::from_rotation_vector(v_of(x, 0));

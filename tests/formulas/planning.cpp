@@ -136,7 +136,7 @@ formula planning_step() {
   auto f = make_formula(
       "N24",
       R"(\Theta \mapsto \Theta + B\,(\gamma(A\,(A^*A_g)^\tau) - \gamma(A)),\; A = A(\Theta))",
-      "sclerp, resolved_step", "motion/printed_plan.hpp",
+      "sclerp, resolved_step", "motion/resolved_motion.hpp",
       {vector, vector, number, rotation_vector, vector, argument::fraction},
       []<class T>(const numbers<T>& x) {
         numbers<duet::real_type_t<T>> still; // all arguments except τ
