@@ -9,14 +9,19 @@
 #include "workloads.hpp"
 
 #include <duet/derivative/gradient.hpp>
+#include <duet/expression/graph/evaluate.hpp>
+#include <duet/expression/graph/reverse.hpp>
+#include <duet/expression/graph/trace.hpp>
 
 #if DUET_BENCH_ADOLC
 #include <adolc/adolc.h>
 #endif
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -41,6 +46,23 @@ std::array<double, N + 1> gradient_by(const inputs<double, N>& at) {
   result[0] = Library::value(y);
   Library::template write_partials<int(N)>(y, &result[1]);
   return result;
+}
+
+/// Reverse mode of a formula that is recorded once.
+template <std::size_t N>
+void add_recorded(const std::string& workload, const std::array<double, N + 1>& expected) {
+  using namespace duet::expression;
+  const auto f = [](const auto& x) { return f_grad(x); };
+  const auto evaluate = std::make_shared<evaluator<double>>(
+      reverse_gradient(duet::expression::trace(f, int(N)), {"x"}));
+  const auto recorded = [evaluate](const inputs<double, N>& at) {
+    std::array<double, N + 1> result;
+    const auto& numbers = (*evaluate)(std::vector<double>(at.begin(), at.end()));
+    std::copy(numbers.begin(), numbers.end(), result.begin());
+    return result;
+  };
+  expect_agreement(workload, "recorded", expected, recorded(point<N>()));
+  register_benchmark(workload, "recorded", point<N>(), recorded);
 }
 
 #if DUET_BENCH_ADOLC
@@ -83,6 +105,7 @@ void add() {
     register_benchmark(workload, library::name, at,
                        [](const auto& x) { return gradient_by<library>(x); });
   });
+  add_recorded<N>(workload, expected);
 #if DUET_BENCH_ADOLC
   add_reverse_mode<N>(workload, expected);
 #endif
@@ -125,6 +148,7 @@ void add_wide() {
                          [](const auto& x) { return wide_gradient_by<library, N>(x); });
     }
   });
+  add_recorded<N>(workload, expected);
 #if DUET_BENCH_ADOLC
   add_reverse_mode<N>(workload, expected);
 #endif

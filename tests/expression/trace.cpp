@@ -238,16 +238,11 @@ TEST_CASE_TEMPLATE("reverse_gradient: as forward, at most three times the value'
                    std::integral_constant<int, 40>) {
   static constexpr int n = Size::value;
   const auto check = [](const auto& f) {
-    formula_graph g;
-    const std::vector<int> nodes =
-        g.add_input({.name = "x", .kind = shape::matrix, .rows = n}).nodes;
-    Eigen::Matrix<recorded, n, 1> x;
+    const formula_graph g = duet::expression::trace(f, n);
     Eigen::Matrix<double, n, 1> x0;
     for (int i = 0; i < n; ++i) {
-      x[i] = recorded(g.operations(), nodes[std::size_t(i)]);
       x0[i] = 0.4 + 0.1 * i;
     }
-    g.add_output({.name = "y", .nodes = {f(x).node_in(g.operations())}});
     const formula_graph derived = reverse_gradient(g, {"x"});
     CHECK(count_operations(derived).total() <= 3 * count_operations(g).total());
     const std::vector<double> values =
@@ -260,6 +255,39 @@ TEST_CASE_TEMPLATE("reverse_gradient: as forward, at most three times the value'
   };
   check(rosenbrock);
   check(product_of_sines);
+}
+
+TEST_CASE("evaluator: as evaluate, call after call") {
+  evaluator<double> both(reverse_gradient(duet::expression::trace(rosenbrock, 6), {"x"}));
+  for (const double first : {0.3, -1.5, 0.3}) {
+    const std::vector<double> x{first, 0.2, 0.7, -0.4, 1, 2};
+    const auto expected =
+        duet::gradient(rosenbrock, Eigen::Map<const Eigen::VectorXd>(x.data(), 6));
+    const std::vector<double>& numbers = both(x);
+    REQUIRE(numbers.size() == 7);
+    CHECK(numbers == evaluate(reverse_gradient(duet::expression::trace(rosenbrock, 6), {"x"}), x));
+    CHECK(numbers[0] == expected.value);
+    CHECK(std::abs(numbers[1] - expected.gradient[0]) <= 1e-13 * std::abs(numbers[1]));
+  }
+  CHECK_THROWS_WITH_AS(static_cast<void>(both({1, 2})),
+                       "duet: evaluate: the formula has 6 input numbers, not 2",
+                       duet::invalid_input);
+}
+
+TEST_CASE("trace: functions of columns of any size") {
+  const formula_graph g = duet::expression::trace(
+      [](const auto& x) { return std::pair(x[0] * x[49], (2 * x.tail(2)).eval()); }, 50);
+  REQUIRE(g.inputs().size() == 1);
+  CHECK(g.inputs()[0].name == "x");
+  CHECK(g.inputs()[0].rows == 50);
+  REQUIRE(g.outputs().size() == 2);
+  CHECK(g.outputs()[1].rows == 2);
+  std::vector<double> x(50, 3);
+  x[49] = 5;
+  CHECK(evaluate(g, x) == std::vector<double>{15, 6, 10});
+  CHECK_THROWS_WITH_AS(static_cast<void>(duet::expression::trace(rosenbrock, 0)),
+                       "duet: trace: the column has 0 numbers (expected at least 1)",
+                       duet::invalid_input);
 }
 
 TEST_CASE("reverse_gradient of a function at values") {

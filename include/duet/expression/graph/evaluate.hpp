@@ -128,15 +128,13 @@ template <class S>
     DUET_EACH_ROUNDING(DUET_CASE)
   case operation::power:
     return whole_power{index}.value(x);
-  case operation::stumpff:
-    return stumpff_of_order{index}.value(x);
   default:
-    return S(-x);
+    return stumpff_of_order{index}.value(x);
   }
 #undef DUET_CASE
 }
 
-/// The functions of two numbers.
+/// The functions of two numbers, without + − · /.
 template <class S>
 [[nodiscard]] S function_value(operation what, const S& a, const S& b) {
   using std::atan2;
@@ -145,14 +143,6 @@ template <class S>
   using std::pow;
   using std::remainder;
   switch (what) {
-  case operation::sum:
-    return S(a + b);
-  case operation::difference:
-    return S(a - b);
-  case operation::product:
-    return S(a * b);
-  case operation::quotient:
-    return S(a / b);
   case operation::atan2:
     return S(atan2(a, b));
   case operation::hypot:
@@ -174,13 +164,27 @@ class node_values {
 public:
   using condition = decltype(std::declval<const S&>() < std::declval<const S&>());
 
-  node_values(const graph& g, const std::vector<bool>& needed, const std::vector<S>& inputs)
+  /// Sets the constants.
+  node_values(const graph& g, const std::vector<bool>& needed)
       : numbers_(std::size_t(g.size()), S(0)),
         conditions_(std::size_t(g.size()), condition(false)) {
     for (int i = 0; i < g.size(); ++i) {
-      if (needed[std::size_t(i)]) {
-        evaluate(g[i], std::size_t(i), inputs);
+      if (needed[std::size_t(i)] && g.is_number(i)) {
+        numbers_[std::size_t(i)] = S(g[i].number);
+      } else if (needed[std::size_t(i)]) {
+        steps_.push_back(i);
       }
+    }
+  }
+  node_values(const graph& g, const std::vector<bool>& needed, const std::vector<S>& inputs)
+      : node_values(g, needed) {
+    evaluate(g, inputs);
+  }
+
+  /// Evaluates all other nodes.
+  void evaluate(const graph& g, const std::vector<S>& inputs) {
+    for (const int i : steps_) {
+      evaluate(g[i], std::size_t(i), inputs);
     }
   }
 
@@ -192,20 +196,42 @@ private:
 
   void evaluate(const graph_node& n, std::size_t i, const std::vector<S>& inputs) {
     const auto [a, b, c] = n.operands;
-    if (is_condition(n.what)) {
-      conditions_[i] = condition_value(n);
-    } else if (n.what == operation::number) {
-      numbers_[i] = S(n.number);
-    } else if (n.what == operation::variable) {
+    switch (n.what) {
+    case operation::variable:
       numbers_[i] = inputs[std::size_t(n.index)];
-    } else if (n.what == operation::select) {
+      return;
+    case operation::sum:
+      numbers_[i] = S(number(a) + number(b));
+      return;
+    case operation::difference:
+      numbers_[i] = S(number(a) - number(b));
+      return;
+    case operation::product:
+      numbers_[i] = S(number(a) * number(b));
+      return;
+    case operation::quotient:
+      numbers_[i] = S(number(a) / number(b));
+      return;
+    case operation::negative:
+      numbers_[i] = S(-number(a));
+      return;
+    case operation::fma: {
+      using std::fma;
+      numbers_[i] = S(fma(number(a), number(b), number(c)));
+      return;
+    }
+    case operation::select: {
       const S& if_true = number(b);
       const S& if_false = number(c);
       numbers_[i] = duet_select(
           holds(a), [&] { return if_true; }, [&] { return if_false; });
-    } else if (n.what == operation::fma) {
-      using std::fma;
-      numbers_[i] = S(fma(number(a), number(b), number(c)));
+      return;
+    }
+    default:
+      break;
+    }
+    if (is_condition(n.what)) {
+      conditions_[i] = condition_value(n);
     } else if (operand_count(n.what) == 2) {
       numbers_[i] = function_value<S>(n.what, number(a), number(b));
     } else {
@@ -246,7 +272,37 @@ private:
 
   std::vector<S> numbers_;
   std::vector<condition> conditions_;
+  std::vector<int> steps_; ///< nodes that are no constants, in order
 };
+
+/// The values of the nodes that the outputs of a formula need.
+/// \throws invalid_input over dual numbers, for a function of `with_derivative`
+template <class S>
+[[nodiscard]] node_values<S> values_for_outputs(const formula_graph& f) {
+  const std::vector<bool> needed = f.needed();
+  for (std::size_t i = 0; Infinitesimal<S> && i < needed.size(); ++i) {
+    if (needed[i]) {
+      f.operations().require_own_derivative(int(i));
+    }
+  }
+  return node_values<S>(f.operations(), needed);
+}
+
+/// Evaluates the nodes, and gives the numbers of the outputs, one after the other.
+/// \throws invalid_input for another number of inputs
+template <class S>
+void evaluate_outputs(const formula_graph& f, node_values<S>& values, const std::vector<S>& inputs,
+                      std::vector<S>& outputs) {
+  duet::detail::require(int(inputs.size()) == f.input_size(), "duet: evaluate: the formula has ",
+                        f.input_size(), " input numbers, not ", inputs.size());
+  values.evaluate(f.operations(), inputs);
+  outputs.clear();
+  for (const named_value& y : f.outputs()) {
+    for (const int node : y.nodes) {
+      outputs.push_back(values[node]);
+    }
+  }
+}
 
 } // namespace duet::expression::detail
 
@@ -258,22 +314,32 @@ namespace duet::expression {
 /// `with_derivative`, whose derivative is not recorded
 template <class S>
 [[nodiscard]] std::vector<S> evaluate(const formula_graph& f, const std::vector<S>& inputs) {
-  duet::detail::require(int(inputs.size()) == f.input_size(), "duet: evaluate: the formula has ",
-                        f.input_size(), " input numbers, not ", inputs.size());
-  const std::vector<bool> needed = f.needed();
-  for (std::size_t i = 0; Infinitesimal<S> && i < needed.size(); ++i) {
-    if (needed[i]) {
-      f.operations().require_own_derivative(int(i));
-    }
-  }
-  const detail::node_values<S> values(f.operations(), needed, inputs);
-  std::vector<S> result;
-  for (const named_value& y : f.outputs()) {
-    for (const int node : y.nodes) {
-      result.push_back(values[node]);
-    }
-  }
-  return result;
+  auto values = detail::values_for_outputs<S>(f);
+  std::vector<S> outputs;
+  detail::evaluate_outputs(f, values, inputs, outputs);
+  return outputs;
 }
+
+/// A formula prepared for many evaluations over a scalar S: a list of the operations that its
+/// outputs need, with memory for their values. Each thread needs its own.
+template <class S>
+class evaluator {
+public:
+  /// \throws invalid_input over dual numbers, for a function of `with_derivative`
+  explicit evaluator(formula_graph f)
+      : f_(std::move(f)), values_(detail::values_for_outputs<S>(f_)) {}
+
+  /// The numbers of the outputs, as by `evaluate`; valid until the next call.
+  /// \throws invalid_input for another number of inputs
+  const std::vector<S>& operator()(const std::vector<S>& inputs) {
+    detail::evaluate_outputs(f_, values_, inputs, outputs_);
+    return outputs_;
+  }
+
+private:
+  formula_graph f_;
+  detail::node_values<S> values_;
+  std::vector<S> outputs_;
+};
 
 } // namespace duet::expression

@@ -5,6 +5,8 @@
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -202,5 +204,21 @@ namespace detail {
   }
   return n;
 }
+
+namespace detail {
+
+/// Adds the input x, a column of `size` numbers, and gives what stands for it.
+template <class Column>
+[[nodiscard]] Column add_column(formula_graph& f, Eigen::Index size) {
+  const std::vector<int> nodes =
+      f.add_input({.name = "x", .kind = shape::matrix, .rows = int(size)}).nodes;
+  Column x(size);
+  for (Eigen::Index i = 0; i < size; ++i) {
+    x[i] = recorded(f.operations(), nodes[std::size_t(i)]);
+  }
+  return x;
+}
+
+} // namespace detail
 
 } // namespace duet::expression

@@ -306,8 +306,8 @@ namespace duet::expression {
 }
 
 /// The value and the gradient of a function that is generic over scalars, at a column x, by reverse
-/// accumulation; for more than about ten variables cheaper than dual numbers. Each call traces the
-/// function: to evaluate one often, `trace` it once.
+/// accumulation. Each call traces the function, which takes far longer than its evaluation: for
+/// many calls make an `evaluator` of `reverse_gradient(trace(f, n), {"x"})`.
 ///
 /// \return `value_and_gradient`
 /// \throws invalid_input where the function branches on a value
@@ -316,17 +316,10 @@ template <class F, detail::RealColumn X>
   using column = Eigen::Matrix<recorded, X::RowsAtCompileTime, 1>;
   using S = typename X::Scalar;
   formula_graph g;
-  const std::vector<int> nodes =
-      g.add_input({.name = "x", .kind = shape::matrix, .rows = int(x.size())}).nodes;
-  column variables(x.size());
-  std::vector<S> numbers;
-  for (Eigen::Index i = 0; i < x.size(); ++i) {
-    variables[i] = recorded(g.operations(), nodes[std::size_t(i)]);
-    numbers.push_back(x[i]);
-  }
-  const recorded y = f(variables);
+  const recorded y = f(detail::add_column<column>(g, x.size()));
   g.add_output({.name = "y", .nodes = {y.node_in(g.operations())}});
-  const std::vector<S> values = evaluate(reverse_gradient(std::move(g), {"x"}), numbers);
+  const std::vector<S> values =
+      evaluate(reverse_gradient(std::move(g), {"x"}), std::vector<S>(x.begin(), x.end()));
   value_and_gradient<S, Eigen::Matrix<S, X::RowsAtCompileTime, 1>> result;
   result.value = values[0];
   result.gradient =

@@ -285,6 +285,23 @@ template <class F, Symbol... S>
   return traced(std::move(g), std::move(result));
 }
 
+/// The function of a column of any size as a formula with the input `x`: for more numbers than a
+/// symbol has.
+///
+/// \param f     called once, with an `Eigen::Matrix<recorded, Eigen::Dynamic, 1>`; as above
+/// \param size  of the column, at least 1
+/// \throws invalid_input for a size below 1, and where the function branches on a value
+template <class F>
+[[nodiscard]] formula_graph trace(F&& f, int size) {
+  duet::detail::require(size > 0, "duet: trace: the column has ", size,
+                        " numbers (expected at least 1)");
+  formula_graph g;
+  const auto result = f(detail::add_column<Eigen::Matrix<recorded, Eigen::Dynamic, 1>>(g, size));
+  duet::detail::require_owning_result<decltype(result)>();
+  detail::add_outputs(g, "", result);
+  return g;
+}
+
 namespace detail {
 
 /// A formula that is called by name, over the symbols that it holds.
