@@ -142,6 +142,20 @@ TEST_CASE("Jacobians by scalars, vectors, rotations and poses") {
   check(duet::frame::hybrid);
 }
 
+TEST_CASE("gradients with respect to rotations and poses") {
+  constexpr quaternion_symbol<"q"> q;
+  const auto f = rotate(q * rotation(A), v) + u * translation(A);
+  const auto q0 = duet::exp(vector3<double>(.5, .1, -.4));
+  const auto check = [&](auto frame) {
+    const auto J = jacobian(f, wrt(A, u, q), frame)(A = a0, v = v0, u = 0.3, q = q0).jacobian;
+    const auto g = gradient(dot(f, v), wrt(A, u, q), frame)(A = a0, v = v0, u = 0.3, q = q0);
+    CHECK((g.gradient - J.transpose() * v0).norm() < 1e-14);
+  };
+  check(duet::frame::spatial);
+  check(duet::frame::body);
+  check(duet::frame::hybrid);
+}
+
 constexpr symbol<"t1"> t1;
 constexpr symbol<"t2"> t2;
 constexpr symbol<"t3"> t3;

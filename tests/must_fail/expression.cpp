@@ -20,6 +20,7 @@
 using namespace duet::expression;
 constexpr symbol<"u"> u;
 constexpr vector_symbol<"w"> w;
+constexpr quaternion_symbol<"q"> q;
 constexpr matrix_symbol<"A", 2, 4> A;
 constexpr matrix_symbol<"B", 4, 2> B;
 const Eigen::Vector3d w0(1, 2, 3);
@@ -83,6 +84,18 @@ static_cast<void>(gradient(u* w, wrt(u)));                                      
 std::cout << gradient(u * w, wrt(u))(u = 0.3, w = w0).gradient << "\n";                   // wrong
 const auto h = hessian(u * w, wrt(u));                                                    // wrong
 std::cout << f(u = 0.3, w = w0) << gradient(f, wrt(u))(u = 0.3, w = w0).gradient << "\n"; // right
+
+//// gradient_without_frame
+// expect: duet: with rotations and poses say the frame: gradient\(f, wrt\(q\), frame::body\)
+
+static_cast<void>(gradient(norm(rotate(q, w)), wrt(q)));                    // wrong
+static_cast<void>(gradient(norm(rotate(q, w)), wrt(q), duet::frame::body)); // right
+
+//// hessian_of_rotation
+// expect: duet: a Hessian of a formula is with respect to scalars, vectors and matrices
+
+static_cast<void>(hessian(norm(rotate(q, w)), wrt(q))); // wrong
+static_cast<void>(hessian(norm(rotate(q, w)), wrt(w))); // right
 
 //// inverse_of_rectangle
 // expect: duet: trace, determinant, adjugate, inverse and solve take a square matrix

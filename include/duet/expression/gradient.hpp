@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/bindings.hpp>
@@ -9,6 +10,7 @@
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
+#include <duet/expression/velocity.hpp>
 
 #include <Eigen/Core>
 #include <boost/mp11/list.hpp>
@@ -90,6 +92,10 @@ private:
   }
 };
 
+template <class... Symbols>
+inline constexpr bool has_rotations =
+    ((Symbols::kind_of == kind::quaternion || Symbols::kind_of == kind::pose) || ...);
+
 } // namespace detail
 
 /// Value and gradient of f with respect to the variables, a function to be called by name:
@@ -97,14 +103,28 @@ private:
 template <Formula F, class... Symbols>
   requires ScalarTerm<F>
 [[nodiscard]] constexpr auto gradient(const F& f, variables<Symbols...>) {
+  static_assert(!detail::has_rotations<Symbols...>,
+                "duet: with rotations and poses say the frame: gradient(f, wrt(q), frame::body)");
   using gradient = detail::gradient_of<typename variables<Symbols...>::motions>;
   return detail::called_by_name<gradient, F>(f);
 }
 
-/// Value, gradient and Hessian of f with respect to the variables, a function to be called by name.
+/// Value and gradient with rotations and poses of unit norm among the variables: three numbers for
+/// a rotation, six for a pose, those of the columns of `jacobian` in the same frame.
+template <Formula F, class... Symbols, FrameConstant Frame>
+  requires ScalarTerm<F>
+[[nodiscard]] constexpr auto gradient(const F& f, variables<Symbols...>, Frame) {
+  using gradient = detail::gradient_of<typename variables<Symbols...>::template motions_in<Frame>>;
+  return detail::called_by_name<gradient, F>(f);
+}
+
+/// Value, gradient and Hessian of f with respect to scalars, vectors and matrices, a function to be
+/// called by name.
 template <Formula F, class... Symbols>
   requires ScalarTerm<F>
 [[nodiscard]] constexpr auto hessian(const F& f, variables<Symbols...>) {
+  static_assert(!detail::has_rotations<Symbols...>,
+                "duet: a Hessian of a formula is with respect to scalars, vectors and matrices");
   using hessian = detail::hessian_of<typename variables<Symbols...>::motions>;
   return detail::called_by_name<hessian, F>(f);
 }
