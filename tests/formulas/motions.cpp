@@ -177,7 +177,7 @@ formula rate_of_curve(std::size_t order) {
       order == 1 ? "P3" : "P4",
       order == 1
           ? R"(Q' = Q\,w,\; w \leftarrow e_j^*we_j + \tilde B_j'\omega_j)"
-          : R"(Q'' = Q\,(a + w^2),\; a \leftarrow e_j^*ae_j + \tilde B_j''\omega_j + 2w\times\tilde B_j'\omega_j)",
+          : R"(Q'' = Q\,(a + w^2),\; a \leftarrow e_j^*ae_j + \tilde B_j''\omega_j + 2\,e_j^*we_j\times\tilde B_j'\omega_j)",
       "cumulative_bspline::derivatives", "spline/piecewise_curve.hpp",
       {rotation_vector, rotation_vector, rotation_vector, rotation_vector, argument::fraction},
       [order]<class T>(const numbers<T>& x) {
