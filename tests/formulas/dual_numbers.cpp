@@ -90,8 +90,10 @@ std::vector<formula> dual_formulas() {
           },
           []<class T>(const numbers<T>& x, const numbers<T>& d) { return by_hand::row<T>(x, d); }),
       make_formula(
-          "N14", R"((p+\varepsilon q)(u+\varepsilon v) = pu + \varepsilon(qu + pv))", "operator*",
-          "quaternion/quaternion.hpp", {quaternion, quaternion, quaternion, quaternion},
+          "N14",
+          R"((p_1+\varepsilon q_1)(p_2+\varepsilon q_2) = p_1p_2 + \varepsilon(q_1p_2 + p_1q_2))",
+          "operator*", "quaternion/quaternion.hpp",
+          {quaternion, quaternion, quaternion, quaternion},
           []<class T>(const numbers<T>& x) { return all<T>(a_of(x, 0) * a_of(x, 8)); },
           []<class T>(const numbers<T>& x, const numbers<T>& d) {
             using namespace by_hand;

@@ -43,8 +43,8 @@ expression_route basis_functions() {
                                    basis_function<2, 4>(), basis_function<3, 4>());
   const auto slopes = derivative(values, u);
   return expression_route("P1", "bspline_basis",
-                          "`(u - t0) / (t3 - t0) * b0 + (t4 - u) / (t4 - t1) * b1`, `b0` and `b1` "
-                          "likewise, of the knots' differences, down to `1` on the span",
+                          "`(u - u0) / (u3 - u0) * b0 + (u4 - u) / (u4 - u1) * b1`, `b0` and `b1` "
+                          "by the same recurrence at order 3",
                           "`derivative`", [=](const numbers<double>& x, const numbers<double>& d) {
                             const auto y = values(u = x[0]);
                             const auto dy = slopes(u = x[0]);
@@ -135,23 +135,20 @@ expression_route arm(const char* label, const char* function, const Arm& f,
   const auto by_joints = jacobian(f, wrt(Joint{}...), duet::frame::spatial);
   const auto t = translation(f);
   const auto t_rate = directional_derivative(t, along(Joint{}, Rate{})...);
-  return expression_route(label, function,
-                          "product of the table's `screw(axis::z, theta)`, "
-                          "`translation_along(axis::z, d)`, `translation_along(axis::x, a)`, "
-                          "`screw(axis::x, alpha)`; `translation` of it",
-                          "`jacobian`, `directional_derivative`",
-                          [=](const numbers<double>& x, const numbers<double>& d) {
-                            const auto call = [&]<std::size_t... I>(std::index_sequence<I...>) {
-                              const auto [a, J] = by_joints((Joint{} = x[I])...);
-                              const duet::vector6<double> twist =
-                                  J * Eigen::Map<const Eigen::Matrix<double, int(sizeof...(I)), 1>>(
-                                          d.data());
-                              return all<double>(a, t((Joint{} = x[I])...),
-                                                 duet::pose_rate(a, twist, duet::frame::spatial),
-                                                 t_rate((Joint{} = x[I])..., (Rate{} = d[I])...));
-                            };
-                            return call(std::index_sequence_for<Joint...>{});
-                          });
+  return expression_route(
+      label, function, "`A`, `translation(A)`, A the product of the arm's joints",
+      "`jacobian`, `directional_derivative`",
+      [=](const numbers<double>& x, const numbers<double>& d) {
+        const auto call = [&]<std::size_t... I>(std::index_sequence<I...>) {
+          const auto [a, J] = by_joints((Joint{} = x[I])...);
+          const duet::vector6<double> twist =
+              J * Eigen::Map<const Eigen::Matrix<double, int(sizeof...(I)), 1>>(d.data());
+          return all<double>(a, t((Joint{} = x[I])...),
+                             duet::pose_rate(a, twist, duet::frame::spatial),
+                             t_rate((Joint{} = x[I])..., (Rate{} = d[I])...));
+        };
+        return call(std::index_sequence_for<Joint...>{});
+      });
 }
 
 } // namespace

@@ -126,7 +126,7 @@ constexpr const char* by = "`jacobian`, `gradient`, and Eigen's Cholesky decompo
 /// The expression is that of the power, linear in the wrench, of which the twist is the gradient.
 std::string text_of_power(const std::string& place_rate, const std::string& rotation_rate) {
   return "`dot(y, " + place_rate + " + cross(translation(A), w)) + dot(m, w)`, `w = 2 * vec(" +
-         rotation_rate + " * conj(rotation(A)))`, and of every joint, where it stands, " + "`" +
+         rotation_rate + " * conj(rotation(A)))`, and for each joint " + "`" +
          to_text(power(rotate(pose_symbol<"A">{}, axis::z))) + "`";
 }
 
@@ -168,7 +168,7 @@ auto step_of_joints(double beta) {
 
 std::string text_of_step() {
   return text_of_power("s - translation(A)", "(q - rotation(A))") +
-         ", `q = exp(r / 2)` of the nearer sign";
+         ", `q = exp(r / 2)` with the sign nearer to A";
 }
 
 expression_route joint_step() {
@@ -178,8 +178,8 @@ expression_route joint_step() {
 /// Twice N23, the second from where the first ends.
 expression_route steps_along_path() {
   const auto step = step_of_joints(.25);
-  return expression_route("N25", "resolved_step", "twice that of N23", by,
-                          [=](const numbers<double>& x, const numbers<double>& d) {
+  return expression_route("N25", "resolved_step", "that of N23 in two successive steps, k = 0, 1",
+                          by, [=](const numbers<double>& x, const numbers<double>& d) {
                             const numbers<double> end = step(x, d);
                             numbers<double> next(end.begin(), end.begin() + 7),
                                 dnext(end.begin() + 7, end.end());
@@ -203,7 +203,7 @@ expression_route planning_step() {
   return expression_route(
       "N24", "sclerp, resolved_step",
       text_of_power("translation(C) - translation(A)", "(rotation(C) - rotation(A))") +
-          ", `C = A * (conj(A) * B)^tau`, B of the nearer sign",
+          ", `C = A * (conj(A) * G)^tau`, `G` with the sign nearer to A",
       by, [=](const numbers<double>& x, const numbers<double>& d) {
         const duet::vector3<double> none(0, 0, 0);
         const auto at_x = [&](const auto& g) {

@@ -25,7 +25,7 @@ bool has_axis(const numbers<double>& x) {
 
 formula interpolation() {
   formula f = make_formula(
-      "N9", R"(A(\tau) = A_1(A_1^*A_2)^\tau)", "slerp", "quaternion/exponential.hpp",
+      "N9", R"(q(\tau) = q_1(q_1^*q_2)^\tau)", "slerp", "quaternion/exponential.hpp",
       {argument::rotation, argument::rotation, argument::fraction},
       []<class T>(const numbers<T>& x) {
         // The poses are constant, only τ varies.

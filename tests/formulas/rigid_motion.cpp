@@ -28,7 +28,7 @@ duet::quaternion<T> unit_of(const numbers<T>& x, std::size_t i) {
 /// Poses are constant, only τ varies: the screw motion from the textbook's axis, angle and pitch.
 formula screw_interpolation() {
   formula f = make_formula(
-      "N19", R"(C(\tau) = A\,(A^*B)^\tau)", "sclerp", "dual_quaternion/screw.hpp",
+      "N19", R"(A(\tau) = A_1(A_1^*A_2)^\tau)", "sclerp", "dual_quaternion/screw.hpp",
       {rotation_vector, vector, rotation_vector, vector, argument::fraction},
       []<class T>(const numbers<T>& x) {
         using R = duet::real_type_t<T>;
@@ -117,7 +117,7 @@ std::vector<formula> rigid_motion_formulas() {
           {16, 16}),
       screw_interpolation(),
       make_formula(
-          "N20", R"(\omega^s = 2E(\alpha)\dot\alpha,\; v^s = \dot t + \hat t\,\omega^s)",
+          "N20", R"(\omega^s = 2E(\alpha)\dot\alpha,\; v^s = \dot t + [t]_\times\omega^s)",
           "quaternion_rate_matrix, pose_coordinates_rate", "dual_quaternion/pose_coordinates.hpp",
           {rotation_vector, vector, vector, vector},
           []<class T>(const numbers<T>& x) {
@@ -141,7 +141,7 @@ std::vector<formula> rigid_motion_formulas() {
           {16, 16}),
       make_formula(
           "N21",
-          R"([v^s; \omega^s] = J_2\dot\gamma,\; J_2 = \begin{pmatrix}I & 2\hat tE\\ 0 & 2E\end{pmatrix})",
+          R"([v^s; \omega^s] = J_2\dot\gamma,\; J_2 = \begin{pmatrix}I & 2[t]_\times E\\ 0 & 2E\end{pmatrix})",
           "pose_rate_matrix", "dual_quaternion/pose_coordinates.hpp",
           {rotation_vector, vector, vector, argument::quaternion},
           []<class T>(const numbers<T>& x) {
