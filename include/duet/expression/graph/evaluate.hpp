@@ -128,13 +128,15 @@ template <class S>
     DUET_EACH_ROUNDING(DUET_CASE)
   case operation::power:
     return whole_power{index}.value(x);
-  default:
+  case operation::stumpff:
     return stumpff_of_order{index}.value(x);
+  default:
+    return S(-x);
   }
 #undef DUET_CASE
 }
 
-/// The functions of two numbers, without + − · /.
+/// The functions of two numbers.
 template <class S>
 [[nodiscard]] S function_value(operation what, const S& a, const S& b) {
   using std::atan2;
@@ -143,6 +145,14 @@ template <class S>
   using std::pow;
   using std::remainder;
   switch (what) {
+  case operation::sum:
+    return S(a + b);
+  case operation::difference:
+    return S(a - b);
+  case operation::product:
+    return S(a * b);
+  case operation::quotient:
+    return S(a / b);
   case operation::atan2:
     return S(atan2(a, b));
   case operation::hypot:
@@ -196,7 +206,7 @@ private:
 
   void evaluate(const graph_node& n, std::size_t i, const std::vector<S>& inputs) {
     const auto [a, b, c] = n.operands;
-    switch (n.what) {
+    switch (n.what) { // frequent operations first
     case operation::variable:
       numbers_[i] = inputs[std::size_t(n.index)];
       return;
