@@ -87,6 +87,8 @@ class Snippet:
 
     def alone(self, table, form):
         includes, code = self.parts(form)
+        if any(line.startswith("#if") for line in self.code): # which an include may depend on
+            includes, code = [], self.code
         return "\n".join([f'#line 1 "{table.label(1)}"', *table.for_all, *includes,
                           f'#line {self.first_line} "{table.label(1)}"', *code, ""])
 
