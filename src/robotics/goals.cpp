@@ -6,9 +6,6 @@
 #include <duet/quaternion/three_vector.hpp>
 #include <duet/robotics/goals.hpp>
 
-#include <Eigen/Core>
-#include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -32,7 +29,9 @@ void require_unit(const vector3<double>& n, const char* function, const char* na
                                                  const vector3<double>& to) {
   vector3<double> bisector = from + to;
   if (!(bisector.norm() > 1e-8)) { // opposite vectors: any orthogonal one
-    bisector = from.unitOrthogonal();
+    int smallest = 0;
+    from.cwiseAbs().minCoeff(&smallest);
+    bisector = from.cross(vector3<double>::Unit(smallest));
   }
   bisector.normalize();
   return {0, bisector[0], bisector[1], bisector[2]};
@@ -49,7 +48,10 @@ void constrain_rotation(twist_constraint& constraint, Eigen::Index row, const ve
 /// Constrains the rotation that takes an axis a of the tip to b, exactly or to within `max_tilt`.
 void constrain_axis(twist_constraint& constraint, const vector3<double>& a,
                     const vector3<double>& b, double tilt) {
-  const vector3<double> across = a.cross(b), t = a.unitOrthogonal();
+  int smallest = 0;
+  a.cwiseAbs().minCoeff(&smallest);
+  const vector3<double> across = a.cross(b), any = a.cross(vector3<double>::Unit(smallest));
+  const vector3<double> t = any / any.norm();
   const double sine = across.norm(), angle = std::atan2(sine, a.dot(b));
   const vector3<double> u = sine > 0 ? vector3<double>(across / sine) : t;
   if (tilt > 0) {
