@@ -110,7 +110,8 @@ template <Formula F, class... Symbols>
 }
 
 /// Value and gradient with rotations and poses of unit norm among the variables: three numbers for
-/// a rotation, six for a pose, those of the columns of `jacobian` in the same frame.
+/// a rotation, per rad about the axes of the frame, six for a pose, in the order [v; ω], as the
+/// columns of `jacobian` in the same frame.
 template <Formula F, class... Symbols, FrameConstant Frame>
   requires ScalarTerm<F>
 [[nodiscard]] constexpr auto gradient(const F& f, variables<Symbols...>, Frame) {

@@ -285,11 +285,11 @@ template <class F, Symbol... S>
   return traced(std::move(g), std::move(result));
 }
 
-/// The function of a column of any size as a formula with the input `x`: for more numbers than a
-/// symbol has.
+/// The function of a column of any size as a formula with the input `x`, for more numbers than a
+/// symbol has. It is called once, with an `Eigen::Matrix<recorded, Eigen::Dynamic, 1>`, and must be
+/// generic over scalars; it may branch on values by `duet::select` only.
 ///
-/// \param f     called once, with an `Eigen::Matrix<recorded, Eigen::Dynamic, 1>`; as above
-/// \param size  of the column, at least 1
+/// \param size  number of components, at least 1
 /// \throws invalid_input for a size below 1, and where the function branches on a value
 template <class F>
 [[nodiscard]] formula_graph trace(F&& f, int size) {
