@@ -34,6 +34,7 @@ struct expected {
   int slip;
   const char* name;
   const char* block;
+  int second = 0; ///< another slip that makes the named one of both
 };
 
 /// \param judge  the judgement on the Jacobian with given slips
@@ -45,8 +46,9 @@ void check_slips(const Judge& judge, const std::vector<expected>& single,
   CHECK(right);
   CHECK(right.counts[0] == right.samples);
   for (const expected& e : single) {
-    const jacobian_judgement j = judge(slip{e.slip});
+    const jacobian_judgement j = judge(slip{e.slip, e.second});
     CAPTURE(e.slip);
+    CAPTURE(e.second);
     CAPTURE(to_text(j));
     CHECK(j.outcome == verdict::disagrees);
     CHECK(has(j, e.name, e.block));
@@ -130,7 +132,10 @@ TEST_CASE("a pinhole camera: slips in blocks, and in factors of the chain") {
                {14, "scaled by a", "d f / d a"},
                {15, "permuted or shifted: columns 3, 4, 5, 0, 1, 2", "d f"},
                {16, "sign", "entry (0, 2) of d f / d (q p"},
-               {17, "moment arm about another point: (q p + t) is in its place", "d f / d q"}},
+               {17, "moment arm about another point: (q p + t) is in its place", "d f / d q"},
+               {1, "sign", "entry (0, 2) of d f / d (q p + t)", 16}, // in two of three uses
+               {4, "scaled by a constant, -0.5", "d f / d q", 13},
+               {8, "conjugate rotation of q", "all of d (q p + t)", 11}},
               {{1, 4}, {6, 11}, {13, 14}});
 }
 
@@ -176,8 +181,9 @@ TEST_CASE("rotation between two rotations: branches, sheets and Jacobians of exp
                {7, "right only at the identity: angle of a^-1 b", "d f / d b"},
                {8, "sheet of the double cover", "d f / d b"},
                {9, "branch beside a half turn: angle of a^-1 b", "d f / d b"},
-               {10, "right only at the identity", "d f / d b"}},
-              {{2, 4}, {1, 8}});
+               {10, "right only at the identity", "d f / d b"},
+               {1, "another state: b for a", "all of d f", 10}},
+              {{2, 4}, {1, 8}, {3, 6}, {6, 7}, {6, 10}});
 }
 
 TEST_CASE("pose between two poses: blocks of adjoints") {
@@ -574,7 +580,8 @@ TEST_CASE("formulas by stored numbers for a vector that is no argument") {
               {{1, "the vector part of q x (q f)", "column 0 of d f / d q, by stored numbers"},
                {2, "conjugate rotation", "d f / d q, by stored numbers"},
                {3, "wrong index in one summand", "entry (1, 1) of d f / d q, by stored numbers"},
-               {4, "transposed", "d f / d q[1..3], by stored numbers"}},
+               {4, "transposed", "d f / d q[1..3], by stored numbers"},
+               {1, "conjugate rotation", "d f / d q[1..3], by stored numbers", 2}},
               {{1, 3}});
 }
 

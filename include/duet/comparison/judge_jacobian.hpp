@@ -732,8 +732,9 @@ DUET_ABI_END
 /// have tangent coordinates: small rotation vectors and twists [v; ω] on `options.side`.
 ///
 /// A slip is named if it alone explains the matrices at all inputs, also at special ones; all that
-/// do are listed. Two slips, random errors and other functions are not named. Round-off
-/// is distinguished from slips as it differs between inputs that are almost equal: it counts as
+/// do are listed. Random errors, other functions and two slips are not named, except two that
+/// together equal a single one, as a sign and the factor 1/2 equal the factor -1/2. Round-off is
+/// distinguished from slips as it differs between inputs that are almost equal: it counts as
 /// `loses_precision`. With differences, an error below their estimated error is `inconclusive`.
 ///
 /// \param label     name of the judgement in the report

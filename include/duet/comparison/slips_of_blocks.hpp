@@ -52,9 +52,9 @@ protected:
       for (const jacobian_sample& s : samples_) {
         worst = s.is_wrong ? std::max(worst, error_of(s)) : worst;
       }
-      for (jacobian_sample& s : samples_) {
+      for (jacobian_sample& s : samples_) { // round-off leaves at least half of the digits
         s.little_error =
-            s.is_wrong && error_of(s) < 1e-3 * worst ? largest_entry(s.written - s.exact) : 0;
+            s.is_wrong && error_of(s) < 1e-6 * worst ? largest_entry(s.written - s.exact) : 0;
       }
     }
     find_wrong_entries();
