@@ -101,6 +101,11 @@ struct jacobian_sample {
              ? pose(q, vector3<double>(state.segment<3>(part.state + 4)))
              : dual_quaternion<double>(q);
 }
+/// a b. One function for all of them spares the compiler most of Eigen's products.
+[[nodiscard]] inline Eigen::MatrixXd product_of(const Eigen::Ref<const Eigen::MatrixXd>& a,
+                                                const Eigen::Ref<const Eigen::MatrixXd>& b) {
+  return a.lazyProduct(b);
+}
 [[nodiscard]] inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v[2], v[1], v[2], 0, -v[0], -v[1], v[0], 0;
@@ -159,8 +164,8 @@ struct jacobian_sample {
   Eigen::MatrixXd result(raw.rows(), columns);
   for (const jacobian_part& part : problem.arguments) {
     result.middleCols(part.first, part.dimension) =
-        raw.middleCols(part.state, part.state_size()) *
-        chart_derivative(part, state, problem.side, problem.order);
+        product_of(raw.middleCols(part.state, part.state_size()),
+                   chart_derivative(part, state, problem.side, problem.order));
   }
   return result;
 }

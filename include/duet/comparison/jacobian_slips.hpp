@@ -146,9 +146,10 @@ private:
               const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
               // By right perturbation: of R p + t, R, -R p^ and R; of R^T (p - t), -1, y^ and R^T.
               const Eigen::Matrix3d r = rotation_of_part(m, x), back = r.transpose();
-              const Eigen::Vector3d point = x.segment<3>(v.state);
-              const Eigen::Vector3d value = is_back ? Eigen::Vector3d(back * (point - offset_at(x)))
-                                                    : Eigen::Vector3d(r * point + offset_at(x));
+              const Eigen::Vector3d point = x.segment<3>(v.state), offset = offset_at(x);
+              const Eigen::Vector3d value = is_back
+                                                ? Eigen::Vector3d(product_of(back, point - offset))
+                                                : Eigen::Vector3d(product_of(r, point) + offset);
               matrix j = matrix::Zero(3, columns);
               j.middleCols(v.first, 3) = is_back ? back : r;
               if (is_pose) {
@@ -157,26 +158,28 @@ private:
                 j.middleCols(w->first, 3) = is_back ? Eigen::Matrix3d(-back) : one;
               }
               j.middleCols(m.first + m.dimension - 3, 3) =
-                  is_back ? cross_matrix(value) : Eigen::Matrix3d(-r * cross_matrix(point));
+                  is_back ? matrix(cross_matrix(value)) : product_of(r, cross_matrix(-point));
               if (!is_right) {
                 const matrix adjoint = Ad(conj(pose_at(m, x)));
-                j.middleCols(m.first, m.dimension) *=
-                    adjoint.bottomRightCorner(m.dimension, m.dimension).eval();
+                j.middleCols(m.first, m.dimension) =
+                    product_of(j.middleCols(m.first, m.dimension),
+                               adjoint.bottomRightCorner(m.dimension, m.dimension));
               }
               return jacobian_evaluation{value, j.template cast<long double>(), 0};
             };
             z.rotated = [=, &m, &v](const vector& x) {
               const Eigen::Matrix3d r = rotation_of_part(m, x);
               const Eigen::Vector3d point = x.segment<3>(v.state);
-              return is_back ? std::pair(Eigen::Vector3d(r.transpose() * (point - offset_at(x))),
-                                         Eigen::Vector3d(point - offset_at(x)))
-                             : std::pair(Eigen::Vector3d(r * point), point);
+              const Eigen::Vector3d before =
+                  is_back ? Eigen::Vector3d(point - offset_at(x)) : point;
+              return std::pair(Eigen::Vector3d(product_of(is_back ? r.transpose() : r, before)),
+                               before);
             };
             z.set = [=, &m, &v](vector x, const vector& value) {
               const Eigen::Matrix3d r = rotation_of_part(m, x);
-              x.segment<3>(v.state) = is_back
-                                          ? Eigen::Vector3d(r * value + offset_at(x))
-                                          : Eigen::Vector3d(r.transpose() * (value - offset_at(x)));
+              x.segment<3>(v.state) =
+                  is_back ? Eigen::Vector3d(product_of(r, value) + offset_at(x))
+                          : Eigen::Vector3d(product_of(r.transpose(), value - offset_at(x)));
               return x;
             };
             list.push_back(std::move(z));
@@ -356,8 +359,9 @@ private:
             }
             const matrix outer = divided(columns, factor);
             const auto [rotated, before] = z.rotated(x);
-            return std::pair(z.arguments[0],
-                             vector(2 * outer * (rotated - (from_vector ? 1. : 0.) * before)));
+            return std::pair(
+                z.arguments[0],
+                vector(2 * product_of(outer, rotated - (from_vector ? 1. : 0.) * before)));
           });
         }
       }
@@ -464,10 +468,10 @@ private:
         }
         const matrix a = divided(exact, factor);
         matrix b = divided(written, used);
-        is_chain = is_chain &&
-                   largest_entry(exact - a * factor) <= s.allowed + 1e-9 * largest_entry(exact);
+        is_chain = is_chain && largest_entry(exact - product_of(a, factor)) <=
+                                   s.allowed + 1e-9 * largest_entry(exact);
         for (Eigen::Index k = 0; k < exact.cols() && has_outer; ++k) {
-          const double error = (written.col(k) - b * used.col(k)).cwiseAbs().maxCoeff();
+          const double error = largest_entry(written.col(k) - product_of(b, used.col(k)));
           has_outer =
               !is_used[std::size_t(k)] || error <= s.allowed + 1e-9 * largest_entry(written);
         }

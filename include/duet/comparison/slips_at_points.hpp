@@ -50,7 +50,7 @@ protected:
           [&a, &b, is_inverse](vector& x) {
             const Eigen::Matrix3d r = rotation_matrix(rotation_at(b, x));
             const Eigen::Vector3d v = x.segment<3>(a.vector_state());
-            x.segment<3>(a.vector_state()) = (is_inverse ? Eigen::Matrix3d(r.transpose()) : r) * v;
+            x.segment<3>(a.vector_state()) = product_of(is_inverse ? r.transpose() : r, v);
           });
     }
   }
@@ -92,7 +92,7 @@ protected:
         add(message("inverse of ", a.name), [&a](vector& x) {
           const quaternion<double> q = rotation_at(a, x);
           x.segment<3>(a.state + 4) =
-              -(rotation_matrix(q).transpose() * x.segment<3>(a.state + 4)).eval();
+              product_of(-rotation_matrix(q).transpose(), x.segment<3>(a.state + 4));
           set_rotation(x, a, conj(q));
         });
       }

@@ -80,7 +80,7 @@ protected:
     first_row_ = first_ = std::numeric_limits<Eigen::Index>::max();
     for (const jacobian_sample& s : samples_) {
       const bool has_factor = s.outer.size() > 0; // rows are not those of the written matrix
-      const matrix exact = has_factor ? matrix(s.outer * s.exact) : s.exact;
+      const matrix exact = has_factor ? product_of(s.outer, s.exact) : s.exact;
       for (Eigen::Index i = 0; s.is_wrong && i < exact.rows(); ++i) {
         for (Eigen::Index k = 0; k < exact.cols(); ++k) {
           if (!(std::abs(s.written(i, k) - exact(i, k)) <= s.allowed)) {
@@ -193,7 +193,7 @@ protected:
     if (s.outer.size() > 0) {
       matrix changed = s.exact;
       changed.block(at.row, at.column, at.rows, at.columns) = candidate;
-      const matrix product = s.outer * changed;
+      const matrix product = product_of(s.outer, changed);
       return largest_entry(s.written - product) <=
              s.allowed + s.little_error +
                  relative * std::max(largest_entry(s.written), largest_entry(product));
@@ -223,7 +223,7 @@ protected:
       list.push_back(&samples_[wrong - 1 - n * wrong / count]);
     }
     const auto error = [](const jacobian_sample* x) {
-      return largest_entry(x->outer.size() > 0 ? matrix(x->written - x->outer * x->exact)
+      return largest_entry(x->outer.size() > 0 ? matrix(x->written - product_of(x->outer, x->exact))
                                                : matrix(x->written - x->exact));
     };
     std::sort(list.begin(), list.end(), [&](const jacobian_sample* x, const jacobian_sample* y) {
@@ -312,7 +312,7 @@ protected:
         return false;
       }
       out = inverse_of(m);
-      return largest_entry(out * m - matrix::Identity(m.rows(), m.rows())) < 1e-6;
+      return largest_entry(product_of(out, m) - matrix::Identity(m.rows(), m.rows())) < 1e-6;
     });
     attempt_change("column-major data in a row-major array", [](const matrix& m, matrix& out) {
       out.resize(m.rows(), m.cols());
@@ -507,7 +507,7 @@ protected:
   }
   [[nodiscard]] static matrix power_of(const matrix& m, int power) {
     const matrix base = power < 0 ? inverse_of(m) : m;
-    return std::abs(power) == 2 ? matrix(base * base) : base;
+    return std::abs(power) == 2 ? product_of(base, base) : base;
   }
 
   void try_frames() {
@@ -529,8 +529,8 @@ protected:
             }
             const matrix identity = one * matrix::Identity(at.rows, at.columns);
             out = of(s.exact, at) - identity;
-            out = identity + (is_left ? matrix(power_of(factor, power) * out)
-                                      : matrix(out * power_of(factor, power)));
+            out = identity + (is_left ? product_of(power_of(factor, power), out)
+                                      : product_of(out, power_of(factor, power)));
             return true;
           };
         };
@@ -558,7 +558,8 @@ protected:
                     if (at.rows != at.columns || !adjoint(s, m, at.rows, factor)) {
                       return false;
                     }
-                    out = power_of(factor, power) * of(s.exact, at) * power_of(factor, -power);
+                    out = product_of(product_of(power_of(factor, power), of(s.exact, at)),
+                                     power_of(factor, -power));
                     return true;
                   });
         }
@@ -573,7 +574,8 @@ protected:
               out = rotation_of(s, m);
               out = power < 0 ? matrix(out.transpose()) : out;
               if (exact.rows() != 3 || exact.cols() != 3 ||
-                  largest_entry(exact * exact.transpose() - matrix::Identity(3, 3)) > 1e-9) {
+                  largest_entry(product_of(exact, exact.transpose()) - matrix::Identity(3, 3)) >
+                      1e-9) {
                 return false;
               }
               out *= Eigen::Matrix3d(exact).determinant();
@@ -631,8 +633,8 @@ protected:
                 if ((is_left ? at.rows : at.columns) != 3) {
                   return false;
                 }
-                out = is_left ? matrix(factor(s) * of(s.exact, at))
-                              : matrix(of(s.exact, at) * factor(s));
+                out = is_left ? product_of(factor(s), of(s.exact, at))
+                              : product_of(of(s.exact, at), factor(s));
                 return true;
               });
             }
@@ -688,15 +690,15 @@ protected:
       const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, s.state));
       for (std::size_t i = 0; i < count; ++i) {
         const named_vector v = list[i];
-        list.push_back({"(" + m.name + " " + v.name + ")", r * v.value});
-        list.push_back({"(" + m.name + "^-1 " + v.name + ")", r.transpose() * v.value});
+        list.push_back({"(" + m.name + " " + v.name + ")", product_of(r, v.value)});
+        list.push_back({"(" + m.name + "^-1 " + v.name + ")", product_of(r.transpose(), v.value)});
         for (std::size_t k = first; k < count && with_points && i >= first; ++k) {
           const named_vector w = list[k];
           if (k != i && (m.type == kind::rotation || w.name == m.name + ".translation")) {
-            list.push_back(
-                {"(" + m.name + " " + v.name + " + " + w.name + ")", r * v.value + w.value});
+            list.push_back({"(" + m.name + " " + v.name + " + " + w.name + ")",
+                            product_of(r, v.value) + w.value});
             list.push_back({"(" + m.name + "^-1 (" + v.name + " - " + w.name + "))",
-                            r.transpose() * (v.value - w.value)});
+                            product_of(r.transpose(), v.value - w.value)});
           }
         }
       }
@@ -725,7 +727,7 @@ protected:
               return v;
             }
             const Eigen::Matrix3d r = rotation_of(s, rotations[(axes - 1) / 2]);
-            return axes % 2 == 1 ? matrix(v * r) : matrix(v * r.transpose());
+            return axes % 2 == 1 ? product_of(v, r) : product_of(v, r.transpose());
           };
           const auto covers = [&](const scope& at) {
             return at.column == omega && at.columns == 3;
@@ -747,10 +749,12 @@ protected:
                           if (is_other_side) {
                             const Eigen::Matrix3d r =
                                 rotation_matrix(rotation_at(rotated_part, s.state));
-                            out *= problem_.side == perturbation::right ? r.transpose() : r;
+                            out = product_of(
+                                out, problem_.side == perturbation::right ? r.transpose() : r);
                           }
-                          out += force(s, at) *
-                                 cross_matrix(sign * s.state.segment<3>(arm.vector_state()));
+                          out += product_of(
+                              force(s, at),
+                              cross_matrix(sign * s.state.segment<3>(arm.vector_state())));
                           return true;
                         });
               }
@@ -761,7 +765,7 @@ protected:
               try_constant_vector(
                   "moment arm about another point: off by the constant", at,
                   [&](const jacobian_sample& s, const Eigen::Vector3d& c) -> matrix {
-                    return force(s, at) * cross_matrix(c);
+                    return product_of(force(s, at), cross_matrix(c));
                   });
             }
           }
@@ -786,8 +790,8 @@ protected:
                       if (at.column != omega || at.columns != 3) {
                         return false;
                       }
-                      out = sign * s.exact.block(at.row, moved.first, at.rows, 3) *
-                            cross_matrix(vectors_of(s, true)[n].value);
+                      out = product_of(s.exact.block(at.row, moved.first, at.rows, 3),
+                                       cross_matrix(sign * vectors_of(s, true)[n].value));
                       return true;
                     });
           }
@@ -799,12 +803,13 @@ protected:
   /// Rows of the error in the columns of a rectangle, and what a term of a rectangle makes of it.
   [[nodiscard]] static matrix error_in(const jacobian_sample& s, const scope& at) {
     return s.outer.size() > 0
-               ? matrix((s.written - s.outer * s.exact).middleCols(at.column, at.columns))
+               ? matrix(
+                     (s.written - product_of(s.outer, s.exact)).middleCols(at.column, at.columns))
                : matrix(of(s.written, at) - of(s.exact, at));
   }
   [[nodiscard]] static matrix effect_of(const jacobian_sample& s, const scope& at,
                                         const matrix& term) {
-    return s.outer.size() > 0 ? matrix(s.outer.middleCols(at.row, at.rows) * term) : term;
+    return s.outer.size() > 0 ? product_of(s.outer.middleCols(at.row, at.rows), term) : term;
   }
 
   /// The coefficient of a term in an error.
@@ -831,8 +836,8 @@ protected:
         const matrix effect = effect_of(*s, at, term(*s, Eigen::Vector3d::Unit(k)));
         columns.col(k) = effect.reshaped();
       }
-      normal += columns.transpose() * columns;
-      right += columns.transpose() * error.reshaped();
+      normal += product_of(columns.transpose(), columns);
+      right += product_of(columns.transpose(), error.reshaped());
     }
     const Eigen::Vector3d c = least_norm_solution(normal, right);
     if (!c.allFinite() || c.norm() < 1e-9 ||

@@ -214,13 +214,13 @@ protected:
     const auto add_cross = [&](const std::string& name, const Eigen::Vector3d& x) {
       const matrix cross = cross_matrix(x);
       list.push_back({"the cross matrix of " + name, cross, true});
-      list.push_back({"the squared cross matrix of " + name, cross * cross, true});
+      list.push_back({"the squared cross matrix of " + name, product_of(cross, cross), true});
     };
     for (std::size_t a = 0; a < v.size(); ++a) {
       add_cross(v[a].name, v[a].value);
       for (std::size_t b = 0; b < v.size(); ++b) {
-        list.push_back(
-            {v[a].name + " " + v[b].name + "^T", v[a].value * v[b].value.transpose(), true});
+        list.push_back({v[a].name + " " + v[b].name + "^T",
+                        product_of(v[a].value, v[b].value.transpose()), true});
         if (b >= a) {
           list.push_back({"(" + v[a].name + " . " + v[b].name + ") 1",
                           v[a].value.dot(v[b].value) * matrix::Identity(3, 3)});
@@ -235,7 +235,7 @@ protected:
       list.push_back({"the rotation matrix of " + m.name, r});
       for (const named_vector& x : v) {
         list.push_back({"the rotation matrix of " + m.name + " times the cross matrix of " + x.name,
-                        r * cross_matrix(x.value)});
+                        product_of(r, cross_matrix(x.value))});
       }
     }
     return list;
@@ -329,8 +329,8 @@ protected:
                      [&](const jacobian_sample& s, const constant& c) -> matrix {
                        const matrix r = rotation_of(s, m);
                        const matrix of_constant = is_square ? matrix(cross_matrix(c)) : matrix(c);
-                       return is_inverse ? matrix(r.transpose() * of_constant)
-                                         : matrix(r * of_constant);
+                       return is_inverse ? product_of(r.transpose(), of_constant)
+                                         : product_of(r, of_constant);
                      })) {
           return true;
         }
@@ -343,8 +343,10 @@ protected:
     };
     static constexpr form forms[] = {
         {"", " x c", [](const auto& x, const auto& c) -> matrix { return x.cross(c); }, false},
-        {"", " c^T", [](const auto& x, const auto& c) -> matrix { return x * c.transpose(); }},
-        {"c ", "^T", [](const auto& x, const auto& c) -> matrix { return c * x.transpose(); }},
+        {"", " c^T",
+         [](const auto& x, const auto& c) -> matrix { return product_of(x, c.transpose()); }},
+        {"c ", "^T",
+         [](const auto& x, const auto& c) -> matrix { return product_of(c, x.transpose()); }},
         {"(", " . c) 1",
          [](const auto& x, const auto& c) -> matrix { return x.dot(c) * matrix::Identity(3, 3); }},
         {"the cross matrix of ", " x c",
@@ -385,7 +387,7 @@ protected:
       };
       const auto charted = [&](const jacobian_sample& s, const matrix& m, quaternion_order order,
                                perturbation side) -> matrix {
-        return m * chart_derivative(a, s.state, side, order);
+        return product_of(m, chart_derivative(a, s.state, side, order));
       };
       try_reading(is_w_first ? "w last for w first" : "w first for w last",
                   [&](const jacobian_sample& s, const matrix& m) {

@@ -148,7 +148,8 @@ template <class Function>
   for (std::size_t i = 0; i < k; ++i) {
     first += Eigen::Index(numbers[i].size());
   }
-  const Eigen::MatrixXd product = function.evaluated(numbers).second.middleCols(first, size) * plus;
+  const Eigen::MatrixXd product =
+      product_of(function.evaluated(numbers).second.middleCols(first, size), plus);
   const std::vector<double> x = numbers[k];
   double error = 0, scale = 1e-300;
   for (int j = 0; j < dimension; ++j) {
