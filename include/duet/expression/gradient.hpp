@@ -6,8 +6,9 @@
 #include <duet/derivative/gradient.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/bindings.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
+#include <duet/expression/tape/derivation.hpp>
+#include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/velocity.hpp>
@@ -33,13 +34,18 @@ struct gradient_of<motion_list<Motions...>> {
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
     constexpr int n = int(sizeof...(Motions));
     using S = typename Bindings::scalar;
-    auto values = evaluated_nodes<Node, rate_t<Node, Motions>...>(b);
-    value_and_gradient<S, Eigen::Matrix<S, n, 1>> result;
-    result.value = values.template get<0>();
-    int i = 0;
-    values.template each<1, n>([&](const auto& x)
-                                   DUET_INLINE_LAMBDA { result.gradient[i++] = S(x); });
-    return result;
+    const auto use = [](auto& values) DUET_INLINE_LAMBDA {
+      value_and_gradient<S, Eigen::Matrix<S, n, 1>> result;
+      result.value = S(values.template get<0>());
+      S* gradient = result.gradient.data();
+      values.template each<1, n>([&](const auto& x) DUET_INLINE_LAMBDA { *gradient++ = S(x); });
+      return result;
+    };
+    if constexpr (is_differentiated_on_tape<Node, Motions...>) {
+      return evaluated_program<build_derivatives<Node, 1, Motions...>>(b, use);
+    } else {
+      return evaluated_nodes<Node, rate_t<Node, Motions>...>(b, use);
+    }
   }
 };
 
@@ -65,30 +71,38 @@ struct hessian_of<motion_list<Motions...>> {
 
   template <class Node, class Bindings>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
-    return with_second<Node>(b, typename upper_triangle<Node, Motions...>::type{});
+    if constexpr (is_differentiated_on_tape<Node, Motions...>) {
+      return with_second(b, build_derivatives<Node, 2, Motions...>());
+    } else {
+      return of_nodes<Node>(b, typename upper_triangle<Node, Motions...>::type{});
+    }
   }
 
 private:
   template <class Node, class Bindings, class... Second>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto with_second(const Bindings& b,
-                                                           boost::mp11::mp_list<Second...>) {
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto of_nodes(const Bindings& b,
+                                                        boost::mp11::mp_list<Second...>) {
+    return with_second(b, build_nodes<Node, rate_t<Node, Motions>..., Second...>());
+  }
+  template <class Bindings, class Build>
+  [[nodiscard]] DUET_ALWAYS_INLINE static auto with_second(const Bindings& b, Build) {
     constexpr int n = int(sizeof...(Motions));
     using S = typename Bindings::scalar;
-    auto values = evaluated_nodes<Node, rate_t<Node, Motions>..., Second...>(b);
-    value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
-    result.value = values.template get<0>();
-    int i = 0;
-    values.template each<1, n>([&](const auto& x)
-                                   DUET_INLINE_LAMBDA { result.gradient[i++] = S(x); });
-    int i_second = 0, j_second = 0;
-    values.template each<1 + n, int(sizeof...(Second))>([&](const auto& x) DUET_INLINE_LAMBDA {
-      result.hessian(i_second, j_second) = S(x);
-      result.hessian(j_second, i_second) = S(x);
-      if (++j_second == n) {
-        j_second = ++i_second;
-      }
+    return evaluated_program<Build>(b, [](auto& values) DUET_INLINE_LAMBDA {
+      value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
+      result.value = S(values.template get<0>());
+      S* gradient = result.gradient.data();
+      values.template each<1, n>([&](const auto& x) DUET_INLINE_LAMBDA { *gradient++ = S(x); });
+      S* const hessian = result.hessian.data();
+      int i = 0, j = 0;
+      values.template each<1 + n, n*(n + 1) / 2>([&](const auto& x) DUET_INLINE_LAMBDA {
+        hessian[n * i + j] = hessian[n * j + i] = S(x);
+        if (++j == n) {
+          j = ++i;
+        }
+      });
+      return result;
     });
-    return result;
   }
 };
 

@@ -6,8 +6,8 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/expression/arm/pose_chain.hpp>
 #include <duet/expression/evaluate/bindings.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
+#include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/velocity.hpp>
@@ -70,15 +70,17 @@ private:
     using S = typename Bindings::scalar;
     constexpr kind k = Node::kind_of;
     constexpr int rows = k == kind::pose ? 6 : is_matrix(k) ? rows_of(k) * columns_of(k) : 3;
-    auto values = evaluated_nodes<Node, decltype(column_of<Node, Motions, Frame>())...>(b);
-    returned<S, std::decay_t<decltype(values.template get<0>())>, rows> result;
-    result.value = values.template get<0>();
-    S* column = result.jacobian.data();
-    values.template each<1, int(sizeof...(Motions))>([&](const auto& x) DUET_INLINE_LAMBDA {
-      write_column(column, x);
-      column += rows;
-    });
-    return result;
+    return evaluated_nodes<Node, decltype(column_of<Node, Motions, Frame>())...>(
+        b, [](auto& values) DUET_INLINE_LAMBDA {
+          returned<S, std::decay_t<decltype(values.template get<0>())>, rows> result;
+          result.value = values.template get<0>();
+          S* column = result.jacobian.data();
+          values.template each<1, int(sizeof...(Motions))>([&](const auto& x) DUET_INLINE_LAMBDA {
+            write_column(column, x);
+            column += rows;
+          });
+          return result;
+        });
   }
 };
 

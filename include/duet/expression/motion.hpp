@@ -5,7 +5,7 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/bindings.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
+#include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/velocity.hpp>
@@ -46,14 +46,16 @@ struct motion_of {
     using by_symbol = movement_of_scalar<Symbol>;
     using velocity_node = decltype(velocity_of<Frame, Node, by_symbol>());
     using acceleration_node = rate_t<velocity_node, by_symbol>;
-    auto values = evaluated_nodes<Node, velocity_node, acceleration_node>(b);
-    using value = std::decay_t<decltype(values.template get<0>())>;
-    constexpr int rows = Node::kind_of == kind::pose ? 6 : 3;
-    moving_value<value, Eigen::Matrix<typename Bindings::scalar, rows, 1>> result;
-    result.value = values.template get<0>();
-    write_column(result.velocity.data(), values.template get<1>());
-    write_column(result.acceleration.data(), values.template get<2>());
-    return result;
+    return evaluated_nodes<Node, velocity_node, acceleration_node>(
+        b, [](auto& values) DUET_INLINE_LAMBDA {
+          using value = std::decay_t<decltype(values.template get<0>())>;
+          constexpr int rows = Node::kind_of == kind::pose ? 6 : 3;
+          moving_value<value, Eigen::Matrix<typename Bindings::scalar, rows, 1>> result;
+          result.value = values.template get<0>();
+          write_column(result.velocity.data(), values.template get<1>());
+          write_column(result.acceleration.data(), values.template get<2>());
+          return result;
+        });
   }
 };
 

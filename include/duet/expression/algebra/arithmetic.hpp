@@ -36,12 +36,6 @@ namespace detail {
 // Values are numbers and matrices, not expression templates of Eigen. Vectors of three are computed
 // by component: Eigen would use packets, which are slower to take apart.
 
-/// Eigen matrix, as distinguished from other values of formulas.
-template <class T>
-concept EigenMatrix = requires {
-  T::SizeAtCompileTime;
-};
-
 template <class T>
 [[nodiscard]] constexpr const auto& component_of(const T& x, [[maybe_unused]] int i) {
   if constexpr (EigenMatrix<T>) {

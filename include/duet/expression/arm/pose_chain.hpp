@@ -5,10 +5,11 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/arm/moving_frame.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/screw.hpp>
+#include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/node_list.hpp>
 #include <duet/expression/vector.hpp>
 #include <duet/expression/velocity.hpp>
 
@@ -26,6 +27,8 @@
 
 namespace duet::expression::detail {
 
+namespace mp11 = boost::mp11;
+
 /// The factors of a product.
 template <class Node>
 struct factors {
@@ -42,6 +45,16 @@ template <class Node>
 inline constexpr bool is_pose_chain = false;
 template <class A, class B>
 inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> = A::kind_of == kind::pose;
+
+/// The different symbols of a node.
+template <class Node>
+struct symbols_of {
+  using type = mp11::mp_if_c<is_symbol<Node>, mp11::mp_list<Node>, mp11::mp_list<>>;
+};
+template <class Operation, class... X>
+struct symbols_of<applied_node<Operation, X...>> {
+  using type = mp11::mp_unique<mp11::mp_append<mp11::mp_list<>, typename symbols_of<X>::type...>>;
+};
 
 /// Class of a factor for `moving_frame`, the nodes whose values it is appended with, and the node
 /// of its twist if symbols move.
@@ -77,9 +90,8 @@ struct moved_factor {
   using directions_of = typename directions<Symbol, spatial_frame>::type;
   using of_symbols = mp11::mp_apply<
       mp11::mp_append,
-      mp11::mp_push_front<
-          mp11::mp_transform<directions_of, mp11::mp_copy_if<nodes_of<Factor>, is_symbol_node>>,
-          motion_list<>>>;
+      mp11::mp_push_front<mp11::mp_transform<directions_of, typename symbols_of<Factor>::type>,
+                          motion_list<>>>;
   template <class Motion>
   using moves = mp11::mp_bool<(Motions::template index<Motion> >= 0) &&
                               !is_zero<typename link_of<Factor>::template twist<Motion>>>;
@@ -100,8 +112,8 @@ struct factor_step<Link, IsFirst, std::integer_sequence<int, Values...>,
                    mp11::mp_list<column_write<Column, IsSet, Twist>...>> {
   template <class Slots>
   DUET_ALWAYS_INLINE static void run(moving_frame& f, [[maybe_unused]] double* jacobian, Slots& s) {
-    (f.write<IsSet>(Link{}, jacobian + 6 * Column, value_at<Twist>(s)), ...);
-    f.append<IsFirst>(Link{}, value_at<Values>(s)...);
+    (f.write<IsSet>(Link{}, jacobian + 6 * Column, s.template get<Twist>()), ...);
+    f.append<IsFirst>(Link{}, s.template get<Values>()...);
   }
 };
 
@@ -113,25 +125,26 @@ struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index
   /// Returns the pose and writes its Jacobian into 6 × n doubles, column by column.
   [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double> evaluate(double* jacobian,
                                                                            const auto& b) {
-    auto values = evaluated(nodes{}, b);
-    moving_frame f;
-    run(f, jacobian, values,
-        typename step<K, Factors, typename link_of<Factors>::nodes,
-                      typename moved_factor<Factors, motions>::motions>::type{}...);
-    if constexpr (std::find(first_moved.begin(), first_moved.end(), count) != first_moved.end()) {
-      for (std::size_t i = 0; i < first_moved.size(); ++i) {
-        if (first_moved[i] == count) {
-          std::fill_n(jacobian + 6 * i, 6, 0.0);
+    return evaluated_nodes(nodes{}, b, [jacobian](auto& values) DUET_INLINE_LAMBDA {
+      moving_frame f;
+      run(f, jacobian, values,
+          typename step<K, Factors, typename link_of<Factors>::nodes,
+                        typename moved_factor<Factors, motions>::motions>::type{}...);
+      if constexpr (std::find(first_moved.begin(), first_moved.end(), count) != first_moved.end()) {
+        for (std::size_t i = 0; i < first_moved.size(); ++i) {
+          if (first_moved[i] == count) {
+            std::fill_n(jacobian + 6 * i, 6, 0.0);
+          }
         }
       }
-    }
-    return f.pose();
+      return f.pose();
+    });
   }
 
 private:
   using motions = node_list<Motions...>;
   using nodes =
-      mp11::mp_apply<nodes_of, mp11::mp_append<typename moved_factor<Factors, motions>::roots...>>;
+      mp11::mp_apply<node_list, mp11::mp_append<typename moved_factor<Factors, motions>::roots...>>;
   static constexpr std::size_t count = sizeof...(Factors);
 
   /// Index of the first factor that a motion moves, for each motion.

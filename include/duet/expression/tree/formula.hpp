@@ -5,7 +5,7 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/evaluate/bindings.hpp>
-#include <duet/expression/evaluate/node_values.hpp>
+#include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
 
@@ -186,7 +186,9 @@ public:
     requires(detail::binding_error_of_call<Held, Arguments...> == detail::binding_error::none)
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator()(const Arguments&... arguments) const {
     using values = detail::bindings<Held, Arguments...>;
-    return detail::evaluated_nodes<NodeType>(values{held_, arguments...}).template get<0>();
+    return detail::evaluated_nodes<NodeType>(
+        values{held_, arguments...},
+        [](auto& computed) DUET_INLINE_LAMBDA { return computed.template get<0>(); });
   }
   using detail::refused_calls<Held, detail::value_of_kind<NodeType::kind_of>>::operator();
 

@@ -1,11 +1,9 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/types.hpp>
+#include <duet/expression/tree/exact.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
-
-#include <cstdint>
 
 /// \file
 /// Numbers known at compile time: `c<2>`, `0.5_c`. Unlike 2 or 0.5, they are part of the type of a
@@ -14,24 +12,6 @@
 namespace duet::expression {
 
 namespace detail {
-
-/// True if a + b is exact in double precision (two-sum, Knuth).
-[[nodiscard]] constexpr bool is_sum_exact(double a, double b) {
-  const double sum = a + b;
-  const double b_rounded = sum - a;
-  return (a - (sum - b_rounded)) + (b - b_rounded) == 0;
-}
-
-/// True if a b is exact in double precision (Veltkamp–Dekker product).
-[[nodiscard]] constexpr bool is_product_exact(double a, double b) {
-  const auto upper = [](double x) {
-    const double scaled = x * 0x8000001p0;
-    return scaled - (scaled - x);
-  };
-  const double a_high = upper(a), b_high = upper(b);
-  const double a_low = a - a_high, b_low = b - b_high;
-  return ((a_high * b_high - a * b) + a_high * b_low + a_low * b_high) + a_low * b_low == 0;
-}
 
 /// True if x^n by products is within 4 units in the last place.
 [[nodiscard]] constexpr bool is_accurate_by_products(int n) { return -4 <= n && n <= 5; }
@@ -64,10 +44,6 @@ template <int N = -4, class X>
   } else {
     return power_by_products<N>(x);
   }
-}
-
-[[nodiscard]] constexpr std::uint64_t bits_of(double x) {
-  return duet::detail::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x);
 }
 
 } // namespace detail
