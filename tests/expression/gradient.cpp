@@ -17,6 +17,16 @@ auto formula_of(const X& a, const X& b, const X& d) {
   return sin(a * b) * exp(-d / (1 + a * a)) + b * cos(d) * d - a / b;
 }
 
+template <int Steps, class X, class Y>
+auto nested(const X& x, const Y& y) {
+  using std::sin;
+  if constexpr (Steps == 0) {
+    return x;
+  } else {
+    return nested<Steps - 1>(sin(x + y) * y, y);
+  }
+}
+
 TEST_CASE("gradient, Hessian and directional derivative against dual numbers") {
   constexpr symbol<"a"> a;
   constexpr symbol<"b"> b;
@@ -49,6 +59,33 @@ TEST_CASE("gradient, Hessian and directional derivative against dual numbers") {
       [&](auto t) { return gradient(f, wrt(a, b, d))(a = at[0], b = t, d = at[2]).gradient; },
       at[1]);
   CHECK((by_b.derivative - expected.hessian.col(1)).norm() < 1e-14);
+}
+
+TEST_CASE("a formula of more operations than first fit in the memory of the compiler") {
+  constexpr symbol<"x"> x;
+  constexpr symbol<"y"> y;
+  constexpr int steps = 60; // of three operations
+  const auto f = nested<steps>(x, y);
+  const Eigen::Vector2d at(0.4, 1.3);
+  const auto expected = duet::hessian([](const auto& z) { return nested<steps>(z[0], z[1]); }, at);
+  CHECK(f(x = at[0], y = at[1]) == doctest::Approx(expected.value).epsilon(1e-14));
+  const auto all = hessian(f, wrt(x, y))(x = at[0], y = at[1]);
+  CHECK(all.value == f(x = at[0], y = at[1]));
+  CHECK((all.gradient - expected.gradient).norm() < 1e-13 * expected.gradient.norm());
+  CHECK((all.hessian - expected.hessian).norm() < 1e-13 * expected.hessian.norm());
+}
+
+TEST_CASE("real parts of a formula stay real where other arguments are dual") {
+  using number = duet::dual<double>;
+  constexpr symbol<"a"> a;
+  constexpr symbol<"b"> b;
+  constexpr vector_symbol<"v"> v;
+  const auto real = sin(a) * norm(v);
+  const Eigen::Vector3d w(0.3, -0.4, 0.7);
+  static_assert(std::is_same_v<decltype((real + c<0> * b)(a = 0.3, b = number(1), v = w)), double>);
+  const number y = (real * b)(a = 0.3, b = number(0.7, 1), v = w);
+  CHECK(y.value() == real(a = 0.3, v = w) * 0.7);
+  CHECK(y.epsilon() == real(a = 0.3, v = w));
 }
 
 TEST_CASE("zeros are known") {

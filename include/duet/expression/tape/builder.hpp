@@ -68,12 +68,11 @@ struct tape_memo {
 /// Memory of a tape.
 template <int Capacity>
 struct tape_memory {
-  static constexpr int table_size = 256;
   tape_entry entries[std::size_t(Capacity)] = {};
   int operands[std::size_t(4 * Capacity)] = {};
-  int table[table_size] = {};
+  int table[std::size_t(Capacity)] = {};
   tape_memo memos[std::size_t(Capacity)] = {};
-  int memo_table[table_size] = {};
+  int memo_table[std::size_t(Capacity)] = {};
   int size = 0;
   int operand_count = 0;
   int memo_count = 0;
@@ -341,7 +340,7 @@ public:
 
   /// Entry of a node of the written formula, or −1 if it is not on the tape.
   [[nodiscard]] constexpr int recalled(unsigned hash, const char* id) const {
-    for (int i = memo_table_[hash % 256] - 1; i >= 0; i = memos_[i].next) {
+    for (int i = memo_table_[hash % unsigned(capacity_)] - 1; i >= 0; i = memos_[i].next) {
       if (memos_[i].hash == hash && memos_[i].id == id) {
         return memos_[i].entry;
       }
@@ -353,7 +352,7 @@ public:
       is_full_ = true;
       return entry;
     }
-    int& head = memo_table_[hash % 256];
+    int& head = memo_table_[hash % unsigned(capacity_)];
     memos_[memo_count_] = {hash, id, entry, head - 1};
     head = ++memo_count_;
     return entry;
@@ -409,7 +408,7 @@ private:
     for (int i = 0; i < count; ++i) {
       hash = hash * 37 + unsigned(x[i]);
     }
-    int& head = table_[hash % 256];
+    int& head = table_[hash % unsigned(capacity_)];
     for (int i = head - 1; i >= 0; i = entries_[i].next) {
       const tape_entry& e = entries_[i];
       if (e.code == code && is_equal(e, k, parameter, number, operation, x, count)) {

@@ -63,7 +63,10 @@ struct build_derivatives {
   static constexpr int root_count = 1 + count + (Order > 1 ? count * (count + 1) / 2 : 0);
   static constexpr int initial_capacity = 128 << Order;
 
-  static constexpr int passes = Order;
+  // Some motions in a pass: compilers limit the steps of one constant expression.
+  static constexpr int motions_in_pass = Order > 1 ? 8 : 32;
+  static constexpr int passes_of_order = (count + motions_in_pass - 1) / motions_in_pass;
+  static constexpr int passes = Order * passes_of_order;
 
   template <class Held, int Pass, int Capacity>
   static constexpr void build(tape_builder& tape, int* roots) {
@@ -75,20 +78,27 @@ struct build_derivatives {
         recipe<typename moved_input<Motions>::rate>::template add<0, Held>(tape)...};
     int rates[std::size_t(Capacity)] = {};
     bool is_needed[std::size_t(Capacity)] = {};
-    const int size = tape.size();
-    if constexpr (Pass == 0) {
+    constexpr int first = Pass % passes_of_order * motions_in_pass;
+    constexpr int end = first + motions_in_pass < count ? first + motions_in_pass : count;
+    if constexpr (Pass < passes_of_order) {
       is_needed[roots[0]] = true;
       mark(tape, is_needed);
-      for (int m = 0; m < count; ++m) {
-        add_rates(tape, is_needed, size, inputs[m], input_rates[m], rates);
+      for (int m = first; m < end; ++m) {
+        add_rates(tape, is_needed, roots[0] + 1, inputs[m], input_rates[m], rates);
         roots[1 + m] = rates[roots[0]];
       }
     } else {
-      int k = root_count;
-      for (int m = count - 1; m >= 0; --m) { // with what the roots from the m-th on need
+      // Rows of the Hessian, which need the roots from the m-th on.
+      int last = 0;
+      for (int j = 0; j < count; ++j) {
+        last = roots[1 + j] > last ? roots[1 + j] : last;
+        is_needed[roots[1 + j]] = j >= end;
+      }
+      int k = 1 + count + end * count - end * (end - 1) / 2;
+      for (int m = end - 1; m >= first; --m) {
         is_needed[roots[1 + m]] = true;
         mark(tape, is_needed);
-        add_rates(tape, is_needed, size, inputs[m], input_rates[m], rates);
+        add_rates(tape, is_needed, last + 1, inputs[m], input_rates[m], rates);
         k -= count - m;
         for (int j = m; j < count; ++j) {
           roots[k + j - m] = rates[roots[1 + j]];

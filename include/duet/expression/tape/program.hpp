@@ -68,13 +68,13 @@ constexpr void mark(const tape_builder& tape, bool* is_needed) {
 /// A tape with what is evaluated on it.
 template <int Capacity, int Roots, int Inputs>
 struct tape_program : tape_memory<Capacity> {
-  int roots[std::size_t(Roots)] = {};       ///< entries of results
-  int inputs[std::size_t(Inputs + 1)] = {}; ///< positions of inputs, −1 if not used
-  int storage[std::size_t(Capacity)] = {};  ///< kind of each entry, more if it is real
-  int position[std::size_t(Capacity)] = {}; ///< of each entry among values of its storage
-  int numbers[std::size_t(Capacity)] = {};  ///< entries of numbers
-  int order[std::size_t(Capacity)] = {};    ///< entries of operations; −1 − g, the g-th sines
-  int group_ends[33] = {};                  ///< after the pairs of sine and cosine of each group
+  int roots[std::size_t(Roots)] = {};         ///< entries of results
+  int inputs[std::size_t(Inputs + 1)] = {};   ///< positions of inputs, −1 if not used
+  int storage[std::size_t(Capacity)] = {};    ///< kind of each entry, more if it is real
+  int position[std::size_t(Capacity)] = {};   ///< of each entry among values of its storage
+  int numbers[std::size_t(Capacity)] = {};    ///< entries of numbers
+  int order[std::size_t(Capacity)] = {};      ///< entries of operations; −1 − g, the g-th sines
+  int group_ends[std::size_t(Capacity)] = {}; ///< after the pairs of sine and cosine of each group
   int number_count = 0;
   int step_count = 0;
   int groups = 0;
@@ -152,30 +152,36 @@ struct tape_program : tape_memory<Capacity> {
       stage[i] = s;
       last_stage = s > last_stage ? s : last_stage;
     }
+    // The entries of a stage as lists: its sines and cosines, and what else there is.
+    int next[std::size_t(Capacity)] = {};
+    int first_sine[std::size_t(Capacity)] = {}, first_other[std::size_t(Capacity)] = {};
+    for (int i = tape.size() - 1; i > 0; --i) {
+      if (stage[i] > 0) {
+        int& first = (is_sine(tape.code(i)) ? first_sine : first_other)[stage[i]];
+        next[i] = first;
+        first = i;
+      }
+    }
     int pairs = 0;
     for (int s = 1; s <= last_stage; ++s) {
       const int first_pair = pairs;
-      for (int i = 0; s > 1 && i < tape.size(); ++i) {
-        if (stage[i] == s && is_sine(tape.code(i))) {
-          const int x = tape.operand(i, 0);
-          if (pair[x] == 0) {
-            pair[x] = ++pairs;
-            sine_argument[pairs - 1] = x;
-            sine[pairs - 1] = cosine[pairs - 1] = -1;
-          }
-          allot(i, is_real[i], is_dual[i]);
-          (tape.code(i) == tape_code::sine ? sine : cosine)[pair[x] - 1] = position[i];
+      for (int i = first_sine[s]; i > 0; i = next[i]) {
+        const int x = tape.operand(i, 0);
+        if (pair[x] == 0) {
+          pair[x] = ++pairs;
+          sine_argument[pairs - 1] = x;
+          sine[pairs - 1] = cosine[pairs - 1] = -1;
         }
+        allot(i, is_real[i], is_dual[i]);
+        (tape.code(i) == tape_code::sine ? sine : cosine)[pair[x] - 1] = position[i];
       }
       if (pairs > first_pair) {
         group_ends[++groups] = pairs;
         order[step_count++] = -groups;
       }
-      for (int i = 0; i < tape.size(); ++i) {
-        if (stage[i] == s && !is_sine(tape.code(i))) {
-          order[step_count++] = i;
-          allot(i, is_real[i], is_dual[i]);
-        }
+      for (int i = first_other[s]; i > 0; i = next[i]) {
+        order[step_count++] = i;
+        allot(i, is_real[i], is_dual[i]);
       }
     }
   }
@@ -507,7 +513,8 @@ struct root_values : Values {
   template <int First, int Count, class F>
   DUET_ALWAYS_INLINE constexpr void each(const F& f) {
     [&]<int... K>(std::integer_sequence<int, K...>) DUET_INLINE_LAMBDA {
-      (f(get<First + K>()), ...);
+      // An array, as clang limits fold expressions to 256 operands.
+      [[maybe_unused]] const bool done[] = {true, (f(get<First + K>()), true)...};
     }
     (std::make_integer_sequence<int, Count>{});
   }
@@ -531,10 +538,10 @@ run_program(const bindings<Held, Arguments...>& b, const auto& use,
   if constexpr (!std::is_empty_v<Held>) {
     load_constants<Program, Held>(v, b, Held{});
   }
-  ((values_of<storage_of_numbers>(v)[Program::number_position(Number)] =
-        static_cast<real>(Program::number(Number))),
-   ...);
-  // An array, as clang limits fold expressions to 256 operands.
+  [[maybe_unused]] const bool are_loaded[] = {
+      true, (values_of<storage_of_numbers>(v)[Program::number_position(Number)] =
+                 static_cast<real>(Program::number(Number)),
+             true)...};
   [[maybe_unused]] const bool done[] = {
       true, (run_on_tape<Program, Program::key(I), Program::id(I), !values::has_library_sines>(
                  v, Program::positions(I)),
