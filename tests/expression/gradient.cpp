@@ -88,6 +88,15 @@ TEST_CASE("real parts of a formula stay real where other arguments are dual") {
   CHECK(y.epsilon() == real(a = 0.3, v = w));
 }
 
+TEST_CASE("powers that only derivatives contain") {
+  constexpr symbol<"x"> x;
+  constexpr symbol<"z"> z;
+  const auto [y, g, h] = hessian((x * x * z) * x + (x * z) * x, wrt(z, x))(x = 3.0, z = 2.0);
+  CHECK(y == 72);
+  CHECK(g == Eigen::Vector2d(36, 66));
+  CHECK(h == Eigen::Matrix2d{{0, 33}, {33, 40}});
+}
+
 TEST_CASE("zeros are known") {
   constexpr symbol<"a"> a;
   constexpr symbol<"b"> b;
