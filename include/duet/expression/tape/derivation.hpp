@@ -65,7 +65,7 @@ struct build_derivatives {
 
   // Some motions in a pass: compilers limit the steps of one constant expression.
   static constexpr int motions_in_pass = Order > 1 ? 8 : 32;
-  static constexpr int passes_of_order = (count + motions_in_pass - 1) / motions_in_pass;
+  static constexpr int passes_of_order = 1 + (count > 0 ? count - 1 : 0) / motions_in_pass;
   static constexpr int passes = Order * passes_of_order;
 
   template <class Held, int Pass, int Capacity>
