@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/types.hpp>
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
@@ -9,7 +10,6 @@
 #include <duet/expression/screw.hpp>
 #include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/tree/node_list.hpp>
 #include <duet/expression/vector.hpp>
 #include <duet/expression/velocity.hpp>
 
@@ -28,6 +28,32 @@
 namespace duet::expression::detail {
 
 namespace mp11 = boost::mp11;
+
+/// Index of the first value that is true, or -1.
+[[nodiscard]] constexpr int index_of_true(const bool* all, int count) {
+  for (int i = 0; i < count; ++i) {
+    if (all[i]) {
+      return i;
+    }
+  }
+  return -1;
+}
+
+/// Ordered list of nodes.
+template <class... Nodes>
+class node_list {
+  static constexpr int count = int(sizeof...(Nodes));
+  // The comparison of types is built into compilers: it is faster than deducing a base class and,
+  // unlike a comparison of addresses, constant under sanitizers, too. The last entry avoids an
+  // empty array.
+  template <class Node>
+  static constexpr bool is_it[] = {DUET_IS_SAME(Nodes, Node)..., false};
+
+public:
+  /// Index of a node, or -1 if it is not in the list.
+  template <class Node>
+  static constexpr int index = index_of_true(is_it<Node>, count);
+};
 
 /// The factors of a product.
 template <class Node>
@@ -125,20 +151,22 @@ struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index
   /// Returns the pose and writes its Jacobian into 6 × n doubles, column by column.
   [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double> evaluate(double* jacobian,
                                                                            const auto& b) {
-    return evaluated_nodes(nodes{}, b, [jacobian](auto& values) DUET_INLINE_LAMBDA {
-      moving_frame f;
-      run(f, jacobian, values,
-          typename step<K, Factors, typename link_of<Factors>::nodes,
-                        typename moved_factor<Factors, motions>::motions>::type{}...);
-      if constexpr (std::find(first_moved.begin(), first_moved.end(), count) != first_moved.end()) {
-        for (std::size_t i = 0; i < first_moved.size(); ++i) {
-          if (first_moved[i] == count) {
-            std::fill_n(jacobian + 6 * i, 6, 0.0);
+    return evaluated_program<mp11::mp_rename<nodes, build_nodes>>(
+        b, [jacobian](auto& values) DUET_INLINE_LAMBDA {
+          moving_frame f;
+          run(f, jacobian, values,
+              typename step<K, Factors, typename link_of<Factors>::nodes,
+                            typename moved_factor<Factors, motions>::motions>::type{}...);
+          if constexpr (std::find(first_moved.begin(), first_moved.end(), count) !=
+                        first_moved.end()) {
+            for (std::size_t i = 0; i < first_moved.size(); ++i) {
+              if (first_moved[i] == count) {
+                std::fill_n(jacobian + 6 * i, 6, 0.0);
+              }
+            }
           }
-        }
-      }
-      return f.pose();
-    });
+          return f.pose();
+        });
   }
 
 private:

@@ -34,7 +34,8 @@ enum class tape_code {
 
 class tape_builder;
 
-/// Makes the rate of an entry: x are its operands, rates those of all entries.
+/// Makes the rate of an entry: x are the indices of its operands, rates those of the rates of all
+/// entries.
 using tape_rate = int (*)(tape_builder& tape, const int* x, const int* rates);
 
 /// Identity of an operation or leaf that the algebra does not know.
@@ -111,7 +112,6 @@ public:
   [[nodiscard]] constexpr const int* operands(int i) const { return operands_ + entries_[i].first; }
   [[nodiscard]] constexpr tape_code code(int i) const { return entries_[i].code; }
   [[nodiscard]] constexpr bool is_zero(int i) const { return entries_[i].code == tape_code::zero; }
-  [[nodiscard]] constexpr bool has_code(int i, tape_code c) const { return entries_[i].code == c; }
 
   [[nodiscard]] constexpr int zero(kind k) { return add(tape_code::zero, k, 0, 0, {}, nullptr, 0); }
   [[nodiscard]] constexpr int number(double x) {

@@ -13,7 +13,6 @@
 #include <duet/expression/tape/recipe.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/tree/node_list.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -305,8 +304,10 @@ struct frozen_program {
 /// The program with the memory that it needs.
 template <class Build, class Held, class Inputs, int Capacity = Build::initial_capacity>
 [[nodiscard]] constexpr auto fitting_program() {
+  static_assert(Capacity <= 1 << 15, "duet: a formula of too many operations for the compiler; "
+                                     "trace(f, ...) records them at run time");
   using program = frozen_program<Build, Held, Inputs, Capacity>;
-  if constexpr (program::program.is_full) {
+  if constexpr (Capacity <= 1 << 15 && program::program.is_full) {
     return fitting_program<Build, Held, Inputs, 2 * Capacity>();
   } else {
     return program();
@@ -635,11 +636,6 @@ template <class... Roots, class Bindings>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated_nodes(const Bindings& b,
                                                                 const auto& use) {
   return evaluated_program<build_nodes<Roots...>>(b, use);
-}
-template <class... Nodes>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto evaluated_nodes(node_list<Nodes...>, const auto& b,
-                                                                const auto& use) {
-  return evaluated_nodes<Nodes...>(b, use);
 }
 
 } // namespace duet::expression::detail

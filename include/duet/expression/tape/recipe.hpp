@@ -8,6 +8,9 @@
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
 
+#include <boost/mp11/algorithm.hpp>
+#include <boost/mp11/list.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
@@ -43,7 +46,7 @@ struct translation;
 
 namespace duet::expression::detail {
 
-/// A hash of the name of a type. Types of equal hash are distinguished by address.
+/// Computes a hash of the name of a type. Types of equal hash are distinguished by address.
 template <class T>
 [[nodiscard]] constexpr unsigned hash_of_name() {
   const std::string_view name = duet::detail::type_text<T>();
@@ -56,20 +59,16 @@ template <class T>
 template <class T>
 inline constexpr unsigned name_hash = hash_of_name<T>();
 
+/// Operations of one code each, from `tape_code::negative` on.
+using coded_operations = boost::mp11::mp_list<op::negative, op::sum, op::difference, op::product,
+                                              op::quotient, op::slope_product>;
+/// Code of an operation.
 template <class Operation>
-inline constexpr tape_code code_of = tape_code::other;
-template <>
-inline constexpr tape_code code_of<op::negative> = tape_code::negative;
-template <>
-inline constexpr tape_code code_of<op::sum> = tape_code::sum;
-template <>
-inline constexpr tape_code code_of<op::difference> = tape_code::difference;
-template <>
-inline constexpr tape_code code_of<op::product> = tape_code::product;
-template <>
-inline constexpr tape_code code_of<op::quotient> = tape_code::quotient;
-template <>
-inline constexpr tape_code code_of<op::slope_product> = tape_code::slope_product;
+inline constexpr tape_code
+    code_of = boost::mp11::mp_contains<coded_operations, Operation>::value
+                  ? tape_code(int(tape_code::negative) +
+                              int(boost::mp11::mp_find<coded_operations, Operation>::value))
+                  : tape_code::other;
 template <>
 inline constexpr tape_code code_of<op::sin> = tape_code::sine;
 template <>
@@ -83,36 +82,16 @@ inline constexpr int exponent_of_operation<op::whole_power<Exponent>> = Exponent
 
 /// The operation of a code, of a power with its exponent.
 template <tape_code Code, int Parameter>
-struct operation_of_code;
-template <int Parameter>
-struct operation_of_code<tape_code::negative, Parameter> {
-  using type = op::negative;
-};
-template <int Parameter>
-struct operation_of_code<tape_code::sum, Parameter> {
-  using type = op::sum;
-};
-template <int Parameter>
-struct operation_of_code<tape_code::difference, Parameter> {
-  using type = op::difference;
-};
-template <int Parameter>
-struct operation_of_code<tape_code::product, Parameter> {
-  using type = op::product;
-};
-template <int Parameter>
-struct operation_of_code<tape_code::quotient, Parameter> {
-  using type = op::quotient;
-};
-template <int Parameter>
-struct operation_of_code<tape_code::slope_product, Parameter> {
-  using type = op::slope_product;
+struct operation_of_code {
+  using type =
+      boost::mp11::mp_at_c<coded_operations, std::size_t(Code) - std::size_t(tape_code::negative)>;
 };
 template <int Parameter>
 struct operation_of_code<tape_code::power, Parameter> {
   using type = op::whole_power<Parameter>;
 };
 
+/// True for operations that take the parts of dual numbers with lines and motions apart.
 template <class Operation>
 inline constexpr bool drops_dual = false;
 template <bool Dual>
@@ -187,7 +166,7 @@ inline constexpr int item_index<Node, held<Items...>> = [] {
   return k == kind::scalar || k == kind::condition || k == kind::vector;
 }
 
-/// Conversion of a node, here of a leaf.
+/// Converts a node to an entry of a tape, here a leaf without a code.
 template <class Node>
 struct recipe {
   static constexpr bool is_differentiated = is_kind_on_tape(Node::kind_of);
