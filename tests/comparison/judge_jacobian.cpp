@@ -132,7 +132,7 @@ TEST_CASE("a pinhole camera: slips in blocks, and in factors of the chain") {
                {14, "scaled by a", "d f / d a"},
                {15, "permuted or shifted: columns 3, 4, 5, 0, 1, 2", "d f"},
                {16, "sign", "entry (0, 2) of d f / d (q p"},
-               {17, "moment arm about another point: (q p + t) is in its place", "d f / d q"},
+               {17, "moment arm about another point: (q p + t) instead", "d f / d q"},
                {1, "sign", "entry (0, 2) of d f / d (q p + t)", 16}, // in two of three uses
                {4, "scaled by a constant, -0.5", "d f / d q", 13},
                {8, "conjugate rotation of q", "all of d (q p + t)", 11}},

@@ -567,20 +567,19 @@ protected:
     }
     for (const motion& m : motions()) {
       for (const int power : {1, -1}) {
-        attempt(
-            message("another rotation: that of ", m.name, power < 0 ? "^-1" : "", " in its place"),
-            [&](const jacobian_sample& s, const scope& at, matrix& out) {
-              const matrix exact = of(s.exact, at);
-              out = rotation_of(s, m);
-              out = power < 0 ? matrix(out.transpose()) : out;
-              if (exact.rows() != 3 || exact.cols() != 3 ||
-                  largest_entry(product_of(exact, exact.transpose()) - matrix::Identity(3, 3)) >
-                      1e-9) {
-                return false;
-              }
-              out *= Eigen::Matrix3d(exact).determinant();
-              return true;
-            });
+        attempt(message("another rotation: that of ", m.name, power < 0 ? "^-1" : "", " instead"),
+                [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                  const matrix exact = of(s.exact, at);
+                  out = rotation_of(s, m);
+                  out = power < 0 ? matrix(out.transpose()) : out;
+                  if (exact.rows() != 3 || exact.cols() != 3 ||
+                      largest_entry(product_of(exact, exact.transpose()) - matrix::Identity(3, 3)) >
+                          1e-9) {
+                    return false;
+                  }
+                  out *= Eigen::Matrix3d(exact).determinant();
+                  return true;
+                });
       }
     }
     try_exponential_jacobians();
@@ -785,7 +784,7 @@ protected:
         for (std::size_t n = 0; n < vectors_of(samples_[0], true).size(); ++n) {
           for (const double sign : {1., -1.}) {
             attempt(message("moment arm about another point: ",
-                            vectors_of(samples_[0], true)[n].name, " is in its place"),
+                            vectors_of(samples_[0], true)[n].name, " instead"),
                     [&](const jacobian_sample& s, const scope& at, matrix& out) {
                       if (at.column != omega || at.columns != 3) {
                         return false;
