@@ -2,6 +2,7 @@
 
 #include "support/test.hpp"
 
+#include <duet/expression/derivative.hpp>
 #include <duet/expression/graph/formula_from.hpp>
 #include <duet/expression/text.hpp>
 

@@ -29,8 +29,8 @@ constexpr matrix_symbol<"R_1", 3, 3> R;
 constexpr matrix_symbol<"x", 4, 1> x;
 
 template <class A, class B>
-constexpr bool have_same_node(const A&, const B&) {
-  return std::is_same_v<typename A::node_type, typename B::node_type>;
+bool have_same_text(const A& a, const B& b) {
+  return to_text(a) == to_text(b);
 }
 
 double distance(double a, double b) { return std::abs(a - b); }
@@ -128,14 +128,14 @@ TEST_CASE("kinds of matrices, and what is known of zeros") {
   static_assert(ScalarTerm<decltype(transpose(x) * x)>);
   static_assert(VectorTerm<decltype(R * w)>);
 
-  static_assert(have_same_node(derivative(A * B * sin(u), u), cos(u) * (A * B)));
-  static_assert(have_same_node(derivative(inverse(A), u), A - A));
-  static_assert(have_same_node(directional_derivative(A * C, along(A, B)), B * C));
-  static_assert(have_same_node(directional_derivative(A * C, along(C, C)), A * C));
-  static_assert(have_same_node(transpose(transpose(A)), A));
-  static_assert(have_same_node(entry<1, 0>(transpose(C * u)), u * entry<0, 1>(C)));
-  static_assert(have_same_node(entry<0, 1>(matrix<2, 2>(u, u * u, 1.0, c<0>)), u * u));
-  static_assert(have_same_node(block<0, 1, 1, 1>(block<1, 0, 1, 2>(C)), entry<1, 1>(C)));
+  CHECK(have_same_text(derivative(A * B * sin(u), u), cos(u) * (A * B)));
+  CHECK(have_same_text(derivative(inverse(A), u), A - A));
+  CHECK(have_same_text(directional_derivative(A * C, along(A, B)), B * C));
+  CHECK(have_same_text(directional_derivative(A * C, along(C, C)), A * C));
+  CHECK(have_same_text(transpose(transpose(A)), A));
+  CHECK(have_same_text(entry<1, 0>(transpose(C * u)), u * entry<0, 1>(C)));
+  CHECK(have_same_text(entry<0, 1>(matrix<2, 2>(u, u * u, 1.0, c<0>)), u * u));
+  CHECK(have_same_text(block<0, 1, 1, 1>(block<1, 0, 1, 2>(C)), entry<1, 1>(C)));
 }
 
 TEST_CASE("matrices of any scalar, and constants by value") {

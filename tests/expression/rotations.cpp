@@ -111,16 +111,16 @@ TEST_CASE("directional derivatives by vectors and rotations") {
 }
 
 template <class A, class B>
-constexpr bool have_same_node(const A&, const B&) {
-  return std::is_same_v<typename A::node_type, typename B::node_type>;
+bool have_same_text(const A& a, const B& b) {
+  return to_text(a) == to_text(b);
 }
 
 TEST_CASE("simplification of rotations") {
-  static_assert(have_same_node(conj(conj(q)), q));
-  static_assert(have_same_node(vec(pure(v)), v));
-  static_assert(have_same_node(cross(v, v), v - v));
-  static_assert(have_same_node(q * c<2>, c<2> * q));
-  static_assert(have_same_node(rotate(q, c<2> * v), c<2> * rotate(q, v)));
+  CHECK(have_same_text(conj(conj(q)), q));
+  CHECK(have_same_text(vec(pure(v)), v));
+  CHECK(have_same_text(cross(v, v), v - v));
+  CHECK(have_same_text(q * c<2>, c<2> * q));
+  CHECK(have_same_text(rotate(q, c<2> * v), c<2> * rotate(q, v)));
   CHECK(cross(v, v)(v = vector3<double>(1, 2, 3)) == vector3<double>(0, 0, 0));
 }
 

@@ -122,35 +122,35 @@ constexpr bool are_same(const A&, const B&) {
   return std::is_same_v<A, B>;
 }
 template <class A, class B>
-constexpr bool have_same_node(const A&, const B&) {
-  return std::is_same_v<typename A::node_type, typename B::node_type>;
+bool have_same_text(const A& a, const B& b) {
+  return to_text(a) == to_text(b);
 }
 
-TEST_CASE("simplification, by type") {
-  static_assert(have_same_node(x + c<0>, x));
-  static_assert(have_same_node(x * c<1>, x));
-  static_assert(have_same_node(x * c<0>, c<0>));
-  static_assert(have_same_node(-(-x), x));
-  static_assert(have_same_node(x - x, c<0>));
-  static_assert(have_same_node(x + -y, x - y));
-  static_assert(have_same_node(-x * -y, x * y));
-  static_assert(have_same_node(sin(-x), -sin(x)));
-  static_assert(have_same_node(cos(-x), cos(x)));
-  static_assert(have_same_node(c<2> * (3.5_c * x), c<7> * x));
-  static_assert(have_same_node(pow(x, c<1>), x));
-  static_assert(have_same_node(pow(x, c<0>), c<1>));
-  static_assert(have_same_node(x * x * x, pow(x, c<3>)));
-  static_assert(have_same_node(0.1_c + 0.5_c, 0.1_c + 0.5_c));
-  static_assert(!is_number<decltype(0.1_c * 0.1_c)::node_type>); // rounding is left to the scalar
-  static_assert(is_number<decltype(1.5_c / c<2>)::node_type>);
-  static_assert(!is_number<decltype(c<1> / c<3>)::node_type>);
-  static_assert(!is_number<decltype(c<1> / c<0>)::node_type>);
-  static_assert(have_same_node(c<3> * x / c<6>, 0.5_c * x));
-  static_assert(have_same_node((c<3> - c<6> * x) / c<6>, 0.5_c - x));
-  static_assert(!have_same_node((c<1> + c<6> * x) / c<6>, c<1> / c<6> + x)); // 1/6 is rounded
-  static_assert(!have_same_node((x + c<6>) / c<6>, x / c<6> + c<1>));
-  static_assert(have_same_node(derivative(x * x * x / c<6>, x), 0.5_c * pow(x, c<2>)));
-  static_assert(have_same_node(derivative(sin(y), x), c<0>));
+TEST_CASE("simplification") {
+  CHECK(have_same_text(x + c<0>, x));
+  CHECK(have_same_text(x * c<1>, x));
+  CHECK(have_same_text(x * c<0>, c<0>));
+  CHECK(have_same_text(-(-x), x));
+  CHECK(have_same_text(x - x, c<0>));
+  CHECK(have_same_text(x + -y, x - y));
+  CHECK(have_same_text(-x * -y, x * y));
+  CHECK(have_same_text(sin(-x), -sin(x)));
+  CHECK(have_same_text(cos(-x), cos(x)));
+  CHECK(have_same_text(c<2> * (3.5_c * x), c<7> * x));
+  CHECK(have_same_text(pow(x, c<1>), x));
+  CHECK(have_same_text(pow(x, c<0>), c<1>));
+  CHECK(have_same_text(x * x * x, pow(x, c<3>)));
+  CHECK(have_same_text(0.1_c + 0.5_c, 0.1_c + 0.5_c));
+  CHECK(to_text(0.1_c * 0.1_c) == "0.1 * 0.1"); // rounding is left to the scalar
+  CHECK(to_text(1.5_c / c<2>) == "0.75");
+  CHECK(to_text(c<1> / c<3>) == "1 / 3");
+  CHECK(to_text(c<1> / c<0>) == "1 / 0");
+  CHECK(have_same_text(c<3> * x / c<6>, 0.5_c * x));
+  CHECK(have_same_text((c<3> - c<6> * x) / c<6>, 0.5_c - x));
+  CHECK(!have_same_text((c<1> + c<6> * x) / c<6>, c<1> / c<6> + x)); // 1/6 is rounded
+  CHECK(!have_same_text((x + c<6>) / c<6>, x / c<6> + c<1>));
+  CHECK(have_same_text(derivative(x * x * x / c<6>, x), 0.5_c * pow(x, c<2>)));
+  CHECK(have_same_text(derivative(sin(y), x), c<0>));
   CHECK((x * c<0>)(x = 2.0) == 0);
   CHECK(derivative(sin(y), x)(y = 2.0) == 0);
 }

@@ -9,7 +9,6 @@
 #include <duet/expression/screw.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/vector.hpp>
-#include <duet/expression/velocity.hpp>
 
 // N10–N21 as expressions.
 

@@ -49,13 +49,13 @@ struct less {
 /// a if the condition holds, otherwise b.
 struct select {
   static constexpr kind kind_of(kind, kind a, kind) { return a; }
-  template <class C, class A, class B>
-  static constexpr auto simplified(C, A a, B) {
-    static_assert(C::kind_of == kind::condition && A::kind_of == B::kind_of,
+  template <kind C, kind A, kind B>
+  static constexpr void require() {
+    static_assert(C == kind::condition && A == B,
                   "duet: select takes a condition, as a < b, and two formulas of one kind");
-    if constexpr (std::is_same_v<A, B>) {
-      return a;
-    }
+  }
+  static constexpr auto simplified(auto, auto a, auto b) {
+    return a.index == b.index ? a : a.none();
   }
   static constexpr auto value(const auto& condition, const auto& a, const auto& b) {
     return detail::chosen(condition, a, b);

@@ -9,6 +9,7 @@
 #include <duet/expression/algebra/arithmetic.hpp>
 #include <duet/expression/algebra/product.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
@@ -80,91 +81,8 @@ struct pushforward<Function, std::index_sequence<I...>> {
 
 namespace detail {
 
-/// Symbol that moves with a rate, a node.
-template <class Symbol, class Rate>
-struct moving {};
-
-/// Moving symbols with their rates; all other symbols are constant.
-template <class... Moving>
-struct movement {};
-
 template <class Symbol>
-using movement_of_scalar = movement<moving<Symbol, number_node<bits_of(1)>>>;
-
-template <class Symbol, class Motion>
-struct rate_of_symbol {
-  using type = decltype(zero_of<Symbol::kind_of>());
-};
-template <class Symbol, class Rate, class... Rest>
-struct rate_of_symbol<Symbol, movement<moving<Symbol, Rate>, Rest...>> {
-  using type = Rate;
-};
-template <class Symbol, class Other, class... Rest>
-struct rate_of_symbol<Symbol, movement<Other, Rest...>>
-    : rate_of_symbol<Symbol, movement<Rest...>> {};
-
-/// Rate of a node if symbols move: 0, unless one of the specialisations applies.
-template <class Node, class Motion>
-struct rate {
-  using type = decltype(zero_of<Node::kind_of>());
-};
-template <class Node, class Motion>
-using rate_t = typename rate<Node, Motion>::type;
-
-template <kind K, char... Letters, class Motion>
-struct rate<symbol_node<K, Letters...>, Motion>
-    : rate_of_symbol<symbol_node<K, Letters...>, Motion> {};
-
-/// Contribution of the I-th operand to the rate: its slope times its rate.
-template <int I, class Operation, class Rate, class... Operands>
-[[nodiscard]] constexpr auto rate_by_operand(Rate rate, Operands... x) {
-  if constexpr (is_zero<Rate>) {
-    return rate;
-  } else {
-    const auto slope = Operation::template slope_by<I>(x...);
-    if constexpr (slope.kind_of == kind::scalar && rate.kind_of == kind::scalar) {
-      return apply<op::slope_product>(slope, rate);
-    } else {
-      return slope * rate;
-    }
-  }
-}
-
-template <class Operation, class... Operands, class... Rates, int... I>
-[[nodiscard]] constexpr auto rate_by_slopes(applied_node<Operation, Operands...>,
-                                            std::integer_sequence<int, I...>, Rates... rates) {
-  return (... + rate_by_operand<I, Operation>(rates, Operands{}...));
-}
-
-template <class Operation>
-[[nodiscard]] constexpr auto rate_of_product(auto a, auto b, auto da, auto db) {
-  return apply<Operation>(da, b) + apply<Operation>(a, db);
-}
-
-/// Rate of an operation by the rates of its operands: by its `differential`, its linearity or its
-/// slopes, otherwise by dual numbers.
-template <class Operation, class... X, class... Rates>
-[[nodiscard]] constexpr auto rate_by_operands(applied_node<Operation, X...> node, Rates... rates) {
-  if constexpr (node.kind_of == kind::condition || (is_zero<Rates> && ...)) {
-    return zero_of<node.kind_of>();
-  } else if constexpr (requires { Operation::differential(X{}..., rates...); }) {
-    return Operation::differential(X{}..., rates...);
-  } else if constexpr (std::derived_from<Operation, linear_operation>) {
-    return apply<Operation>(rates...);
-  } else if constexpr (std::derived_from<Operation, bilinear_operation>) {
-    return rate_of_product<Operation>(X{}..., rates...);
-  } else if constexpr (requires { Operation::template slope_by<0>(X{}...); }) {
-    return rate_by_slopes(node, std::make_integer_sequence<int, int(sizeof...(X))>{}, rates...);
-  } else {
-    return apply<op::pushforward<Operation, std::index_sequence_for<X...>>>(X{}..., rates...);
-  }
-}
-
-template <class Operation, class... Operands, class Motion>
-struct rate<applied_node<Operation, Operands...>, Motion> {
-  using type = decltype(rate_by_operands(applied_node<Operation, Operands...>{},
-                                         rate_t<Operands, Motion>{}...));
-};
+using moving_scalar = moving<Symbol, number_node<bits_of(1)>>;
 
 template <class T>
 inline constexpr bool is_symbol_formula = false;
@@ -184,8 +102,8 @@ concept Symbol = detail::is_symbol_formula<T>;
 /// quaternion or pose in its algebra (N6).
 template <Formula F, detail::ScalarSymbol U>
 [[nodiscard]] constexpr auto derivative(const F& f, const U&) {
-  using motion = detail::movement_of_scalar<typename U::node_type>;
-  return make_formula(detail::rate_t<typename F::node_type, motion>{}, f.held());
+  using node = typename F::node_type;
+  return make_formula(rate_node<node, detail::moving_scalar<typename U::node_type>>{}, f.held());
 }
 template <Formula F, Symbol U>
   requires(!detail::ScalarSymbol<U>)
@@ -217,9 +135,9 @@ template <Symbol U, Formula Direction>
 template <Formula F, class... SymbolType, class... Direction>
 [[nodiscard]] constexpr auto directional_derivative(const F& f,
                                                     const moved<SymbolType, Direction>&... m) {
-  using movement = detail::movement<detail::moving<SymbolType, typename Direction::node_type>...>;
-  return make_formula(detail::rate_t<typename F::node_type, movement>{},
-                      merged(f.held(), m.direction.held()...));
+  using rate = rate_node<typename F::node_type,
+                         detail::moving<SymbolType, typename Direction::node_type>...>;
+  return make_formula(rate{}, merged(f.held(), m.direction.held()...));
 }
 
 } // namespace duet::expression

@@ -71,23 +71,11 @@ struct log1p : detail::function<log1p, duet::rule::log1p> {
   static constexpr detail::function_name name = {"log1p", ""};
   static constexpr auto symbolic_derivative(auto x) { return whole<1> / (whole<1> + x); }
 };
-// sin(−x) becomes −sin x, and cos(−x) becomes cos x: sine and cosine of one argument are computed
-// together, and one pair then serves both x and −x.
 struct sin : detail::function<sin, duet::rule::sin> {
   static constexpr detail::function_name name = {"sin", "\\sin"};
-  template <class X>
-  static constexpr auto simplified(applied_node<negative, X>) {
-    return -apply<sin>(X{});
-  }
-  static constexpr auto differential(auto x, auto dx) { return apply<cos>(x) * dx; }
 };
 struct cos : detail::function<cos, duet::rule::cos> {
   static constexpr detail::function_name name = {"cos", "\\cos"};
-  template <class X>
-  static constexpr auto simplified(applied_node<negative, X>) {
-    return apply<cos>(X{});
-  }
-  static constexpr auto differential(auto x, auto dx) { return -apply<sin>(x) * dx; }
 };
 struct tan : detail::function<tan, duet::rule::tan> {
   static constexpr detail::function_name name = {"tan", "\\tan"};

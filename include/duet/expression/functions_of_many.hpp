@@ -48,7 +48,8 @@ struct hypot : detail::function<hypot, duet::rule::hypot> {
   }
   template <int I, class... X>
   static constexpr auto symbolic_derivative(X... x) {
-    return operand<I>(applied_node<hypot, X...>{}) / apply<hypot>(x...);
+    const std::common_type_t<X...> all[] = {x...};
+    return all[I] / apply<hypot>(x...);
   }
 };
 

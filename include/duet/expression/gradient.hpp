@@ -11,10 +11,8 @@
 #include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/velocity.hpp>
 
 #include <Eigen/Core>
-#include <boost/mp11/list.hpp>
 
 /// \file
 /// Gradients and Hessians of scalar formulas, whose structural zeros are known at compile time.
@@ -41,25 +39,8 @@ struct gradient_of<motion_list<Motions...>> {
       values.template each<1, n>([&](const auto& x) DUET_INLINE_LAMBDA { *gradient++ = S(x); });
       return result;
     };
-    if constexpr (is_differentiated_on_tape<Node, Motions...>) {
-      return evaluated_program<build_derivatives<Node, 1, Motions...>>(b, use);
-    } else {
-      return evaluated_nodes<Node, rate_t<Node, Motions>...>(b, use);
-    }
+    return evaluated_program<build_derivatives<Node, 1, void, Motions...>>(b, use);
   }
-};
-
-/// Second derivatives of a node with respect to motions i ≤ j, row by row.
-template <class Node, class... Motions>
-struct upper_triangle {
-  using type = boost::mp11::mp_list<>;
-};
-template <class Node, class Motion, class... Rest>
-struct upper_triangle<Node, Motion, Rest...> {
-  using by_motion = rate_t<Node, Motion>;
-  using type = boost::mp11::mp_append<
-      boost::mp11::mp_list<rate_t<by_motion, Motion>, rate_t<by_motion, Rest>...>,
-      typename upper_triangle<Node, Rest...>::type>;
 };
 
 /// Evaluates a formula, its gradient and the upper triangle of its Hessian.
@@ -71,24 +52,10 @@ struct hessian_of<motion_list<Motions...>> {
 
   template <class Node, class Bindings>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
-    if constexpr (is_differentiated_on_tape<Node, Motions...>) {
-      return with_second(b, build_derivatives<Node, 2, Motions...>());
-    } else {
-      return of_nodes<Node>(b, typename upper_triangle<Node, Motions...>::type{});
-    }
-  }
-
-private:
-  template <class Node, class Bindings, class... Second>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto of_nodes(const Bindings& b,
-                                                        boost::mp11::mp_list<Second...>) {
-    return with_second(b, build_nodes<Node, rate_t<Node, Motions>..., Second...>());
-  }
-  template <class Bindings, class Build>
-  [[nodiscard]] DUET_ALWAYS_INLINE static auto with_second(const Bindings& b, Build) {
     constexpr int n = int(sizeof...(Motions));
     using S = typename Bindings::scalar;
-    return evaluated_program<Build>(b, [](auto& values) DUET_INLINE_LAMBDA {
+    using build = build_derivatives<Node, 2, void, Motions...>;
+    return evaluated_program<build>(b, [](auto& values) DUET_INLINE_LAMBDA {
       value_gradient_and_hessian<S, Eigen::Matrix<S, n, 1>, Eigen::Matrix<S, n, n>> result;
       result.value = S(values.template get<0>());
       S* gradient = result.gradient.data();

@@ -7,10 +7,10 @@
 #include <duet/expression/arm/pose_chain.hpp>
 #include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/evaluate/variables.hpp>
+#include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/velocity.hpp>
 
 #include <Eigen/Core>
 
@@ -23,13 +23,18 @@ namespace duet::expression {
 
 namespace detail {
 
-/// Node of a column of the Jacobian: rate of a vector or matrix, velocity of a rotation or pose.
-template <class Node, class Motion, class Frame>
-[[nodiscard]] constexpr auto column_of() {
-  if constexpr (is_matrix(Node::kind_of)) {
-    return rate_t<Node, Motion>{};
+/// Writes the components of a vector; of a twist ω + εv those of [v; ω].
+template <class T, class V>
+DUET_ALWAYS_INLINE void write_column(T* column, const V& v) {
+  if constexpr (is_screw_dual<typename V::Scalar>) {
+    for (int i = 0; i < 3; ++i) {
+      column[i] = v[i].epsilon();
+      column[3 + i] = v[i].value();
+    }
   } else {
-    return velocity_of<Frame, Node, Motion>();
+    for (int i = 0; i < int(V::SizeAtCompileTime); ++i) {
+      column[i] = v.data()[i];
+    }
   }
 }
 
@@ -60,7 +65,7 @@ private:
   template <class Node>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto by_factors(const auto& b) {
     returned<double, dual_quaternion<double>, 6> result;
-    using chain = pose_chain<typename factors<Node>::type, motion_list<Motions...>>;
+    using chain = pose_chain<typename factors<Node>::type, Motions...>;
     result.value = chain::evaluate(result.jacobian.data(), b);
     return result;
   }
@@ -70,7 +75,7 @@ private:
     using S = typename Bindings::scalar;
     constexpr kind k = Node::kind_of;
     constexpr int rows = k == kind::pose ? 6 : is_matrix(k) ? rows_of(k) * columns_of(k) : 3;
-    return evaluated_nodes<Node, decltype(column_of<Node, Motions, Frame>())...>(
+    return evaluated_program<build_derivatives<Node, 1, Frame, Motions...>>(
         b, [](auto& values) DUET_INLINE_LAMBDA {
           returned<S, std::decay_t<decltype(values.template get<0>())>, rows> result;
           result.value = values.template get<0>();

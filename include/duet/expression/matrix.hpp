@@ -26,11 +26,8 @@ namespace op {
 
 /// Matrix of scalars, which are given row by row.
 template <int Rows, int Columns>
-struct entries : linear_operation {
+struct entries {
   static constexpr kind kind_of(auto...) { return matrix_kind(Rows, Columns); }
-  static constexpr auto simplified(auto... x) requires(Rows == 3 && Columns == 1) {
-    return apply<column>(x...);
-  }
   template <class... X>
   static auto value(const X&... x) {
     using T = detail::common_scalar_t<X...>;
@@ -42,9 +39,6 @@ struct entries : linear_operation {
       }
     }
     return m;
-  }
-  static printed print(notation style, const auto&... x) {
-    return detail::printed_matrix(style, Columns, {x.text...});
   }
 };
 
@@ -79,8 +73,7 @@ struct directions<Symbol, Frame, K> {
 
   template <std::size_t... I>
   static constexpr auto make(std::index_sequence<I...>) {
-    return motion_list<
-        movement<moving<Symbol, unit_matrix<rows, columns_of(K), I % rows, I / rows>>>...>{};
+    return motion_list<moving<Symbol, unit_matrix<rows, columns_of(K), I % rows, I / rows>>...>{};
   }
   using type = decltype(make(std::make_index_sequence<std::size_t(rows* columns_of(K))>{}));
 };

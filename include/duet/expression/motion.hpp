@@ -5,10 +5,11 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/evaluate/bindings.hpp>
+#include <duet/expression/jacobian.hpp>
+#include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/velocity.hpp>
 
 #include <Eigen/Core>
 
@@ -43,10 +44,7 @@ struct motion_of {
 
   template <class Node, class Bindings>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
-    using by_symbol = movement_of_scalar<Symbol>;
-    using velocity_node = decltype(velocity_of<Frame, Node, by_symbol>());
-    using acceleration_node = rate_t<velocity_node, by_symbol>;
-    return evaluated_nodes<Node, velocity_node, acceleration_node>(
+    return evaluated_program<build_derivatives<Node, 2, Frame, moving_scalar<Symbol>>>(
         b, [](auto& values) DUET_INLINE_LAMBDA {
           using value = std::decay_t<decltype(values.template get<0>())>;
           constexpr int rows = Node::kind_of == kind::pose ? 6 : 3;

@@ -33,13 +33,9 @@ namespace detail {
 
 namespace op {
 
-struct conj : linear_operation {
+struct conj {
   static constexpr detail::function_name name = {"conj", "#^{*}"};
   static constexpr kind kind_of(kind q) { return q; }
-  template <class Q>
-  static constexpr auto simplified(applied_node<conj, Q>) {
-    return Q{};
-  }
   static constexpr auto value(const auto& q) { return duet::conj(q); }
 };
 
@@ -58,9 +54,8 @@ struct pure : linear_operation {
 struct vec : linear_operation {
   static constexpr detail::function_name name = {"vec", ""};
   static constexpr kind kind_of(kind q) { return detail::vector_kind(q); }
-  template <class V>
-  static constexpr auto simplified(applied_node<pure, V>) {
-    return V{};
+  static constexpr auto simplified(auto q) {
+    return q.template is<pure>() ? q.operand(0) : q.none();
   }
   static auto value(const auto& q) { return q.vec(); }
 };
@@ -71,11 +66,9 @@ struct exp_vector {
   static constexpr kind kind_of(kind v) { return detail::quaternion_kind(v); }
   static auto value(const auto& v) { return duet::exp(v); }
   /// Derivative for a constant axis.
-  template <class V, class DV>
-    requires(!is_zero<detail::rate_along<V, DV>>)
-  static constexpr auto differential(V v, DV) {
-    return detail::rate_along<V, DV>{} *
-           (apply<pure>(detail::direction_t<V>{}) * apply<exp_vector>(v));
+  static constexpr auto differential(auto v, auto dv) {
+    const auto rate = rate_along(v, dv);
+    return rate.is_zero() ? v.none() : rate * (apply<pure>(direction_of(v)) * apply<exp_vector>(v));
   }
 };
 
@@ -89,10 +82,9 @@ struct log_quaternion {
 struct power_of_quaternion {
   static constexpr kind kind_of(kind q, kind) { return q; }
   static auto value(const auto& q, const auto& exponent) { return duet::pow(q, exponent); }
-  template <class DQ>
-    requires is_zero<DQ>
-  static constexpr auto differential(auto q, auto s, DQ, auto ds) {
-    return ds * (apply<log_quaternion>(q) * apply<power_of_quaternion>(q, s));
+  static constexpr auto differential(auto q, auto s, auto dq, auto ds) {
+    return dq.is_zero() ? ds * (apply<log_quaternion>(q) * apply<power_of_quaternion>(q, s))
+                        : q.none();
   }
   static printed print(notation style, const printed& q, const printed& s) {
     return power::print(style, q, s);
@@ -107,17 +99,17 @@ struct slerp {
   }
 };
 
-/// q v q*, whose derivative follows from the velocity of q, see velocity.hpp.
+/// q v q*
 struct rotate {
   static constexpr kind kind_of(kind, kind v) { return v; }
-  template <class Q, class V>
-    requires(is_zero<V> || detail::is_scaled<V>)
-  static constexpr auto simplified(Q, V v) {
-    if constexpr (is_zero<V>) {
-      return v;
-    } else {
-      return detail::scaled_outside(v, [](auto w) { return apply<rotate>(Q{}, w); });
-    }
+  static constexpr auto simplified(auto q, auto v) {
+    return v.is_zero()     ? v
+           : v.is_scaled() ? v.scaled_outside([&](auto w) { return apply<rotate>(q, w); })
+                           : v.none();
+  }
+  /// (q v q*)˙ = ω × q v q* + q v̇ q*, for unit q with the velocity ω in spatial axes.
+  static constexpr auto rate_by_velocity(auto omega, auto q, auto v, auto, auto dv) {
+    return apply<cross>(omega, apply<rotate>(q, v)) + apply<rotate>(q, dv);
   }
   static auto value(const auto& q, const auto& v) { return duet::rotate(q, v); }
   static printed print(notation style, const printed& q, const printed& v) {

@@ -5,7 +5,6 @@
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
-#include <duet/expression/velocity.hpp>
 #include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
@@ -35,28 +34,18 @@ struct skew : linear_operation {
   }
 };
 
-/// The rotation matrix of q, whose derivative follows from the velocity of q.
+/// The rotation matrix of q.
 struct rotation_matrix {
   static constexpr detail::function_name name = {"rotation_matrix", "R"};
   static constexpr kind kind_of(kind) { return matrix_kind(3, 3); }
+  /// Ṙ = [ω]× R with ω in spatial axes (N7), for unit q.
+  static constexpr auto rate_by_velocity(auto omega, auto q, auto) {
+    return apply<skew>(omega) * apply<rotation_matrix>(q);
+  }
   static auto value(const auto& q) { return duet::rotation_matrix(q); }
 };
 
 } // namespace op
-
-namespace detail {
-
-/// Ṙ = [ω]× R with ω in spatial axes (N7), for unit q.
-template <class Q, class Motion>
-struct rate<applied_node<op::rotation_matrix, Q>, Motion> {
-  static constexpr auto make() {
-    return apply<op::skew>(velocity_of<spatial_frame, Q, Motion>()) *
-           applied_node<op::rotation_matrix, Q>{};
-  }
-  using type = decltype(make());
-};
-
-} // namespace detail
 
 /// [v]×, the matrix of the cross product: [v]× w = v × w.
 [[nodiscard]] constexpr auto skew(const VectorTerm auto& v) { return apply<op::skew>(v); }

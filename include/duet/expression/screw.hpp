@@ -33,6 +33,13 @@ struct part_of_dual : linear_operation {
   static constexpr kind kind_of(kind k) {
     return k == kind::dual_vector ? kind::vector : k == kind::pose ? kind::quaternion : k;
   }
+  static constexpr auto simplified(auto x) {
+    const auto& e = x.entry();
+    return e.kind_of == kind::vector && !Dual         ? x
+           : e.code != detail::tape_code::unit_vector ? x.none()
+           : (e.parameter < 3) != Dual ? x.at(x.tape->unit_vector(kind::vector, e.parameter % 3))
+                                       : x.at(x.tape->zero(kind::vector));
+  }
   template <class X>
   static auto value(const X& x) {
     if constexpr (detail::is_screw_dual<X>) {
@@ -43,17 +50,6 @@ struct part_of_dual : linear_operation {
       return duet::dual_part(x);
     } else {
       return duet::real_part(x);
-    }
-  }
-  template <class V>
-    requires(V::kind_of == kind::vector && !Dual)
-  static constexpr auto simplified(V v) { return v; }
-  template <int I>
-  static constexpr auto simplified(unit_vector_node<kind::dual_vector, I>) {
-    if constexpr ((I < 3) != Dual) {
-      return unit_vector_node<kind::vector, I % 3>{};
-    } else {
-      return zero_node<kind::vector>{};
     }
   }
 };
@@ -87,9 +83,8 @@ struct rotation : linear_operation {
 struct dual_conj : linear_operation {
   static constexpr detail::function_name name = {"dual_conj", "\\overline{#}"};
   static constexpr kind kind_of(kind k) { return k; }
-  template <class X>
-  static constexpr auto simplified(applied_node<dual_conj, X>) {
-    return X{};
+  static constexpr auto simplified(auto x) {
+    return x.template is<dual_conj>() ? x.operand(0) : x.none();
   }
   template <class X>
   static constexpr auto value(const X& x) {
@@ -157,11 +152,11 @@ struct axis_exponential {
       return quaternion<R>(R(c), n[0] * s, n[1] * s, n[2] * s);
     }
   }
-  template <class DN>
-    requires is_zero<DN>
-  static constexpr auto differential(auto n, auto angle, auto s, auto c, DN, auto da, auto, auto) {
-    return number_node<detail::bits_of(0.5)>{} *
-           (da * (apply<pure>(n) * apply<axis_exponential>(n, angle, s, c)));
+  static constexpr auto differential(auto n, auto angle, auto s, auto c, auto dn, auto da, auto,
+                                     auto) {
+    return dn.is_zero() ? number_node<detail::bits_of(0.5)>{} *
+                              (da * (apply<pure>(n) * apply<axis_exponential>(n, angle, s, c)))
+                        : n.none();
   }
   static printed print(notation style, const printed& n, const printed& angle, const printed& s,
                        const printed& c) {
@@ -204,6 +199,11 @@ struct make_pose {
 
 struct translation {
   static constexpr kind kind_of(kind) { return kind::vector; }
+  /// ṫ = v + ω × t of the twist ω + εv in spatial axes (N18).
+  static constexpr auto rate_by_velocity(auto twist, auto a, auto) {
+    return apply<part_of_dual<true>>(twist) +
+           apply<cross>(apply<part_of_dual<false>>(twist), apply<translation>(a));
+  }
   static printed print(notation style, const printed& a) {
     if (style != notation::notes) {
       return detail::printed_call(style, {"translation", ""}, {a});

@@ -4,16 +4,21 @@
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/expression/derivative.hpp>
+#include <duet/expression/algebra/arithmetic.hpp>
+#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/elementary_functions.hpp>
+#include <duet/expression/matrix/block.hpp>
+#include <duet/expression/matrix/product.hpp>
+#include <duet/expression/rotation.hpp>
+#include <duet/expression/tape/builder.hpp>
+#include <duet/expression/tape/recipe.hpp>
+#include <duet/expression/tape/term.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/latex_text.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
-
-#include <boost/mp11/algorithm.hpp>
-#include <boost/mp11/list.hpp>
 
 #include <array>
 #include <concepts>
@@ -28,99 +33,6 @@
 
 /// \file
 /// Formulas as text and as LaTeX.
-
-namespace duet::expression::detail {
-
-// Formulas as they are printed: derivatives of functions, which rules of dual numbers evaluate, are
-// replaced by formulas of other functions.
-
-template <class Node>
-inline constexpr bool has_partial = false;
-template <class Operation, class... X>
-inline constexpr bool has_partial<applied_node<Operation, X...>> = (has_partial<X> || ...);
-template <class Function, int... Orders, class... X>
-inline constexpr bool has_partial<applied_node<op::partial<Function, Orders...>, X...>> = true;
-template <class A, class B>
-inline constexpr bool has_partial<applied_node<op::slope_product, A, B>> = true;
-
-/// Symbol that stands for the K-th argument of a function while its derivatives are formed; numbers
-/// stand for themselves.
-template <int K, class X>
-using stand_in = std::conditional_t<is_number<X>, X, symbol_node<kind::scalar, '\0', char(K)>>;
-
-/// A node in which each stand-in is replaced by the argument from a list.
-template <class Node, class Arguments>
-struct substituted {
-  using type = Node;
-};
-template <char K, class Arguments>
-struct substituted<symbol_node<kind::scalar, '\0', K>, Arguments> {
-  using type = boost::mp11::mp_at_c<Arguments, std::size_t(K)>;
-};
-template <class Operation, class... X, class Arguments>
-struct substituted<applied_node<Operation, X...>, Arguments> {
-  using type = decltype(apply<Operation>(typename substituted<X, Arguments>::type{}...));
-};
-
-/// A node as it is printed.
-template <class Node, bool HasPartial = has_partial<Node>>
-struct written {
-  using type = Node;
-};
-template <class Node>
-using written_t = typename written<Node>::type;
-template <class Operation, class... X>
-struct written<applied_node<Operation, X...>, true> {
-  using type = decltype(apply<Operation>(written_t<X>{}...));
-};
-
-template <class A, class B>
-struct written<applied_node<op::slope_product, A, B>, true> {
-  using type = decltype(written_t<A>{} * written_t<B>{});
-};
-
-/// Derivative of a function as a formula of its arguments.
-template <class Function, class Numbers, int... Orders>
-struct written_partial;
-template <class Function, int... K, int... Orders>
-struct written_partial<Function, std::integer_sequence<int, K...>, Orders...> {
-  static constexpr int argument = op::partial<Function, Orders...>::last_argument;
-
-  template <class... X>
-  static constexpr auto of(X... x) {
-    if constexpr ((0 + ... + Orders) == 1 && sizeof...(X) == 1) {
-      return Function::symbolic_derivative(x...);
-    } else if constexpr ((0 + ... + Orders) == 1) {
-      return Function::template symbolic_derivative<argument>(x...);
-    } else {
-      using lower = written_partial<Function, std::integer_sequence<int, K...>,
-                                    (Orders - int(K == argument))...>;
-      using symbols = boost::mp11::mp_list<stand_in<K, X>...>;
-      using moving = movement_of_scalar<boost::mp11::mp_at_c<symbols, std::size_t(argument)>>;
-      using slope = rate_t<decltype(lower::of(stand_in<K, X>{}...)), moving>;
-      return typename substituted<written_t<slope>, boost::mp11::mp_list<X...>>::type{};
-    }
-  }
-};
-template <class Rule, int... K, int... Orders>
-struct written_partial<op::given_function<Rule>, std::integer_sequence<int, K...>, Orders...> {
-  template <class... X>
-  static constexpr auto of(X... x) {
-    return apply<op::written_derivative<Rule, Orders...>>(x...);
-  }
-};
-template <class Function, int... Orders, class Value, class... X>
-struct written<applied_node<op::partial<Function, Orders...>, Value, X...>, true> {
-  static constexpr auto make() {
-    using partial =
-        written_partial<Function, std::make_integer_sequence<int, int(sizeof...(Orders))>,
-                        Orders...>;
-    return partial::of(written_t<X>{}...);
-  }
-  using type = decltype(make());
-};
-
-} // namespace duet::expression::detail
 
 namespace duet::expression {
 
@@ -217,69 +129,163 @@ template <class T>
   }
 }
 
+/// Text of a symbol or constant that a formula holds.
 template <kind K, char... Letters>
-[[nodiscard]] printed print(notation style, symbol_node<K, Letters...>, const auto&) {
+[[nodiscard]] printed printed_item(notation style, symbol_node<K, Letters...>, const auto&) {
   const std::string name = {Letters...};
   return {style != notation::text ? latex_name(name, K) : name, precedence::atom, style,
           order_of_kind(K)};
 }
-template <kind K, class Tag>
-[[nodiscard]] printed print(notation style, constant_node<K, Tag>, const auto& h) {
-  return printed_constant(style, value_in<constant_node<K, Tag>>(h));
+template <class Node, class T>
+[[nodiscard]] printed printed_item(notation style, held_constant<Node, T>, const auto& h) {
+  return printed_constant(style, value_in<Node>(h));
 }
-template <std::uint64_t Bits>
-[[nodiscard]] printed print(notation style, number_node<Bits> n, const auto&) {
-  return printed_number(style, duet::to_text(n.value));
+[[nodiscard]] inline printed printed_item(notation, library_sines, const auto&) { return {}; }
+
+/// Name of a symbol, empty for a constant.
+template <kind K, char... Letters>
+[[nodiscard]] std::string name_of_item(symbol_node<K, Letters...>) {
+  return {Letters...};
 }
-[[nodiscard]] inline printed print(notation style, pi_node, const auto&) {
-  return {style != notation::text ? "\\pi" : "pi", precedence::atom, style, factor_order::pi};
-}
-template <kind K>
-[[nodiscard]] printed print(notation style, zero_node<K>, const auto&) {
-  return {"0", precedence::atom, style, factor_order::number};
-}
-template <class Operation, class... Operands>
-[[nodiscard]] printed print(notation style, applied_node<Operation, Operands...>, const auto& h) {
-  printed result = printed_operation<Operation>(style, print(style, Operands{}, h)...);
-  constexpr kind k = applied_node<Operation, Operands...>::kind_of;
-  return style != notation::text ? latex_of_kind(std::move(result), k == kind::scalar) : result;
+template <class Item>
+[[nodiscard]] std::string name_of_item(Item) {
+  return {};
 }
 
-/// Symbols of a formula, to find those that look alike in LaTeX.
-class latex_symbols {
+/// Text of an operation that the algebra of the tape knows.
+[[nodiscard]] inline printed print_coded(notation style, const tape_entry& e, const printed* x) {
+  const int p = e.parameter;
+  switch (e.code) {
+  case tape_code::negative:
+    return op::negative::print(style, x[0]);
+  case tape_code::sum:
+    return op::sum::print(style, x[0], x[1]);
+  case tape_code::difference:
+    return op::difference::print(style, x[0], x[1]);
+  case tape_code::quotient:
+    return op::quotient::print(style, x[0], x[1]);
+  case tape_code::conj:
+    return printed_operation<op::conj>(style, x[0]);
+  case tape_code::transpose:
+    return printed_operation<op::transpose>(style, x[0]);
+  case tape_code::trace:
+    return printed_operation<op::trace>(style, x[0]);
+  case tape_code::trace_of_product:
+    return printed_operation<op::trace>(style, op::product::print(style, x[0], x[1]));
+  case tape_code::sine:
+    return printed_operation<op::sin>(style, x[0]);
+  case tape_code::cosine:
+    return printed_operation<op::cos>(style, x[0]);
+  case tape_code::power: {
+    const std::string n = std::to_string(p);
+    return style != notation::text
+               ? latex_power(x[0], {n, precedence::atom, style, factor_order::number})
+               : printed{x[0].inside(precedence::atom) + "^" + n, precedence::power};
+  }
+  case tape_code::component:
+    return style != notation::text
+               ? with_index(x[0], std::to_string(p + 1))
+               : printed{x[0].inside(precedence::atom) + "[" + std::to_string(p) + "]"};
+  case tape_code::block:
+    return print_block(style, x[0], p / 8, p % 8, e.kind_of);
+  case tape_code::entries: {
+    std::vector<std::string> all;
+    for (int k = 0; k < e.count; ++k) {
+      all.push_back(x[k].text);
+    }
+    return printed_matrix(style, std::size_t(columns_of(e.kind_of)), all);
+  }
+  default: // products
+    return op::product::print(style, x[0], x[1]);
+  }
+}
+
+/// A formula on a tape, to be printed.
+class printed_formula {
 public:
-  template <kind K, char... Letters>
-  void visit(symbol_node<K, Letters...>) {
-    const std::string name = {Letters...};
-    add({latex_name(name, K), name, K});
+  /// Puts a node on a tape.
+  template <class Node, class... Items>
+  printed_formula(Node, const held<Items...>& h, notation style)
+      : style_(style), items_{printed_item(style, Items{}, h)...}, names_{
+                                                                       name_of_item(Items{})...} {
+    bool is_full = true;
+    for (int capacity = 1024; is_full; capacity *= 4) {
+      memory_ = tape_vectors(capacity);
+      tape_builder tape(memory_, true);
+      root_ = recipe<Node>::template add<tape_use<0, true>, held<Items...>>(tape);
+      tape.finish(memory_);
+      is_full = memory_.is_full;
+    }
   }
-  void visit(pi_node) { add({"\\pi", "the number pi", kind::scalar}); }
-  template <class Operation, class... Operands>
-  void visit(applied_node<Operation, Operands...>) {
-    (visit(Operands{}), ...);
-  }
-  void visit(const auto&) {}
 
-private:
-  struct look {
-    std::string latex, name;
-    kind of;
-  };
+  [[nodiscard]] printed text() { return text_of(root_); }
 
-  /// \throws invalid_input if another symbol looks like it
-  void add(look now) {
-    for (const look& other : seen_) {
-      if (other.latex == now.latex) {
-        duet::detail::require(other.name == now.name && other.of == now.of,
-                              "duet: to_latex: ", other.name, " and ", now.name, " both look like ",
-                              now.latex, ": one of them needs another name");
-        return;
+  /// Refuses symbols that look alike in LaTeX.
+  ///
+  /// \throws invalid_input if two symbols do, or one looks like the number pi
+  void require_different_looks() {
+    std::vector<std::pair<std::string, std::string>> seen; // looks and names
+    const tape_builder tape(memory_);
+    tape_numbers is_needed(tape.size());
+    is_needed[root_] = 1;
+    for (int i = tape.size() - 1; i >= 0; --i) {
+      for (int k = 0; is_needed[i] != 0 && k < tape[i].count; ++k) {
+        is_needed[tape.operand(i, k)] = 1;
       }
     }
-    seen_.push_back(std::move(now));
+    for (int i = 0; i < tape.size(); ++i) {
+      const tape_entry& e = tape[i];
+      const bool is_symbol = e.code == tape_code::input && e.parameter >= 0;
+      if (is_needed[i] == 0 || (!is_symbol && !is_pi(e))) {
+        continue;
+      }
+      const std::string look = text_of(i).text;
+      const std::string name = is_symbol ? names_[std::size_t(e.parameter)] : "the number pi";
+      for (const auto& [other_look, other_name] : seen) {
+        duet::detail::require(look != other_look, "duet: to_latex: ", other_name, " and ", name,
+                              " both look like ", look, ": one of them needs another name");
+      }
+      seen.emplace_back(look, name);
+    }
   }
 
-  std::vector<look> seen_;
+private:
+  [[nodiscard]] static bool is_pi(const tape_entry& e) {
+    return e.code == tape_code::other && e.operation->id == &duet::detail::type_id<pi_node>;
+  }
+  [[nodiscard]] printed text_of(int i) {
+    const tape_builder tape(memory_);
+    const tape_entry& e = tape[i];
+    switch (e.code) {
+    case tape_code::zero:
+      return {"0", precedence::atom, style_, factor_order::number};
+    case tape_code::number:
+      return printed_number(style_, duet::to_text(e.number));
+    case tape_code::input:
+      return items_[std::size_t(e.parameter < 0 ? -1 - e.parameter : e.parameter)];
+    case tape_code::unit_vector:
+      return print_unit_vector(style_, e.parameter);
+    default:
+      break;
+    }
+    std::vector<printed> x;
+    for (int k = 0; k < e.count; ++k) {
+      x.push_back(text_of(tape.operand(i, k)));
+    }
+    if (is_pi(e)) {
+      return e.operation->print(style_, nullptr);
+    }
+    printed result = e.code == tape_code::other ? e.operation->print(style_, x.data())
+                                                : print_coded(style_, e, x.data());
+    return style_ != notation::text ? latex_of_kind(std::move(result), e.kind_of == kind::scalar)
+                                    : result;
+  }
+
+  notation style_;
+  std::vector<printed> items_;
+  std::vector<std::string> names_;
+  tape_vectors memory_ = tape_vectors(1);
+  int root_ = 0;
 };
 
 } // namespace detail
@@ -287,7 +293,7 @@ private:
 /// The formula as in a program: `2 * x * cos(x^2)`.
 template <Formula F>
 [[nodiscard]] std::string to_text(const F& f) {
-  return detail::print(notation::text, detail::written_t<typename F::node_type>{}, f.held()).text;
+  return detail::printed_formula(typename F::node_type{}, f.held(), notation::text).text().text;
 }
 
 namespace detail {
@@ -295,8 +301,9 @@ namespace detail {
 /// A node in LaTeX.
 template <class Node>
 [[nodiscard]] std::string latex_of_node(const auto& held, notation style) {
-  const printed whole = print(style, written_t<Node>{}, held);
-  return latex_text(latex_terms(whole), fractions::lines).text;
+  printed_formula f(Node{}, held, style);
+  f.require_different_looks();
+  return latex_text(latex_terms(f.text()), fractions::lines).text;
 }
 
 } // namespace detail
@@ -312,7 +319,6 @@ template <class Node>
 /// a symbol pi in addition to the number
 template <Formula F>
 [[nodiscard]] std::string to_latex(const F& f, notation style = notation::latex) {
-  detail::latex_symbols().visit(typename F::node_type{});
   return detail::latex_of_node<typename F::node_type>(f.held(), style);
 }
 

@@ -49,22 +49,19 @@ struct leaf<unit_vector_node<K, I>, Bindings> {
   }
 };
 
-template <kind K, int I, class Held>
-[[nodiscard]] printed print(notation style, unit_vector_node<K, I>, const Held&) {
-  const std::string axis = std::to_string(I % 3 + 1);
+/// Text of the unit vector along an axis.
+[[nodiscard]] inline printed print_unit_vector(notation style, int i) {
+  const std::string axis = std::to_string(i % 3 + 1);
   if (style != notation::text) {
-    return {std::string(I < 3 ? "" : "\\varepsilon ") + "\\vec{e}_{" + axis + "}", precedence::atom,
+    return {std::string(i < 3 ? "" : "\\varepsilon ") + "\\vec{e}_{" + axis + "}", precedence::atom,
             style, factor_order::in_order};
   }
-  return {std::string(I < 3 ? "" : "epsilon ") + "e" + axis};
+  return {std::string(i < 3 ? "" : "epsilon ") + "e" + axis};
 }
 
 } // namespace detail
 
 namespace op {
-
-template <int I, int J, int Rows, int Columns>
-struct block;
 
 /// The sum of the products of components, of vectors and quaternions.
 struct dot : bilinear_operation {
@@ -86,9 +83,8 @@ struct dot : bilinear_operation {
 
 struct cross : bilinear_operation {
   static constexpr kind kind_of(kind a, kind) { return a; }
-  template <class A>
-  static constexpr auto simplified(A, A) {
-    return zero_of<A::kind_of>();
+  static constexpr auto simplified(auto a, auto b) {
+    return a.index == b.index ? a.at(a.tape->zero(a.of_kind())) : a.none();
   }
   static auto value(const auto& a, const auto& b) {
     return duet::detail::cross(duet::detail::components(a), duet::detail::components(b)).eigen();
@@ -132,13 +128,9 @@ struct norm {
       return duet::norm(v);
     }
   }
-  template <class V>
-  static constexpr auto differential(V v, auto dv) {
-    if constexpr (V::kind_of == kind::vector) {
-      return apply<dot>(apply<direction>(v), dv);
-    } else {
-      return apply<dot>(v, dv) / apply<norm>(v);
-    }
+  static constexpr auto differential(auto v, auto dv) {
+    return v.of_kind() == kind::vector ? apply<dot>(apply<direction>(v), dv)
+                                       : apply<dot>(v, dv) / apply<norm>(v);
   }
 };
 
@@ -148,21 +140,9 @@ inline printed direction::print(notation style, const printed& v) {
 
 /// The I-th component.
 template <int I>
-struct component : linear_operation {
+struct component {
   static constexpr kind kind_of(kind) { return kind::scalar; }
   static auto value(const auto& v) { return v[I]; }
-  static printed print(notation style, const printed& v) {
-    const std::string i = std::to_string(I);
-    return style != notation::text ? detail::with_index(v, std::to_string(I + 1))
-                                   : printed{v.inside(precedence::atom) + "[" + i + "]"};
-  }
-  template <kind K, int J>
-  static constexpr auto simplified(unit_vector_node<K, J>) {
-    return whole<(I == J ? 1 : 0)>;
-  }
-  template <class V>
-    requires(is_sized_matrix(V::kind_of))
-  static constexpr auto simplified(V v) { return apply<block<I, 0, 1, 1>>(v); }
 };
 
 /// The vector of three scalars.

@@ -44,52 +44,18 @@ struct whole_power {
     }
     return detail::power_by_products<Exponent>(x);
   }
-  template <class X>
-  static constexpr auto differential(X x, auto dx) {
-    if constexpr (Exponent == 2) {
-      return whole<Exponent> * x * dx;
-    } else {
-      return apply<slope_product>(whole<Exponent> * applied_node<whole_power<Exponent - 1>, X>{},
-                                  dx);
-    }
-  }
-  static printed print(notation style, const printed& x) {
-    const std::string n = std::to_string(Exponent);
-    if (style != notation::text) {
-      return detail::latex_power(x, {n, precedence::atom, style, factor_order::number});
-    }
-    return {x.inside(precedence::atom) + "^" + n, precedence::power};
-  }
 };
-
-} // namespace op
-
-namespace detail {
-
-template <class P>
-inline constexpr bool is_small_whole = false;
-template <std::uint64_t Bits>
-inline constexpr bool is_small_whole<number_node<Bits>> = number_node<Bits>::value >= -16 &&
-                                                          number_node<Bits>::value <= 16 &&
-                                                          number_node<Bits>::value ==
-                                                              int(number_node<Bits>::value);
-
-} // namespace detail
-
-namespace op {
 
 /// x^p.
 struct power : detail::function<power, duet::rule::pow> {
   static constexpr bool slopes_take_value = true;
-  template <class X, class P>
-  static constexpr auto simplified([[maybe_unused]] X x, [[maybe_unused]] P p) {
-    if constexpr (is_zero<P> || is_one<X>) {
-      return whole<1>;
-    } else if constexpr (is_one<P>) {
-      return x;
-    } else if constexpr (detail::is_small_whole<P>) {
-      return applied_node<whole_power<int(P::value)>, X>{};
-    }
+  /// Powers by integers from −16 to 16 are `whole_power`.
+  static constexpr auto simplified(auto x, auto p) {
+    const double n = p.is_zero() ? 0 : p.entry().number;
+    const bool is_whole = x.tape->is_number(p.index) && n >= -16 && n <= 16 && n == int(n);
+    return x.index == 1 || p.is_zero() ? x.at(1)
+           : is_whole                  ? x.at(x.tape->power(x.index, int(n)))
+                                       : x.none();
   }
   template <class X, class P>
   static auto value(const X& x, const P& p) {

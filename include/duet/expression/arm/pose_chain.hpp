@@ -1,24 +1,23 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/compiler/types.hpp>
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/arm/moving_frame.hpp>
 #include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/screw.hpp>
+#include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/vector.hpp>
-#include <duet/expression/velocity.hpp>
 
 #include <boost/mp11/algorithm.hpp>
 #include <boost/mp11/list.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
+#include <type_traits>
 #include <utility>
 
 /// \file
@@ -28,32 +27,6 @@
 namespace duet::expression::detail {
 
 namespace mp11 = boost::mp11;
-
-/// Index of the first value that is true, or -1.
-[[nodiscard]] constexpr int index_of_true(const bool* all, int count) {
-  for (int i = 0; i < count; ++i) {
-    if (all[i]) {
-      return i;
-    }
-  }
-  return -1;
-}
-
-/// Ordered list of nodes.
-template <class... Nodes>
-class node_list {
-  static constexpr int count = int(sizeof...(Nodes));
-  // The comparison of types is built into compilers: it is faster than deducing a base class and,
-  // unlike a comparison of addresses, constant under sanitizers, too. The last entry avoids an
-  // empty array.
-  template <class Node>
-  static constexpr bool is_it[] = {DUET_IS_SAME(Nodes, Node)..., false};
-
-public:
-  /// Index of a node, or -1 if it is not in the list.
-  template <class Node>
-  static constexpr int index = index_of_true(is_it<Node>, count);
-};
 
 /// The factors of a product.
 template <class Node>
@@ -66,153 +39,172 @@ struct factors<applied_node<op::product, A, B>> {
   using type = mp11::mp_append<typename factors<A>::type, typename factors<B>::type>;
 };
 
+/// True for a coordinate axis as a vector or a line, and its index.
+template <class Node>
+inline constexpr int axis_of = -1;
+template <kind K, int I>
+  requires(I < 3)
+inline constexpr int axis_of<unit_vector_node<K, I>> = I;
+template <class Node>
+inline constexpr int axis_of<applied_node<op::part_of_dual<false>, Node>> = axis_of<Node>;
+template <class Node>
+inline constexpr bool is_axis = axis_of<Node> >= 0;
+
 /// True for a product of at least two rigid motions.
 template <class Node>
 inline constexpr bool is_pose_chain = false;
 template <class A, class B>
 inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> = A::kind_of == kind::pose;
 
-/// The different symbols of a node.
-template <class Node>
-struct symbols_of {
-  using type = mp11::mp_if_c<is_symbol<Node>, mp11::mp_list<Node>, mp11::mp_list<>>;
-};
-template <class Operation, class... X>
-struct symbols_of<applied_node<Operation, X...>> {
-  using type = mp11::mp_unique<mp11::mp_append<mp11::mp_list<>, typename symbols_of<X>::type...>>;
-};
-
-/// Class of a factor for `moving_frame`, the nodes whose values it is appended with, and the node
-/// of its twist if symbols move.
+/// Class of a factor for `moving_frame`, the entries whose values it is appended with, and its
+/// rate: a velocity, or the rate of a scalar.
 template <class Factor>
 struct link_of {
   using link = any_motion;
-  using nodes = mp11::mp_list<Factor>;
-  template <class Motion>
-  using twist = decltype(velocity_of<spatial_frame, Factor, Motion>());
+  static constexpr int value_count = 1;
+  template <class Held>
+  static constexpr int add(tape_builder& tape, int* values) {
+    return *values = recipe<Factor>::template add<tape_use<1>, Held>(tape);
+  }
 };
 template <int I, class Angle, class S, class C>
   requires(I < 3)
 struct link_of<
     applied_node<op::axis_exponential, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
   using link = about_axis<I>;
-  using nodes = mp11::mp_list<S, C>;
-  template <class Motion>
-  using twist = rate_t<Angle, Motion>;
+  static constexpr int value_count = 2;
+  template <class Held>
+  static constexpr int add(tape_builder& tape, int* values) {
+    values[0] = recipe<S>::template add<tape_use<0>, Held>(tape);
+    values[1] = recipe<C>::template add<tape_use<0>, Held>(tape);
+    return recipe<Angle>::template add<tape_use<1>, Held>(tape);
+  }
 };
-template <int I, class D>
-struct link_of<applied_node<op::translation_along, unit_vector_node<kind::vector, I>, D>> {
-  using link = along_axis<I>;
-  using nodes = mp11::mp_list<D>;
-  template <class Motion>
-  using twist = rate_t<D, Motion>;
-};
-
-/// The motions that move a factor, with its twists. They are found by the symbols of the factor, so
-/// that compile time does not grow with the number of all pairs of factors and motions.
-template <class Factor, class Motions>
-struct moved_factor {
-  template <class Symbol>
-  using directions_of = typename directions<Symbol, spatial_frame>::type;
-  using of_symbols = mp11::mp_apply<
-      mp11::mp_append,
-      mp11::mp_push_front<mp11::mp_transform<directions_of, typename symbols_of<Factor>::type>,
-                          motion_list<>>>;
-  template <class Motion>
-  using moves = mp11::mp_bool<(Motions::template index<Motion> >= 0) &&
-                              !is_zero<typename link_of<Factor>::template twist<Motion>>>;
-  using motions = mp11::mp_copy_if<of_symbols, moves>;
-  using twists = mp11::mp_transform<link_of<Factor>::template twist, motions>;
-  using roots = mp11::mp_append<typename link_of<Factor>::nodes, twists>;
-};
-
-/// Evaluation step of a factor: it writes its columns of the Jacobian and is appended to the frame.
-/// Values are given by index.
-template <class Link, bool IsFirst, class Values, class Writes>
-struct factor_step;
-template <int Column, bool IsSet, int Twist>
-struct column_write {};
-
-template <class Link, bool IsFirst, int... Values, int... Column, bool... IsSet, int... Twist>
-struct factor_step<Link, IsFirst, std::integer_sequence<int, Values...>,
-                   mp11::mp_list<column_write<Column, IsSet, Twist>...>> {
-  template <class Slots>
-  DUET_ALWAYS_INLINE static void run(moving_frame& f, [[maybe_unused]] double* jacobian, Slots& s) {
-    (f.write<IsSet>(Link{}, jacobian + 6 * Column, s.template get<Twist>()), ...);
-    f.append<IsFirst>(Link{}, s.template get<Values>()...);
+template <class N, class D>
+  requires is_axis<N>
+struct link_of<applied_node<op::translation_along, N, D>> {
+  using link = along_axis<axis_of<N>>;
+  static constexpr int value_count = 1;
+  template <class Held>
+  static constexpr int add(tape_builder& tape, int* values) {
+    return *values = recipe<D>::template add<tape_use<1>, Held>(tape);
   }
 };
 
-template <class Factors, class Motions,
-          class Indices = std::make_index_sequence<mp11::mp_size<Factors>::value>>
+/// Puts the values of factors, two entries each, and their rates on a tape: those of a factor for
+/// all motions, one factor after the other.
+template <class Factors, class... Motions>
+struct build_chain;
+template <class... Factors, class... Motions>
+struct build_chain<mp11::mp_list<Factors...>, Motions...> {
+  static constexpr int factors = int(sizeof...(Factors)), motions = int(sizeof...(Motions));
+  static constexpr int root_count = factors * (2 + motions);
+  static constexpr int initial_capacity = 256;
+  static constexpr int motions_in_pass = 16; // compilers limit the steps of a constant expression
+  static constexpr int passes = 1 + (motions - 1) / motions_in_pass;
+
+  static constexpr int rate_root(int factor, int motion) {
+    return 2 * factors + motions * factor + motion;
+  }
+  template <class Held, int Pass>
+  static constexpr void build(tape_builder& tape, int* roots) {
+    using use = tape_use<0>;
+    int* values = roots;
+    const int moving[] = {link_of<Factors>::template add<Held>(tape, (values += 2) - 2)...};
+    const moving_input inputs[] = {moving_input_of<use, Held>(tape, Motions{})...};
+    tape_motion motion(tape.capacity());
+    int size = 0;
+    for (int i : moving) {
+      motion.need(tape, i);
+      size = i < size ? size : i + 1;
+    }
+    constexpr int end =
+        (Pass + 1) * motions_in_pass < motions ? (Pass + 1) * motions_in_pass : motions;
+    for (int m = Pass * motions_in_pass; m < end; ++m) {
+      motion.template add_rates<use>(tape, size, inputs + m, 1);
+      for (int k = 0; k < factors; ++k) {
+        roots[rate_root(k, m)] =
+            column_of<spatial_frame>(motion, tape_term<use>{&tape, moving[k]}).index;
+      }
+    }
+  }
+};
+
+/// Evaluation of a product of rigid motions, factor by factor.
+template <class Factors, class... Motions>
 struct pose_chain;
-template <class... Factors, class... Motions, std::size_t... K>
-struct pose_chain<mp11::mp_list<Factors...>, motion_list<Motions...>, std::index_sequence<K...>> {
+template <class... Factors, class... Motions>
+struct pose_chain<mp11::mp_list<Factors...>, Motions...> {
   /// Returns the pose and writes its Jacobian into 6 × n doubles, column by column.
   [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double> evaluate(double* jacobian,
                                                                            const auto& b) {
-    return evaluated_program<mp11::mp_rename<nodes, build_nodes>>(
-        b, [jacobian](auto& values) DUET_INLINE_LAMBDA {
-          moving_frame f;
-          run(f, jacobian, values,
-              typename step<K, Factors, typename link_of<Factors>::nodes,
-                            typename moved_factor<Factors, motions>::motions>::type{}...);
-          if constexpr (std::find(first_moved.begin(), first_moved.end(), count) !=
-                        first_moved.end()) {
-            for (std::size_t i = 0; i < first_moved.size(); ++i) {
-              if (first_moved[i] == count) {
-                std::fill_n(jacobian + 6 * i, 6, 0.0);
-              }
-            }
-          }
-          return f.pose();
-        });
+    return evaluated_program<build>(b, [jacobian](auto& values) DUET_INLINE_LAMBDA {
+      using program = typename std::remove_reference_t<decltype(values)>::program;
+      moving_frame f;
+      [&]<int... K>(std::integer_sequence<int, K...>) DUET_INLINE_LAMBDA {
+        (append<program, K, Factors>(f, jacobian, values), ...);
+      }
+      (std::make_integer_sequence<int, count>{});
+      for (int m = 0; m < motions; ++m) {
+        if (writes<program>.first_factor[m] == count) {
+          std::fill_n(jacobian + 6 * m, 6, 0.0);
+        }
+      }
+      return f.pose();
+    });
   }
 
 private:
-  using motions = node_list<Motions...>;
-  using nodes =
-      mp11::mp_apply<node_list, mp11::mp_append<typename moved_factor<Factors, motions>::roots...>>;
-  static constexpr std::size_t count = sizeof...(Factors);
+  using build = build_chain<mp11::mp_list<Factors...>, Motions...>;
+  static constexpr int count = build::factors, motions = build::motions;
 
-  /// Index of the first factor that a motion moves, for each motion.
-  using firsts = std::array<std::size_t, sizeof...(Motions)>;
-  template <class... M>
-  static constexpr void note(firsts& first, [[maybe_unused]] std::size_t factor,
-                             motion_list<M...>) {
-    ((first[std::size_t(motions::template index<M>)] =
-          std::min(first[std::size_t(motions::template index<M>)], factor)),
-     ...);
-  }
-  static constexpr firsts first_moved = [] {
-    firsts first;
-    first.fill(count);
-    (note(first, K, typename moved_factor<Factors, motions>::motions{}), ...);
-    return first;
+  /// The motions that move each factor, and the first factor that each motion moves.
+  struct factor_motions {
+    int size[std::size_t(count)] = {};
+    int motion[std::size_t(count)][std::size_t(motions)] = {};
+    int first_factor[std::size_t(motions)] = {};
+  };
+  template <class Program>
+  static constexpr factor_motions writes = [] {
+    factor_motions result;
+    for (int m = 0; m < motions; ++m) {
+      result.first_factor[m] = count;
+      for (int k = count - 1; k >= 0; --k) {
+        if (!Program::is_zero_root(build::rate_root(k, m))) {
+          result.motion[k][result.size[k]++] = m;
+          result.first_factor[m] = k;
+        }
+      }
+    }
+    return result;
+  }();
+  static constexpr int first_rotation = [] {
+    int k = 0;
+    static_cast<void>(((link_of<Factors>::link::rotates || (++k, false)) || ...));
+    return k;
   }();
 
-  template <class Factor>
-  using rotates = mp11::mp_bool<link_of<Factor>::link::rotates>;
-  static constexpr std::size_t first_rotation =
-      mp11::mp_find_if<mp11::mp_list<Factors...>, rotates>::value;
-
-  template <std::size_t At, class Factor, class Values, class Moved>
-  struct step;
-  template <std::size_t At, class Factor, class... Values, class... M>
-  struct step<At, Factor, mp11::mp_list<Values...>, motion_list<M...>> {
-    template <class Motion>
-    static constexpr int column = motions::template index<Motion>;
-    using type =
-        factor_step<typename link_of<Factor>::link, At <= first_rotation,
-                    std::integer_sequence<int, nodes::template index<Values>...>,
-                    mp11::mp_list<column_write<
-                        column<M>, first_moved[std::size_t(column<M>)] == At,
-                        nodes::template index<typename link_of<Factor>::template twist<M>>>...>>;
-  };
-
-  template <class... Steps, class Slots>
-  DUET_ALWAYS_INLINE static void run(moving_frame& f, double* jacobian, Slots& s, Steps...) {
-    (Steps::run(f, jacobian, s), ...);
+  /// Writes the columns of a factor, and appends it to the frame.
+  template <class Program, int K, class Factor>
+  DUET_ALWAYS_INLINE static void append(moving_frame& f, [[maybe_unused]] double* jacobian,
+                                        auto& values) {
+    using link = typename link_of<Factor>::link;
+    [&]<int... W>(std::integer_sequence<int, W...>) DUET_INLINE_LAMBDA {
+      (write<Program, K, writes<Program>.motion[K][W]>(link{}, f, jacobian, values), ...);
+    }
+    (std::make_integer_sequence<int, writes<Program>.size[K]>{});
+    constexpr bool is_first = K <= first_rotation;
+    if constexpr (link_of<Factor>::value_count == 2) {
+      f.template append<is_first>(link{}, values.template get<2 * K>(),
+                                  values.template get<2 * K + 1>());
+    } else {
+      f.template append<is_first>(link{}, values.template get<2 * K>());
+    }
+  }
+  template <class Program, int K, int M, class Link>
+  DUET_ALWAYS_INLINE static void write(Link link, moving_frame& f, double* jacobian, auto& values) {
+    f.template write<writes<Program>.first_factor[M] == K>(
+        link, jacobian + 6 * M, values.template get<build::rate_root(K, M)>());
   }
 };
 

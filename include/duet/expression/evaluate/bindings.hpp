@@ -124,27 +124,6 @@ struct leaf<zero_node<K>, Bindings> {
   }
 };
 
-/// Type of the value of a node.
-template <class Node, class Bindings>
-struct value_of {
-  using type = decltype(leaf<Node, numbers_as<typename Bindings::real>>::value({}));
-};
-template <kind K, char... Letters, class Bindings>
-struct value_of<symbol_node<K, Letters...>, Bindings> {
-  using type =
-      std::remove_cvref_t<decltype(value_in<symbol_node<K, Letters...>>(std::declval<Bindings>()))>;
-};
-template <kind K, class Tag, class Bindings>
-struct value_of<constant_node<K, Tag>, Bindings> {
-  using type = decltype(constant_over<typename Bindings::real>(
-      value_in<constant_node<K, Tag>>(std::declval<Bindings>())));
-};
-template <class Operation, class... Operands, class Bindings>
-struct value_of<applied_node<Operation, Operands...>, Bindings> {
-  using type = decltype(Operation::value(
-      std::declval<const typename value_of<Operands, Bindings>::type&>()...));
-};
-
 template <class T>
 inline constexpr bool is_argument = false;
 template <class Symbol, class T>

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/derivative/frame.hpp>
 #include <duet/expression/derivative.hpp>
+#include <duet/expression/screw.hpp>
+#include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/vector.hpp>
 
@@ -26,20 +29,47 @@ struct directions;
 
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::scalar> {
-  using type = motion_list<movement_of_scalar<Symbol>>;
+  using type = motion_list<moving_scalar<Symbol>>;
 };
 
-template <class Symbol, kind K, int... I>
-using moving_along_axes = motion_list<movement<moving<Symbol, unit_vector_node<K, I>>>...>;
+template <class Symbol, class Frame, kind K, int... I>
+using moving_along_axes = motion_list<moving<Symbol, unit_vector_node<K, I>, Frame>...>;
 
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::vector> {
-  using type = moving_along_axes<Symbol, kind::vector, 0, 1, 2>;
+  using type = moving_along_axes<Symbol, void, kind::vector, 0, 1, 2>;
 };
 /// Components of n + εm in the order [m; n], that of twists.
 template <class Symbol, class Frame>
 struct directions<Symbol, Frame, kind::dual_vector> {
-  using type = moving_along_axes<Symbol, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
+  using type = moving_along_axes<Symbol, void, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
+};
+
+/// Axes of a rotation.
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::quaternion> {
+  using type = moving_along_axes<Symbol, Frame, kind::vector, 0, 1, 2>;
+};
+template <class Symbol>
+struct directions<Symbol, hybrid_frame, kind::quaternion>
+    : directions<Symbol, spatial_frame, kind::quaternion> {};
+/// Unit twists of a pose in the order [v; ω].
+template <class Symbol, class Frame>
+struct directions<Symbol, Frame, kind::pose> {
+  using type = moving_along_axes<Symbol, Frame, kind::dual_vector, 3, 4, 5, 0, 1, 2>;
+};
+template <class Symbol>
+struct directions<Symbol, hybrid_frame, kind::pose> {
+  template <int I>
+  static constexpr auto spatial_twist() { // v = ṗ − ω × p
+    constexpr auto e = unit_vector_node<kind::dual_vector, I>{};
+    constexpr auto omega = apply<op::part_of_dual<false>>(e);
+    return at_point<op::difference>(e, apply<op::cross>(omega, apply<op::translation>(Symbol{})));
+  }
+  template <int... I>
+  using moving_at_point =
+      motion_list<moving<Symbol, decltype(spatial_twist<I>()), spatial_frame>...>;
+  using type = moving_at_point<3, 4, 5, 0, 1, 2>;
 };
 
 template <class T>

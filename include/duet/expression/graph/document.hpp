@@ -31,14 +31,13 @@ struct scalar_derivatives {
 template <class Motion>
 inline constexpr bool is_of_scalar = false;
 template <class Symbol, class Rate>
-inline constexpr bool is_of_scalar<movement<moving<Symbol, Rate>>> =
-    Symbol::kind_of == kind::scalar;
+inline constexpr bool is_of_scalar<moving<Symbol, Rate>> = Symbol::kind_of == kind::scalar;
 template <class... Motions, class F>
 struct scalar_derivatives<gradient_of<motion_list<Motions...>>, F> {
   static constexpr bool exist = (is_of_scalar<Motions> && ...);
   static constexpr std::size_t columns = 1;
   static std::vector<std::string> latex(const F& f, notation style) {
-    return {latex_of_node<rate_t<typename F::node_type, Motions>>(f.held(), style)...};
+    return {latex_of_node<rate_node<typename F::node_type, Motions>>(f.held(), style)...};
   }
 };
 template <class... Motions, class F>
@@ -47,8 +46,8 @@ struct scalar_derivatives<hessian_of<motion_list<Motions...>>, F> {
   static constexpr std::size_t columns = sizeof...(Motions);
   template <class Motion>
   static void add_row(const F& f, notation style, std::vector<std::string>& entries) {
-    using slope = rate_t<typename F::node_type, Motion>;
-    (entries.push_back(latex_of_node<rate_t<slope, Motions>>(f.held(), style)), ...);
+    using slope = rate_node<typename F::node_type, Motion>;
+    (entries.push_back(latex_of_node<rate_node<slope, Motions>>(f.held(), style)), ...);
   }
   static std::vector<std::string> latex(const F& f, notation style) {
     std::vector<std::string> entries;
@@ -77,7 +76,6 @@ template <class Made, Formula F>
                                    [[maybe_unused]] notation style = notation::latex) {
   using derivatives = detail::scalar_derivatives<Made, F>;
   if constexpr (derivatives::exist) {
-    detail::latex_symbols().visit(typename F::node_type{});
     std::vector<std::string> entries = derivatives::latex(f.formula(), style);
     const formula_graph expanded = components(f);
     const named_value& matrix = expanded.outputs().back();

@@ -25,23 +25,11 @@ namespace duet::expression {
 
 namespace op {
 
-struct transpose;
-template <int Rows, int Columns>
-struct entries;
-
 /// Matrix of zeros with a block X that begins at (I, J). It is never printed, as only derivatives
 /// with respect to entries contain it.
 template <int Rows, int Columns, int I, int J>
-struct embedded_block : linear_operation {
+struct embedded_block {
   static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
-  template <class X>
-  static constexpr auto simplified(X x) {
-    if constexpr (rows_of(X::kind_of) == Rows && columns_of(X::kind_of) == Columns) {
-      return x;
-    } else if constexpr (Rows == 3 && Columns == 1 && X::kind_of == kind::scalar) {
-      return x * unit_vector_node<kind::vector, I>{};
-    }
-  }
   template <class X>
   static auto value(const X& x) {
     using T = std::remove_cvref_t<decltype(detail::component_of(x, 0))>;
@@ -63,28 +51,17 @@ namespace detail {
 template <int Rows, int Columns, int I, int J>
 using unit_matrix = decltype(apply<op::embedded_block<Rows, Columns, I, J>>(whole<1>));
 
-/// Block of a matrix outside of which all entries are known to be 0, such as X of `embedded_block`.
-template <class M>
-struct sparsity {
-  static constexpr bool is_sparse = false;
-};
-template <int Rows, int Columns, int Row, int Column, class X>
-struct sparsity<applied_node<op::embedded_block<Rows, Columns, Row, Column>, X>> {
-  static constexpr bool is_sparse = true;
-  using block = X;
-  static constexpr int row = Row, column = Column;
-  static constexpr int rows = rows_of(X::kind_of), columns = columns_of(X::kind_of);
-};
-template <int I>
-struct sparsity<unit_vector_node<kind::vector, I>> {
-  static constexpr bool is_sparse = true;
-  using block = number_node<bits_of(1)>;
-  static constexpr int row = I, column = 0, rows = 1, columns = 1;
-};
-
-[[nodiscard]] inline std::string printed_range(notation style, int begin, int size) {
-  const int first = begin + (style != notation::text ? 1 : 0);
-  return std::to_string(first) + (size == 1 ? "" : ":" + std::to_string(first + size - 1));
+/// Block of a matrix of rows × columns entries that begins at (i, j).
+[[nodiscard]] inline printed print_block(notation style, const printed& m, int i, int j,
+                                         kind size) {
+  const auto range = [&](int begin, int count) {
+    const int first = begin + (style != notation::text ? 1 : 0);
+    return std::to_string(first) + (count == 1 ? "" : ":" + std::to_string(first + count - 1));
+  };
+  const std::string rows = range(i, rows_of(size)), columns = range(j, columns_of(size));
+  return style != notation::text
+             ? with_index(m, rows + "," + columns)
+             : printed{m.inside(precedence::atom) + "(" + rows + ", " + columns + ")"};
 }
 
 } // namespace detail
@@ -93,22 +70,8 @@ namespace op {
 
 /// Block of Rows x Columns entries that begins at (I, J).
 template <int I, int J, int Rows, int Columns>
-struct block : linear_operation {
+struct block {
   static constexpr kind kind_of(kind) { return matrix_kind(Rows, Columns); }
-  template <class M>
-  static constexpr auto simplified(M m) {
-    if constexpr (Rows == rows_of(M::kind_of) && Columns == columns_of(M::kind_of)) {
-      return m;
-    } else if constexpr (detail::is_scaled<M>) {
-      return detail::scaled_outside(m, [](auto x) { return apply<block>(x); });
-    } else if constexpr (is_applied<M, transpose>) {
-      return apply<transpose>(apply<op::block<J, I, Columns, Rows>>(operand<0>(m)));
-    } else if constexpr (detail::sparsity<M>::is_sparse) {
-      return of_sparse<detail::sparsity<M>>();
-    } else {
-      return of(m);
-    }
-  }
   template <class M>
   static auto value(const M& m) {
     if constexpr (Rows == 1 && Columns == 1) {
@@ -118,66 +81,12 @@ struct block : linear_operation {
           m.template block<Rows, Columns>(I, J));
     }
   }
-  static printed print(notation style, const printed& m) {
-    const std::string i = detail::printed_range(style, I, Rows);
-    const std::string j = detail::printed_range(style, J, Columns);
-    return style != notation::text ? detail::with_index(m, i + "," + j)
-                                   : printed{m.inside(precedence::atom) + "(" + i + ", " + j + ")"};
-  }
-
-private:
-  template <class M>
-  static constexpr auto of(M) {
-    if constexpr (Rows == 1 && Columns == 1 && columns_of(M::kind_of) == 1) {
-      return applied_node<component<I>, M>{};
-    }
-  }
-  template <int Row, int Column, int R, int C, class M>
-  static constexpr auto of(applied_node<op::block<Row, Column, R, C>, M>) {
-    return apply<op::block<I + Row, J + Column, Rows, Columns>>(M{});
-  }
-  template <int R, int C, class... X>
-    requires(Rows == 1 && Columns == 1)
-  static constexpr auto of(applied_node<entries<R, C>, X...>) {
-    return std::tuple_element_t<std::size_t(I * C + J), std::tuple<X...>>{};
-  }
-  /// Intersection of this block with the one outside of which the matrix is 0.
-  template <class S>
-  static constexpr auto of_sparse() {
-    constexpr int top = std::max(I, S::row), bottom = std::min(I + Rows, S::row + S::rows);
-    constexpr int left = std::max(J, S::column),
-                  right = std::min(J + Columns, S::column + S::columns);
-    if constexpr (top >= bottom || left >= right) {
-      return zero_of<matrix_kind(Rows, Columns)>();
-    } else {
-      return apply<embedded_block<Rows, Columns, top - I, left - J>>(
-          apply<op::block<top - S::row, left - S::column, bottom - top, right - left>>(
-              typename S::block{}));
-    }
-  }
 };
 
 /// Aᵀ
-struct transpose : linear_operation {
+struct transpose {
   static constexpr detail::function_name name = {"transpose", "#^{\\top}"};
   static constexpr kind kind_of(kind m) { return matrix_kind(columns_of(m), rows_of(m)); }
-  template <class M>
-  static constexpr auto simplified(applied_node<transpose, M>) {
-    return M{};
-  }
-  template <class M>
-  static constexpr auto simplified(M m) {
-    if constexpr (M::kind_of == kind::scalar) {
-      return m;
-    } else if constexpr (detail::is_scaled<M>) {
-      return detail::scaled_outside(m, [](auto x) { return apply<transpose>(x); });
-    } else if constexpr (detail::sparsity<M>::is_sparse) {
-      using sparse = detail::sparsity<M>;
-      return apply<
-          embedded_block<columns_of(M::kind_of), rows_of(M::kind_of), sparse::column, sparse::row>>(
-          apply<transpose>(typename sparse::block{}));
-    }
-  }
   template <class M>
   static auto value(const M& m) {
     return Eigen::Matrix<typename M::Scalar, M::ColsAtCompileTime, M::RowsAtCompileTime>(

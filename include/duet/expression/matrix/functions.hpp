@@ -63,13 +63,10 @@ namespace op {
 struct adjugate {
   static constexpr detail::function_name name = {"adjugate", "\\operatorname{adj}"};
   static constexpr kind kind_of(kind m) { return m; }
-  template <ScalarTerm M>
-  static constexpr auto simplified(M) {
-    return whole<1>;
-  }
-  template <class M>
-  static constexpr auto simplified(applied_node<transpose, M>) {
-    return apply<transpose>(apply<adjugate>(M{}));
+  static constexpr auto simplified(auto m) {
+    return m.of_kind() == kind::scalar  ? m.at(1)
+           : m.template is<transpose>() ? apply<transpose>(apply<adjugate>(m.operand(0)))
+                                        : m.none();
   }
   template <class M>
   static auto value(const M& m) {
@@ -85,24 +82,20 @@ struct adjugate {
     return result;
   }
   /// Derivative for 2 x 2, where adj A is linear in the entries.
-  template <class M>
-    requires(rows_of(M::kind_of) == 2)
-  static constexpr auto differential(M, auto dm) { return apply<adjugate>(dm); }
+  static constexpr auto differential(auto m, auto dm) {
+    return rows_of(m.of_kind()) == 2 ? apply<adjugate>(dm) : m.none();
+  }
 };
 
 /// det A
 struct determinant {
   static constexpr detail::function_name name = {"determinant", "\\det"};
   static constexpr kind kind_of(kind) { return kind::scalar; }
-  template <class M>
-  static constexpr auto simplified(M m) {
-    if constexpr (M::kind_of == kind::scalar) {
-      return m;
-    } else if constexpr (is_zero<M>) {
-      return whole<0>;
-    } else if constexpr (is_applied<M, transpose>) {
-      return apply<determinant>(operand<0>(m));
-    }
+  static constexpr auto simplified(auto m) {
+    return m.of_kind() == kind::scalar  ? m
+           : m.is_zero()                ? m.at(0)
+           : m.template is<transpose>() ? apply<determinant>(m.operand(0))
+                                        : m.none();
   }
   static auto value(const auto& m) { return detail::determinant_of(m); }
   static constexpr auto differential(auto m, auto dm) {
@@ -114,9 +107,8 @@ struct determinant {
 struct inverse {
   static constexpr detail::function_name name = {"inverse", "#^{-1}"};
   static constexpr kind kind_of(kind m) { return m; }
-  template <ScalarTerm M>
-  static constexpr auto simplified(M m) {
-    return whole<1> / m;
+  static constexpr auto simplified(auto m) {
+    return m.of_kind() == kind::scalar ? whole<1> / m : m.none();
   }
   template <class M>
   static auto value(const M& m) {
@@ -130,13 +122,8 @@ struct inverse {
 /// A⁻¹ b, by elimination; its derivatives share one inverse.
 struct solution {
   static constexpr kind kind_of(kind, kind b) { return b; }
-  template <class A, class B>
-  static constexpr auto simplified(A a, B b) {
-    if constexpr (A::kind_of == kind::scalar) {
-      return b / a;
-    } else if constexpr (is_zero<B>) {
-      return b;
-    }
+  static constexpr auto simplified(auto a, auto b) {
+    return a.of_kind() == kind::scalar ? b / a : b.is_zero() ? b : a.none();
   }
   template <class A, class B>
   static auto value(const A& a, const B& b) {

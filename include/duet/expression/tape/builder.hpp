@@ -3,13 +3,17 @@
 
 #include <duet/expression/tree/exact.hpp>
 #include <duet/expression/tree/node.hpp>
+#include <duet/expression/tree/printed.hpp>
 
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
+#include <vector>
 
 /// \file
-/// The tape of a formula while it is built, at compile time: one entry for each different node,
-/// operands first, with the simplifications of scalar arithmetic decided on data.
+/// The tape of a formula while it is built: one entry for each different operation, operands first,
+/// with exact simplifications, which are decided on data. They hold for all finite numbers: those
+/// of 0, 1 and signs, exact arithmetic of numbers, and zeros of matrices.
 
 namespace duet::expression::detail {
 
@@ -25,7 +29,16 @@ enum class tape_code {
   product,
   quotient,
   slope_product,
-  power, ///< by an integer
+  conj,
+  transpose,
+  trace,
+  trace_of_product,
+  matrix_product,
+  entries,        ///< matrix of scalars, row by row
+  power,          ///< by an integer
+  component,      ///< of a column
+  block,          ///< of a matrix
+  embedded_block, ///< matrix of zeros with a block
   sine,
   cosine,
   other, ///< a leaf or an operation of its own
@@ -33,29 +46,33 @@ enum class tape_code {
 };
 
 class tape_builder;
+struct tape_motion;
 
-/// Makes the rate of an entry: x are the indices of its operands, rates those of the rates of all
-/// entries.
-using tape_rate = int (*)(tape_builder& tape, const int* x, const int* rates);
+/// Makes the rate of an entry with operands x.
+using tape_rate = int (*)(tape_builder& tape, const int* x, tape_motion& motion);
+/// Text of an entry, whose operands are given as text.
+using tape_print = printed (*)(notation style, const printed* x);
 
-/// Identity of an operation or leaf that the algebra does not know.
+/// Operation or leaf that the algebra does not know.
 struct tape_operation {
   const char* id = nullptr;
   unsigned hash = 0;
-  tape_rate rate = nullptr;
   bool drops_dual = false; ///< true for parts of dual numbers, whose values are not dual
+  int order = 0;           ///< number of times that rates can be made
+  tape_rate rate = nullptr;
+  tape_print print = nullptr; ///< if the tape is printed
 };
 
 /// One operation, number or input.
 struct tape_entry {
   tape_code code;
   kind kind_of;
-  int parameter; ///< the exponent of a power, the index of an input
+  int parameter; ///< exponent of a power, index of an input or component, 8 I + J of a block
   int first;     ///< index of the first operand in the list of operands
   int count;     ///< of operands
   int next;      ///< entry with the same hash
   double number;
-  tape_operation operation;
+  const tape_operation* operation;
 };
 
 /// A node of the written formula that is on the tape.
@@ -63,10 +80,11 @@ struct tape_memo {
   unsigned hash;
   const char* id;
   int entry;
+  int order; ///< number of times that its rates can be made
   int next;
 };
 
-/// Memory of a tape.
+/// Memory of a tape, at compile time.
 template <int Capacity>
 struct tape_memory {
   tape_entry entries[std::size_t(Capacity)] = {};
@@ -80,24 +98,55 @@ struct tape_memory {
   bool is_full = false; ///< true if the tape needs more memory
 };
 
+/// Memory of a tape at run time.
+struct tape_vectors {
+  explicit tape_vectors(int capacity)
+      : entries(std::size_t(capacity)), operands(std::size_t(4 * capacity)),
+        table(std::size_t(capacity)), memos(std::size_t(capacity)),
+        memo_table(std::size_t(capacity)) {}
+
+  std::vector<tape_entry> entries;
+  std::vector<int> operands, table;
+  std::vector<tape_memo> memos;
+  std::vector<int> memo_table;
+  int size = 0;
+  int operand_count = 0;
+  int memo_count = 0;
+  bool is_full = false;
+};
+
+/// Whole numbers, 0 at first, one for each entry of a tape.
+class tape_numbers {
+public:
+  constexpr explicit tape_numbers(int size) : values_(new int[std::size_t(size)]()) {}
+  tape_numbers(const tape_numbers&) = delete;
+  tape_numbers& operator=(const tape_numbers&) = delete;
+  constexpr ~tape_numbers() { delete[] values_; }
+  [[nodiscard]] constexpr int& operator[](int i) const { return values_[i]; }
+
+private:
+  int* values_;
+};
+
 /// A tape that grows. Entries are indices; entry 0 is the scalar zero, entry 1 the number 1.
 class tape_builder {
 public:
   /// Continues the tape in a memory.
-  template <int Capacity>
-  constexpr explicit tape_builder(tape_memory<Capacity>& memory)
-      : entries_(memory.entries), operands_(memory.operands), table_(memory.table),
-        memos_(memory.memos), memo_table_(memory.memo_table), capacity_(Capacity),
+  template <class Memory>
+  constexpr explicit tape_builder(Memory& memory, bool is_printed = false)
+      : entries_(std::data(memory.entries)), operands_(std::data(memory.operands)),
+        table_(std::data(memory.table)), memos_(std::data(memory.memos)),
+        memo_table_(std::data(memory.memo_table)), capacity_(int(std::size(memory.entries))),
         memo_count_(memory.memo_count), size_(memory.size), operand_count_(memory.operand_count),
-        is_full_(memory.is_full) {
+        is_full_(memory.is_full), is_printed_(is_printed) {
     if (size_ == 0) {
       static_cast<void>(zero(kind::scalar));
       static_cast<void>(number(1));
     }
   }
   /// Writes the sizes into the memory.
-  template <int Capacity>
-  constexpr void finish(tape_memory<Capacity>& memory) const {
+  template <class Memory>
+  constexpr void finish(Memory& memory) const {
     memory.memo_count = memo_count_;
     memory.size = size_;
     memory.operand_count = operand_count_;
@@ -105,6 +154,8 @@ public:
   }
 
   [[nodiscard]] constexpr int size() const { return size_; }
+  [[nodiscard]] constexpr int capacity() const { return capacity_; }
+  [[nodiscard]] constexpr bool is_full() const { return is_full_; }
   [[nodiscard]] constexpr const tape_entry& operator[](int i) const { return entries_[i]; }
   [[nodiscard]] constexpr int operand(int i, int k) const {
     return operands_[entries_[i].first + k];
@@ -113,31 +164,31 @@ public:
   [[nodiscard]] constexpr tape_code code(int i) const { return entries_[i].code; }
   [[nodiscard]] constexpr bool is_zero(int i) const { return entries_[i].code == tape_code::zero; }
 
-  [[nodiscard]] constexpr int zero(kind k) { return add(tape_code::zero, k, 0, 0, {}, nullptr, 0); }
+  [[nodiscard]] constexpr kind kind_of(int i) const { return entries_[i].kind_of; }
+  [[nodiscard]] constexpr bool is_number(int i) const {
+    return code(i) == tape_code::number || i == 0;
+  }
+
+  [[nodiscard]] constexpr int zero(kind k) {
+    return add(tape_code::zero, k, 0, 0, nullptr, nullptr, 0);
+  }
   [[nodiscard]] constexpr int number(double x) {
-    return x == 0 ? 0 : add(tape_code::number, kind::scalar, 0, x, {}, nullptr, 0);
+    return x == 0 ? 0 : add(tape_code::number, kind::scalar, 0, x, nullptr, nullptr, 0);
   }
   /// The unit vector along an axis.
   [[nodiscard]] constexpr int unit_vector(kind k, int axis) {
-    return add(tape_code::unit_vector, k, axis, 0, {}, nullptr, 0);
+    return add(tape_code::unit_vector, k, axis, 0, nullptr, nullptr, 0);
   }
   [[nodiscard]] constexpr int input(kind k, int index) {
-    return add(tape_code::input, k, index, 0, {}, nullptr, 0);
+    return add(tape_code::input, k, index, 0, nullptr, nullptr, 0);
   }
-  [[nodiscard]] constexpr int other(kind k, tape_operation operation, const int* x, int count) {
-    return add(tape_code::other, k, 0, 0, operation, x, count);
-  }
-  /// An operation that the algebra knows, as it is.
-  [[nodiscard]] constexpr int plain(tape_code code, kind k, int a) {
-    return add(code, k, 0, 0, {}, &a, 1);
-  }
-  [[nodiscard]] constexpr int plain(tape_code code, kind k, int a, int b) {
-    const int x[] = {a, b};
-    return add(code, k, 0, 0, {}, x, 2);
+  [[nodiscard]] constexpr int other(kind k, const tape_operation& operation, const int* x,
+                                    int count) {
+    return add(tape_code::other, k, 0, 0, &operation, x, count);
   }
   /// x^n
   [[nodiscard]] constexpr int power(int x, int n) {
-    return n == 1 ? x : add(tape_code::power, entries_[x].kind_of, n, 0, {}, &x, 1);
+    return n == 0 || x == 1 ? 1 : n == 1 ? x : plain(tape_code::power, kind_of(x), x, n);
   }
 
   [[nodiscard]] constexpr int negative(int a) {
@@ -156,6 +207,8 @@ public:
         return product(negative(operand(a, 0)), operand(a, 1));
       }
       break;
+    case tape_code::embedded_block:
+      return embedded_like(a, negative(operand(a, 0)));
     default:
       break;
     }
@@ -190,7 +243,7 @@ public:
     if (x.code == tape_code::negative) {
       return difference(b, negative(a));
     }
-    return plain(tape_code::sum, x.kind_of, a, b);
+    return plain_of_two(tape_code::sum, x.kind_of, a, b);
   }
 
   [[nodiscard]] constexpr int difference(int a, int b) {
@@ -215,12 +268,15 @@ public:
     if (starts_with_minus(b)) {
       return sum(a, negative(b));
     }
-    return plain(tape_code::difference, x.kind_of, a, b);
+    return plain_of_two(tape_code::difference, x.kind_of, a, b);
   }
 
   [[nodiscard]] constexpr int product(int a, int b) {
     const tape_entry& x = entries_[a];
     const tape_entry& y = entries_[b];
+    if (is_matrix(x.kind_of) && is_matrix(y.kind_of)) {
+      return matrix_product(a, b);
+    }
     const kind k = x.kind_of == kind::scalar ? y.kind_of : x.kind_of;
     if (x.code == tape_code::zero || y.code == tape_code::zero) {
       return zero(k);
@@ -230,6 +286,9 @@ public:
     }
     if (b == 1) {
       return a;
+    }
+    if (y.code == tape_code::embedded_block) {
+      return embedded_like(b, product(a, operand(b, 0)));
     }
     if (x.code == tape_code::number) {
       if (y.code == tape_code::number && is_product_exact(x.number, y.number)) {
@@ -247,7 +306,7 @@ public:
           return product(product(a, n), operand(b, 1));
         }
       }
-      return plain(tape_code::product, k, a, b);
+      return plain_of_two(tape_code::product, k, a, b);
     }
     if (y.kind_of == kind::scalar && (x.kind_of != kind::scalar || y.code == tape_code::number)) {
       return product(b, a);
@@ -277,7 +336,7 @@ public:
         return power(base, m + n);
       }
     }
-    return plain(tape_code::product, k, a, b);
+    return plain_of_two(tape_code::product, k, a, b);
   }
 
   [[nodiscard]] constexpr int quotient(int a, int b) {
@@ -288,6 +347,9 @@ public:
     if (x.code == tape_code::number && is_divided_exactly(a, b)) {
       return number(x.number / entries_[b].number);
     }
+    if (x.code == tape_code::embedded_block) {
+      return embedded_like(a, quotient(operand(a, 0), b));
+    }
     if (starts_with_minus(a)) {
       return negative(quotient(negative(a), b));
     }
@@ -295,7 +357,7 @@ public:
       return negative(quotient(a, negative(b)));
     }
     if (!is_number(b) || !is_divided_exactly(a, b)) {
-      return plain(tape_code::quotient, x.kind_of, a, b);
+      return plain_of_two(tape_code::quotient, x.kind_of, a, b);
     }
     if (x.code == tape_code::sum) { // (4 x + 2)/2 becomes 2 x + 1
       return sum(quotient(operand(a, 0), b), quotient(operand(a, 1), b));
@@ -306,7 +368,11 @@ public:
     return product(quotient(operand(a, 0), b), operand(a, 1));
   }
 
+  /// Slope times rate; a product if the tape is printed.
   [[nodiscard]] constexpr int slope_product(int a, int b) {
+    if (is_printed_) {
+      return product(a, b);
+    }
     const tape_code x = code(a), y = code(b);
     if (x == tape_code::zero || y == tape_code::zero) {
       return 0;
@@ -326,7 +392,7 @@ public:
     if (has_small_number(b)) {
       return product(operand(b, 0), slope_product(a, operand(b, 1)));
     }
-    return plain(tape_code::slope_product, kind::scalar, a, b);
+    return plain_of_two(tape_code::slope_product, kind::scalar, a, b);
   }
 
   [[nodiscard]] constexpr int sine(int x) {
@@ -338,69 +404,277 @@ public:
                                           : plain(tape_code::cosine, kind::scalar, x);
   }
 
-  /// Entry of a node of the written formula, or −1 if it is not on the tape.
-  [[nodiscard]] constexpr int recalled(unsigned hash, const char* id) const {
+  /// Conjugate of a quaternion or pose.
+  [[nodiscard]] constexpr int conj(int q) {
+    return is_zero(q)                   ? q
+           : code(q) == tape_code::conj ? operand(q, 0)
+                                        : plain(tape_code::conj, kind_of(q), q);
+  }
+
+  // Matrices. Those of zeros with a block are products, sums and so on of that block.
+
+  /// Matrix of scalars, which are given row by row.
+  [[nodiscard]] constexpr int entries(kind size, const int* x) {
+    const int count = rows_of(size) * columns_of(size);
+    bool is_zero_matrix = true;
+    for (int i = 0; i < count; ++i) {
+      is_zero_matrix = is_zero_matrix && is_zero(x[i]);
+    }
+    return is_zero_matrix ? zero(size) : add(tape_code::entries, size, 0, 0, nullptr, x, count);
+  }
+
+  /// The I-th component of a column.
+  [[nodiscard]] constexpr int component(int v, int i) {
+    const tape_entry& e = entries_[v];
+    return e.code == tape_code::zero          ? 0
+           : e.code == tape_code::unit_vector ? number(e.parameter == i ? 1 : 0)
+           : is_sized_matrix(e.kind_of)       ? block(v, kind::scalar, i, 0)
+                                              : plain(tape_code::component, kind::scalar, v, i);
+  }
+
+  /// Matrix of a size, with a block x that begins at (i, j), and 0 elsewhere.
+  [[nodiscard]] constexpr int embedded_block(int x, kind size, int i, int j) {
+    if (kind_of(x) == size || is_zero(x)) {
+      return is_zero(x) ? zero(size) : x;
+    }
+    return size == kind::vector && kind_of(x) == kind::scalar
+               ? product(x, unit_vector(kind::vector, i))
+               : plain(tape_code::embedded_block, size, x, 8 * i + j);
+  }
+
+  /// Block of a size that begins at (i, j).
+  [[nodiscard]] constexpr int block(int m, kind size, int i, int j) {
+    const tape_entry& e = entries_[m];
+    if (e.kind_of == size) {
+      return m;
+    }
+    if (e.code == tape_code::zero) {
+      return zero(size);
+    }
+    if (is_scaled(m)) {
+      return scaled_like(m, block(operand_without_scale(m), size, i, j));
+    }
+    if (e.code == tape_code::transpose) {
+      return transpose(block(operand(m, 0), matrix_kind(columns_of(size), rows_of(size)), j, i));
+    }
+    if (is_sparse(m)) { // intersection of this block with the one outside of which m is 0
+      const sparse_matrix s = sparsity(m);
+      const int top = greater(i, s.row), bottom = less(i + rows_of(size), s.row + s.rows);
+      const int left = greater(j, s.column),
+                right = less(j + columns_of(size), s.column + s.columns);
+      return top >= bottom || left >= right
+                 ? zero(size)
+                 : embedded_block(block(s.block, matrix_kind(bottom - top, right - left),
+                                        top - s.row, left - s.column),
+                                  size, top - i, left - j);
+    }
+    if (e.code == tape_code::block) {
+      return block(operand(m, 0), size, i + e.parameter / 8, j + e.parameter % 8);
+    }
+    if (size == kind::scalar && e.code == tape_code::entries) {
+      return operand(m, i * columns_of(e.kind_of) + j);
+    }
+    if (size == kind::scalar && columns_of(e.kind_of) == 1) {
+      return plain(tape_code::component, size, m, i);
+    }
+    return plain(tape_code::block, size, m, 8 * i + j);
+  }
+
+  [[nodiscard]] constexpr int transpose(int m) {
+    const tape_entry& e = entries_[m];
+    const kind size = matrix_kind(columns_of(e.kind_of), rows_of(e.kind_of));
+    if (e.kind_of == kind::scalar) {
+      return m;
+    }
+    if (e.code == tape_code::zero) {
+      return zero(size);
+    }
+    if (e.code == tape_code::transpose) {
+      return operand(m, 0);
+    }
+    if (is_scaled(m)) {
+      return scaled_like(m, transpose(operand_without_scale(m)));
+    }
+    if (is_sparse(m)) {
+      const sparse_matrix s = sparsity(m);
+      return embedded_block(transpose(s.block), size, s.column, s.row);
+    }
+    return plain(tape_code::transpose, size, m);
+  }
+
+  [[nodiscard]] constexpr int matrix_product(int a, int b) {
+    const int rows = rows_of(kind_of(a)), columns = columns_of(kind_of(b));
+    const kind size = matrix_kind(rows, columns);
+    if (is_zero(a) || is_zero(b)) {
+      return zero(size);
+    }
+    if (is_scaled(a)) {
+      return scaled_like(a, product(operand_without_scale(a), b));
+    }
+    if (is_scaled(b)) {
+      return scaled_like(b, product(a, operand_without_scale(b)));
+    }
+    // Only those rows or columns of a factor that meet the block of the other one are multiplied.
+    if (is_sparse(a)) {
+      const sparse_matrix s = sparsity(a);
+      return embedded_block(
+          product(s.block, block(b, matrix_kind(s.columns, columns), s.column, 0)), size, s.row, 0);
+    }
+    if (is_sparse(b)) {
+      const sparse_matrix s = sparsity(b);
+      return embedded_block(product(block(a, matrix_kind(rows, s.rows), 0, s.row), s.block), size,
+                            0, s.column);
+    }
+    return plain_of_two(tape_code::matrix_product, size, a, b);
+  }
+
+  [[nodiscard]] constexpr int trace(int m) {
+    const tape_entry& e = entries_[m];
+    if (e.kind_of == kind::scalar) {
+      return m;
+    }
+    if (is_scaled(m)) {
+      return scaled_like(m, trace(operand_without_scale(m)));
+    }
+    switch (e.code) {
+    case tape_code::zero:
+      return 0;
+    case tape_code::transpose:
+      return trace(operand(m, 0));
+    case tape_code::matrix_product:
+      return trace_of_product(operand(m, 0), operand(m, 1));
+    case tape_code::embedded_block: { // trace of the part of the block on the diagonal
+      const sparse_matrix s = sparsity(m);
+      const int begin = greater(s.row, s.column);
+      const int size = less(s.row + s.rows, s.column + s.columns) - begin;
+      return size <= 0
+                 ? 0
+                 : trace(block(s.block, matrix_kind(size, size), begin - s.row, begin - s.column));
+    }
+    default:
+      return plain(tape_code::trace, kind::scalar, m);
+    }
+  }
+  /// tr(A B), without computing A B.
+  [[nodiscard]] constexpr int trace_of_product(int a, int b) {
+    if (is_zero(a) || is_zero(b)) {
+      return 0;
+    }
+    if (is_scaled(a) || is_scaled(b) || is_sparse(a)) {
+      return trace(product(a, b));
+    }
+    return is_sparse(b) ? trace(product(b, a))
+                        : plain_of_two(tape_code::trace_of_product, kind::scalar, a, b);
+  }
+
+  // Scales of what a linear operation is applied to.
+
+  /// True for −x, s x and x/s.
+  [[nodiscard]] constexpr bool is_scaled(int i) const {
+    const tape_code c = code(i);
+    return c == tape_code::negative || c == tape_code::quotient ||
+           (c == tape_code::product && kind_of(operand(i, 0)) == kind::scalar);
+  }
+  [[nodiscard]] constexpr int operand_without_scale(int i) const {
+    return operand(i, code(i) == tape_code::product ? 1 : 0);
+  }
+  /// x with the scale of an entry.
+  [[nodiscard]] constexpr int scaled_like(int i, int x) {
+    return code(i) == tape_code::negative  ? negative(x)
+           : code(i) == tape_code::product ? product(operand(i, 0), x)
+                                           : quotient(x, operand(i, 1));
+  }
+
+  /// Entry of a node of the written formula, or −1 if it is not on the tape with rates of an order.
+  [[nodiscard]] constexpr int recalled(unsigned hash, const char* id, int order) const {
     for (int i = memo_table_[hash % unsigned(capacity_)] - 1; i >= 0; i = memos_[i].next) {
-      if (memos_[i].hash == hash && memos_[i].id == id) {
+      if (memos_[i].hash == hash && memos_[i].id == id && memos_[i].order >= order) {
         return memos_[i].entry;
       }
     }
     return -1;
   }
-  constexpr int remember(unsigned hash, const char* id, int entry) {
+  constexpr int remember(unsigned hash, const char* id, int order, int entry) {
     if (memo_count_ == capacity_) {
       is_full_ = true;
       return entry;
     }
     int& head = memo_table_[hash % unsigned(capacity_)];
-    memos_[memo_count_] = {hash, id, entry, head - 1};
+    memos_[memo_count_] = {hash, id, entry, order, head - 1};
     head = ++memo_count_;
     return entry;
   }
 
   /// Rate of an operation, of whose operands at least one has a rate other than zero.
-  [[nodiscard]] constexpr int rate(int i, const int* rates) {
+  [[nodiscard]] constexpr int rate(int i, tape_motion& motion, const tape_numbers& rates) {
     const tape_entry& e = entries_[i];
     const int* x = operands_ + e.first;
     if (e.code == tape_code::other) {
-      return e.operation.rate(*this, x, rates);
+      return e.operation->rate(*this, x, motion);
     }
     const int a = x[0];
     const int da = rates[a];
-    if (e.count == 1) {
-      switch (e.code) {
-      case tape_code::negative:
-        return negative(da);
-      case tape_code::sine:
-        return product(cosine(a), da);
-      case tape_code::cosine:
-        return product(negative(sine(a)), da);
-      default: // power
-        return e.parameter == 2
-                   ? product(product(number(2), a), da)
-                   : slope_product(product(number(e.parameter), power(a, e.parameter - 1)), da);
-      }
-    }
-    const int b = x[1];
+    const int b = e.count > 1 ? x[1] : 0;
     const int db = rates[b];
+    const int p = e.parameter;
     switch (e.code) {
+    case tape_code::negative:
+      return negative(da);
+    case tape_code::sine:
+      return product(cosine(a), da);
+    case tape_code::cosine:
+      return product(negative(sine(a)), da);
+    case tape_code::power:
+      return p == 2 ? product(product(number(2), a), da)
+                    : slope_product(product(number(p), power(a, p - 1)), da);
+    case tape_code::conj:
+      return conj(da);
+    case tape_code::component:
+      return component(da, p);
+    case tape_code::block:
+      return block(da, e.kind_of, p / 8, p % 8);
+    case tape_code::embedded_block:
+      return embedded_block(da, e.kind_of, p / 8, p % 8);
+    case tape_code::entries: {
+      int dx[36] = {};
+      for (int k = 0; k < e.count; ++k) {
+        dx[k] = rates[x[k]];
+      }
+      return entries(e.kind_of, dx);
+    }
+    case tape_code::transpose:
+      return transpose(da);
+    case tape_code::trace:
+      return trace(da);
+    case tape_code::trace_of_product:
+      return sum(trace_of_product(da, b), trace_of_product(a, db));
     case tape_code::sum:
       return sum(da, db);
     case tape_code::difference:
       return difference(da, db);
-    case tape_code::product:
-      return sum(product(da, b), product(a, db));
     case tape_code::quotient:
       return quotient(is_zero(db) ? da : difference(da, product(db, i)), b);
-    default: // slope_product
+    case tape_code::slope_product:
       return sum(slope_product(da, b), slope_product(a, db));
+    default: // products
+      return sum(product(da, b), product(a, db));
     }
   }
 
 private:
+  /// An operation that the algebra knows, as it is.
+  [[nodiscard]] constexpr int plain(tape_code code, kind k, int a, int parameter = 0) {
+    return add(code, k, parameter, 0, nullptr, &a, 1);
+  }
+  [[nodiscard]] constexpr int plain_of_two(tape_code code, kind k, int a, int b) {
+    const int x[] = {a, b};
+    return add(code, k, 0, 0, nullptr, x, 2);
+  }
+
   [[nodiscard]] constexpr int add(tape_code code, kind k, int parameter, double number,
-                                  tape_operation operation, const int* x, int count) {
-    unsigned hash = (unsigned(code) * 31 + unsigned(k)) * 31 + unsigned(parameter) + operation.hash;
+                                  const tape_operation* operation, const int* x, int count) {
+    unsigned hash = (unsigned(code) * 31 + unsigned(k)) * 31 + unsigned(parameter) +
+                    (operation == nullptr ? 0 : operation->hash);
     if (code == tape_code::number) {
       const std::uint64_t bits = bits_of(number);
       hash += unsigned(bits >> 48);
@@ -410,8 +684,11 @@ private:
     }
     int& head = table_[hash % unsigned(capacity_)];
     for (int i = head - 1; i >= 0; i = entries_[i].next) {
-      const tape_entry& e = entries_[i];
+      tape_entry& e = entries_[i];
       if (e.code == code && is_equal(e, k, parameter, number, operation, x, count)) {
+        if (operation != nullptr && operation->order > e.operation->order) {
+          e.operation = operation;
+        }
         return i;
       }
     }
@@ -427,10 +704,11 @@ private:
     return size_ - 1;
   }
   [[nodiscard]] constexpr bool is_equal(const tape_entry& e, kind k, int parameter, double number,
-                                        const tape_operation& operation, const int* x,
+                                        const tape_operation* operation, const int* x,
                                         int count) const {
     if (e.count != count || e.kind_of != k || e.parameter != parameter || e.number != number ||
-        e.operation.hash != operation.hash || e.operation.id != operation.id) {
+        (operation != nullptr &&
+         (e.operation->hash != operation->hash || e.operation->id != operation->id))) {
       return false;
     }
     for (int i = 0; i < count; ++i) {
@@ -441,9 +719,31 @@ private:
     return true;
   }
 
-  [[nodiscard]] constexpr bool is_number(int i) const {
-    return code(i) == tape_code::number || i == 0;
+  [[nodiscard]] static constexpr int greater(int a, int b) { return a > b ? a : b; }
+  [[nodiscard]] static constexpr int less(int a, int b) { return a < b ? a : b; }
+
+  /// Block of a matrix outside of which all entries are known to be 0.
+  struct sparse_matrix {
+    int block, row, column, rows, columns;
+  };
+  [[nodiscard]] constexpr bool is_sparse(int i) const {
+    return code(i) == tape_code::embedded_block ||
+           (code(i) == tape_code::unit_vector && kind_of(i) == kind::vector);
   }
+  [[nodiscard]] constexpr sparse_matrix sparsity(int i) const {
+    const int p = entries_[i].parameter;
+    if (code(i) == tape_code::unit_vector) {
+      return {1, p, 0, 1, 1};
+    }
+    const int x = operand(i, 0);
+    return {x, p / 8, p % 8, rows_of(kind_of(x)), columns_of(kind_of(x))};
+  }
+  /// The matrix of zeros with a block x at the position of the one of an entry.
+  [[nodiscard]] constexpr int embedded_like(int i, int x) {
+    const int p = entries_[i].parameter;
+    return embedded_block(x, kind_of(i), p / 8, p % 8);
+  }
+
   [[nodiscard]] constexpr bool has_small_number(int i) const {
     if (code(i) != tape_code::product) {
       return false;
@@ -506,6 +806,7 @@ private:
   int size_;
   int operand_count_;
   bool is_full_;
+  bool is_printed_; ///< true if derivatives of functions are formulas of other functions
 };
 
 } // namespace duet::expression::detail

@@ -48,18 +48,6 @@ struct input_types {
 /// and motions for scalars.
 inline constexpr int real_storage = 64, dual_storage = 128;
 
-/// Marks the operands of all that is needed.
-constexpr void mark(const tape_builder& tape, bool* is_needed) {
-  for (int i = tape.size() - 1; i >= 0; --i) {
-    if (is_needed[i]) {
-      const int* x = tape.operands(i);
-      for (int k = 0; k < tape[i].count; ++k) {
-        is_needed[x[k]] = true;
-      }
-    }
-  }
-}
-
 [[nodiscard]] constexpr bool is_kind_of_dual(kind k) {
   return k == kind::dual_vector || k == kind::pose;
 }
@@ -112,7 +100,11 @@ struct tape_program : tape_memory<Capacity> {
     for (int root : roots) {
       is_needed[root] = true;
     }
-    mark(tape, is_needed);
+    for (int i = tape.size() - 1; i >= 0; --i) {
+      for (int k = 0; is_needed[i] && k < tape[i].count; ++k) {
+        is_needed[tape.operand(i, k)] = true;
+      }
+    }
     for (int& i : inputs) {
       i = -1;
     }
@@ -146,7 +138,8 @@ struct tape_program : tape_memory<Capacity> {
         is_dual[i] = is_dual[i] || is_dual[x[k]];
         s = stage[x[k]] > s ? stage[x[k]] : s;
       }
-      is_dual[i] = is_dual[i] && !e.operation.drops_dual && e.kind_of != kind::condition;
+      is_dual[i] = is_dual[i] && !(e.code == tape_code::other && e.operation->drops_dual) &&
+                   e.kind_of != kind::condition;
       s += is_sine(e.code);
       stage[i] = s;
       last_stage = s > last_stage ? s : last_stage;
@@ -208,9 +201,9 @@ struct build_nodes {
   static constexpr int root_count = int(sizeof...(Roots));
   static constexpr int passes = 1;
   static constexpr int initial_capacity = 128;
-  template <class Held, int, int>
+  template <class Held, int>
   static constexpr void build(tape_builder& tape, int* roots) {
-    static_cast<void>(((*roots++ = recipe<Roots>::template add<0, Held>(tape)), ...));
+    static_cast<void>(((*roots++ = recipe<Roots>::template add<tape_use<0>, Held>(tape)), ...));
   }
 };
 
@@ -230,7 +223,7 @@ template <class Build, class Held, int Pass, int Capacity>
     result = built_tape<Build, Held, Pass - 1, Capacity>;
   }
   tape_builder tape(result);
-  Build::template build<Held, Pass, Capacity>(tape, result.roots);
+  Build::template build<Held, Pass>(tape, result.roots);
   tape.finish(result);
   return result;
 }
@@ -253,17 +246,17 @@ struct frozen_program {
   static consteval std::uint64_t key(int i) {
     const int k = program.order[i];
     if (k < 0) {
-      return std::uint64_t(tape_code::sines) | std::uint64_t(1023 - k) << 11;
+      return std::uint64_t(tape_code::sines) | std::uint64_t(1023 - k) << 12;
     }
     const tape_entry& e = program.entries[k];
-    std::uint64_t key = std::uint64_t(e.code) | std::uint64_t(e.count) << 4 |
-                        std::uint64_t(e.parameter + 1024) << 11 |
-                        std::uint64_t(program.storage[k]) << 23;
+    std::uint64_t key = std::uint64_t(e.code) | std::uint64_t(e.count) << 5 |
+                        std::uint64_t(e.parameter + 1024) << 12 |
+                        std::uint64_t(program.storage[k]) << 24;
     if (e.count > 3) {
-      return key | std::uint64_t(i) << 31;
+      return key | std::uint64_t(i) << 32;
     }
     for (int n = 0; n < e.count; ++n) {
-      key |= std::uint64_t(program.storage[program.operands[e.first + n]]) << (31 + 8 * n);
+      key |= std::uint64_t(program.storage[program.operands[e.first + n]]) << (32 + 8 * n);
     }
     return key;
   }
@@ -276,7 +269,9 @@ struct frozen_program {
                        std::uint64_t(program.operand(k, 2)) << 48;
   }
   static consteval const char* id(int i) {
-    return program.order[i] < 0 ? nullptr : program.entries[program.order[i]].operation.id;
+    const int k = program.order[i];
+    return k < 0 || program.entries[k].operation == nullptr ? nullptr
+                                                            : program.entries[k].operation->id;
   }
   static consteval int operand(int i, int k) { return program.operand(program.order[i], k); }
   static consteval int operand_storage(int i, int k) {
@@ -292,6 +287,9 @@ struct frozen_program {
   static consteval int sine(int i) { return program.sine[i]; }
   static consteval int cosine(int i) { return program.cosine[i]; }
   static consteval int root(int i) { return program.position[program.roots[i]]; }
+  static constexpr bool is_zero_root(int i) {
+    return program.entries[program.roots[i]].code == tape_code::zero;
+  }
   static consteval int root_storage(int i) { return program.storage[program.roots[i]]; }
   static consteval int input(int i) { return program.inputs[i]; }
   template <class Node>
@@ -421,10 +419,10 @@ DUET_ALWAYS_INLINE constexpr void take_sines_on_tape(Values& v, std::integer_seq
    ...);
 }
 
-template <tape_code Code, const char* Id, int Parameter>
-struct operation_of_step : operation_of_code<Code, Parameter> {};
-template <const char* Id, int Parameter>
-struct operation_of_step<tape_code::other, Id, Parameter> {
+template <tape_code Code, const char* Id, int Parameter, kind K>
+struct operation_of_step : operation_of_code<Code, Parameter, K> {};
+template <const char* Id, int Parameter, kind K>
+struct operation_of_step<tape_code::other, Id, Parameter, K> {
   using type = duet::detail::type_of_id<Id>;
 };
 template <tape_code Code, const char* Id, int Parameter, kind K, class Real, class... X>
@@ -434,7 +432,7 @@ template <tape_code Code, const char* Id, int Parameter, kind K, class Real, cla
   } else if constexpr (Code == tape_code::unit_vector) {
     return leaf<unit_vector_node<K, Parameter>, numbers_as<Real>>::value({});
   } else {
-    using operation = typename operation_of_step<Code, Id, Parameter>::type;
+    using operation = typename operation_of_step<Code, Id, Parameter, K>::type;
     if constexpr (sizeof...(X) == 0) {
       return leaf<operation, numbers_as<Real>>::value({});
     } else {
@@ -452,19 +450,19 @@ template <class Program, tape_code Code, const char* Id, int Parameter, int Step
 
 template <class Program, std::uint64_t Key, const char* Id, bool AtOnce, class Values>
 DUET_ALWAYS_INLINE constexpr void run_on_tape(Values& v, std::uint64_t positions) {
-  constexpr auto code = tape_code(Key % 16);
-  constexpr int count = int(Key >> 4 & 127);
-  constexpr int n = int(Key >> 11 & 4095) - 1024;
+  constexpr auto code = tape_code(Key % 32);
+  constexpr int count = int(Key >> 5 & 127);
+  constexpr int n = int(Key >> 12 & 4095) - 1024;
   if constexpr (code == tape_code::sines) {
     constexpr int first = Program::group_end(n);
     constexpr int end = Program::group_end(n + 1);
     take_sines_on_tape<Program, first, AtOnce>(v, std::make_integer_sequence<int, end - first>{});
   } else {
-    auto& result = values_of<int(Key >> 23 & 255)>(v)[std::uint16_t(positions)];
+    auto& result = values_of<int(Key >> 24 & 255)>(v)[std::uint16_t(positions)];
     using R = std::remove_reference_t<decltype(result)>;
     using real = typename Values::real;
-    constexpr kind k = kind(Key >> 23 & 63);
-    constexpr int a = Key >> 31 & 255, b = Key >> 39 & 255, c = Key >> 47 & 255;
+    constexpr kind k = kind(Key >> 24 & 63);
+    constexpr int a = Key >> 32 & 255, b = Key >> 40 & 255, c = Key >> 48 & 255;
     const auto i = std::uint16_t(positions >> 16), j = std::uint16_t(positions >> 32),
                l = std::uint16_t(positions >> 48);
     if constexpr (count == 0) {
@@ -477,7 +475,7 @@ DUET_ALWAYS_INLINE constexpr void run_on_tape(Values& v, std::uint64_t positions
       result = converted<R>(operate<code, Id, n, k, real>(values_of<a>(v)[i], values_of<b>(v)[j],
                                                           values_of<c>(v)[l]));
     } else {
-      result = converted<R>(operate_on_many<Program, code, Id, n, int(Key >> 31), k>(
+      result = converted<R>(operate_on_many<Program, code, Id, n, int(Key >> 32), k>(
           v, std::make_integer_sequence<int, count>{}));
     }
   }
@@ -506,6 +504,7 @@ DUET_ALWAYS_INLINE constexpr void load_constants(auto& v, const auto& b, held<It
 /// Values of a program, of which those of the roots are accessible.
 template <class Values, class Program>
 struct root_values : Values {
+  using program = Program;
   template <int K>
   [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto& get() {
     return values_of<Program::root_storage(K)>(*this)[Program::root(K)];
@@ -529,7 +528,7 @@ run_program(const bindings<Held, Arguments...>& b, const auto& use,
             std::integer_sequence<int, Number...>) {
   using values = bindings<Held, Arguments...>;
   using real = typename values::real;
-  constexpr int storage_of_numbers = std::is_same_v<S, real> ? 0 : real_storage;
+  [[maybe_unused]] constexpr int storage_of_numbers = std::is_same_v<S, real> ? 0 : real_storage;
   root_values<tape_values<S, real, Program, std::integer_sequence<int, Kind...>>, Program> v;
   (load_input<Program::template input_storage<typename Arguments::symbol_type>(
                   item_index<typename Arguments::symbol_type, Held>),

@@ -244,33 +244,29 @@ template <class Tag, Constant T>
 [[nodiscard]] constexpr held<> held_of(const Node auto&) { return {}; }
 [[nodiscard]] constexpr const auto& held_of(const Formula auto& x) { return x.held(); }
 
-/// Node of an operation, simplified: the result of `Operation::simplified`, or the operation itself
-/// if that does not accept the operands or returns void.
+/// Checks the kinds of operands, where an operation has requirements.
 template <class Operation, Node... N>
-[[nodiscard]] constexpr auto simplified() {
-  if constexpr ((std::derived_from<Operation, linear_operation> && (is_zero<N> && ...)) ||
-                (std::derived_from<Operation, bilinear_operation> && (is_zero<N> || ...))) {
-    return zero_of<Operation::kind_of(N::kind_of...)>();
-  } else if constexpr (requires { Operation::simplified(N{}...).kind_of; }) {
-    return Operation::simplified(N{}...);
-  } else {
-    return applied_node<Operation, N...>{};
+constexpr void require_kinds() {
+  if constexpr (requires { Operation::template require<N::kind_of...>(); }) {
+    Operation::template require<N::kind_of...>();
   }
 }
 
 } // namespace detail
 
-/// Applies an operation to terms and simplifies the result: a node of nodes, a formula of formulas.
+/// Applies an operation to terms: a node of nodes, a formula of formulas.
 template <class Operation, Node... N>
 [[nodiscard]] constexpr auto apply(N...) {
-  return decltype(detail::simplified<Operation, N...>()){};
+  detail::require_kinds<Operation, N...>();
+  return applied_node<Operation, N...>{};
 }
 template <class Operation, Term... T>
   requires(Formula<T> || ...)
 [[nodiscard]] constexpr auto apply(const T&... x) {
+  detail::require_kinds<Operation, detail::node_t<T>...>();
   using held = decltype(merged(detail::held_of(x)...));
-  using node = decltype(detail::simplified<Operation, detail::node_t<T>...>());
-  return formula<node, held>(merged(detail::held_of(x)...));
+  return formula<applied_node<Operation, detail::node_t<T>...>, held>(
+      merged(detail::held_of(x)...));
 }
 
 namespace detail {

@@ -121,7 +121,13 @@ struct function {
   }
   template <int I, class... X>
   static constexpr auto slope_by(X... x) {
-    return partial_by<Function, I>(std::make_integer_sequence<int, int(sizeof...(X))>{}, x...);
+    if constexpr (!(X::use::is_printed || ...)) {
+      return partial_by<Function, I>(std::make_integer_sequence<int, int(sizeof...(X))>{}, x...);
+    } else if constexpr (requires { Function::template symbolic_derivative<I>(x...); }) {
+      return Function::template symbolic_derivative<I>(x...);
+    } else {
+      return Function::symbolic_derivative(x...);
+    }
   }
 };
 
@@ -144,6 +150,10 @@ template <class Rule>
 /// π in the precision of the arguments.
 struct pi_node {
   static constexpr kind kind_of = kind::scalar;
+  /// Its name, or its letter in LaTeX.
+  static printed print(notation style) {
+    return {style != notation::text ? "\\pi" : "pi", precedence::atom, style, factor_order::pi};
+  }
 };
 
 namespace detail {
@@ -182,18 +192,17 @@ struct polygamma {
   }
 };
 
-/// A user's function with given derivatives.
-template <class Rule>
-struct given_function : detail::function<given_function<Rule>, Rule> {
-  static printed print(notation style, const auto&... x) {
-    return detail::printed_given<Rule>(style, "", "", {x...});
-  }
-};
-
 /// A derivative of a user's function as it is written, of order `Orders` by each argument.
 template <class Rule, int... Orders>
 struct written_derivative {
   static constexpr kind kind_of(auto...) { return kind::scalar; }
+  template <int I>
+  static constexpr auto slope_by(auto... x) {
+    return [&]<int... K>(std::integer_sequence<int, K...>) {
+      return apply<written_derivative<Rule, (Orders + int(K == I))...>>(x...);
+    }
+    (std::make_integer_sequence<int, int(sizeof...(Orders))>{});
+  }
   static printed print(notation style, const auto&... x) {
     std::string orders;
     ((orders += (orders.empty() ? "" : ",") + std::to_string(Orders)), ...);
@@ -203,6 +212,21 @@ struct written_derivative {
       return detail::printed_given<Rule>(style, primes, primes, {x...});
     }
     return detail::printed_given<Rule>(style, "^(" + orders + ")", "^{(" + orders + ")}", {x...});
+  }
+};
+
+/// A user's function with given derivatives.
+template <class Rule>
+struct given_function : detail::function<given_function<Rule>, Rule> {
+  template <int I>
+  static constexpr auto symbolic_derivative(auto... x) {
+    return [&]<int... K>(std::integer_sequence<int, K...>) {
+      return apply<written_derivative<Rule, int(K == I)...>>(x...);
+    }
+    (std::make_integer_sequence<int, int(sizeof...(x))>{});
+  }
+  static printed print(notation style, const auto&... x) {
+    return detail::printed_given<Rule>(style, "", "", {x...});
   }
 };
 

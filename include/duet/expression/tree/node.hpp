@@ -73,6 +73,12 @@ struct applied_node {
   static constexpr kind kind_of = Operation::kind_of(Operands::kind_of...);
 };
 
+/// Rate of a node if symbols move, each a `moving`; other symbols are constant.
+template <class NodeType, class... Moving>
+struct rate_node {
+  static constexpr kind kind_of = NodeType::kind_of;
+};
+
 /// Base of operations that are linear in all operands together: f(0, …) = 0, and the derivative is
 /// the operation applied to the rates of the operands.
 struct linear_operation {};
@@ -99,46 +105,5 @@ template <class T>
 inline constexpr bool is_symbol = false;
 template <kind K, char... Letters>
 inline constexpr bool is_symbol<symbol_node<K, Letters...>> = true;
-
-/// True if T is `Operation` applied to operands.
-template <class T, class Operation>
-inline constexpr bool is_applied = false;
-template <class Operation, class... Operands>
-inline constexpr bool is_applied<applied_node<Operation, Operands...>, Operation> = true;
-
-/// True if T is any operation applied to operands.
-template <class T>
-inline constexpr bool is_operation = false;
-template <class Operation, class... Operands>
-inline constexpr bool is_operation<applied_node<Operation, Operands...>> = true;
-
-/// True if T is the integer N, known at compile time.
-template <class T, int N>
-inline constexpr bool is_whole = false;
-template <std::uint64_t Bits, int N>
-inline constexpr bool is_whole<number_node<Bits>, N> = number_node<Bits>::value == N;
-template <class T>
-inline constexpr bool is_one = is_whole<T, 1>;
-/// True if T is zero, of any kind.
-template <class T>
-inline constexpr bool is_zero = is_whole<T, 0>;
-template <kind K>
-inline constexpr bool is_zero<zero_node<K>> = true;
-
-/// Zero of a kind.
-template <kind K>
-[[nodiscard]] constexpr auto zero_of() {
-  return std::conditional_t<K == kind::scalar, number_node<0>, zero_node<K>>{};
-}
-
-/// The I-th operand.
-template <int I, class Operation, class First, class... Rest>
-[[nodiscard]] constexpr auto operand(applied_node<Operation, First, Rest...>) {
-  if constexpr (I == 0) {
-    return First{};
-  } else {
-    return operand<I - 1>(applied_node<Operation, Rest...>{});
-  }
-}
 
 } // namespace duet::expression
