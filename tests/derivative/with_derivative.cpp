@@ -11,8 +11,7 @@
 #include <duet/derivative/jacobian.hpp>
 #include <duet/derivative/with_derivative.hpp>
 #include <duet/dual/math.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/gradient.hpp>
 #include <duet/expression/graph/formula_derivative.hpp>
 #include <duet/expression/graph/reverse.hpp>

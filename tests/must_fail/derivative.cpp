@@ -11,8 +11,7 @@
 #include <duet/derivative/sparse.hpp>
 #include <duet/derivative/tangent_coordinates.hpp>
 #include <duet/derivative/with_derivative.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/derivative.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/quaternion/exponential.hpp>

@@ -6,8 +6,7 @@
 #include <duet/dual/dual.hpp>
 #include <duet/dual/level.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/symbol.hpp>
 #include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tree/formula.hpp>

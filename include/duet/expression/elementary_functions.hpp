@@ -2,8 +2,7 @@
 #pragma once
 
 #include <duet/dual/rules/elementary.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/latex_arithmetic.hpp>

@@ -3,8 +3,7 @@
 
 #include <duet/dual/math.hpp>
 #include <duet/dual/rules/of_many.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>
 #include <duet/expression/tree/latex_arithmetic.hpp>

@@ -5,12 +5,12 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/gradient.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
-#include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tape/program.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
+#include <duet/expression/variables.hpp>
 
 #include <Eigen/Core>
 

@@ -1,15 +1,15 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/evaluate/bindings.hpp>
-#include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/matrix/functions.hpp>
 #include <duet/expression/matrix/product.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
+#include <duet/expression/variables.hpp>
 #include <duet/expression/vector.hpp>
 
 #include <Eigen/Core>

@@ -4,10 +4,10 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/jacobian.hpp>
 #include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tape/program.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 

@@ -2,8 +2,7 @@
 #pragma once
 
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/algebra/power.hpp>
-#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>

@@ -6,8 +6,8 @@
 #include <duet/dual_quaternion/pose.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/expression/elementary_functions.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/rotation.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>

@@ -3,7 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/dual/rules/elementary.hpp>
-#include <duet/expression/algebra/power.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/function.hpp>

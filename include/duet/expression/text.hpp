@@ -4,8 +4,7 @@
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/text/number_text.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/matrix/product.hpp>

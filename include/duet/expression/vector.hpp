@@ -2,9 +2,8 @@
 #pragma once
 
 #include <duet/dual/rules/of_many.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/product.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
+#include <duet/expression/arithmetic.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/latex_text.hpp>

@@ -5,11 +5,11 @@
 #include <duet/derivative/frame.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/arm/moving_frame.hpp>
-#include <duet/expression/evaluate/variables.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tape/program.hpp>
 #include <duet/expression/tree/node.hpp>
+#include <duet/expression/variables.hpp>
 #include <duet/expression/vector.hpp>
 
 #include <boost/mp11/algorithm.hpp>

@@ -1,9 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/power.hpp>
-#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/condition.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/functions_of_many.hpp>

@@ -7,11 +7,11 @@
 #include <duet/core/structure.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/derivative.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
 #include <duet/expression/symbol.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 
 #include <Eigen/Core>

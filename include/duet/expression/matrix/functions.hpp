@@ -3,8 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/derivative/linear_solve.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/elementary_functions.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/matrix/product.hpp>

@@ -3,8 +3,7 @@
 
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual/eigen_traits.hpp>
-#include <duet/expression/algebra/arithmetic.hpp>
-#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>

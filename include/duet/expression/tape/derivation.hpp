@@ -4,7 +4,7 @@
 #include <duet/core/compiler/type_id.hpp>
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
-#include <duet/expression/algebra/product.hpp>
+#include <duet/expression/arithmetic.hpp>
 #include <duet/expression/rotation.hpp>
 #include <duet/expression/screw.hpp>
 #include <duet/expression/tape/builder.hpp>

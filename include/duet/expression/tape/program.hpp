@@ -8,9 +8,9 @@
 #include <duet/core/structure.hpp>
 #include <duet/dual/rules/elementary.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/tape/builder.hpp>
 #include <duet/expression/tape/recipe.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
 

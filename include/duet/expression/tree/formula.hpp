@@ -4,8 +4,8 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
 #include <duet/expression/tape/program.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
 

@@ -4,7 +4,7 @@
 #include <duet/core/constants.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/rules/elementary.hpp>
-#include <duet/expression/evaluate/bindings.hpp>
+#include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
