@@ -18,8 +18,6 @@
 
 #include <cmath>
 #include <concepts>
-#include <cstdint>
-#include <string>
 #include <type_traits>
 
 /// \file
@@ -215,9 +213,6 @@ struct slope_product : bilinear_operation {
   static constexpr auto value(const A& a, const B& b) {
     using S = promote_t<A, B>;
     return duet::detail::zero_preserving_product(S(a), S(b));
-  }
-  static printed print(notation style, const printed& a, const printed& b) {
-    return product::print(style, a, b);
   }
 };
 

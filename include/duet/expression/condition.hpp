@@ -11,7 +11,6 @@
 
 #include <cmath>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 /// \file

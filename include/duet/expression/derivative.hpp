@@ -14,7 +14,6 @@
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
 
-#include <concepts>
 #include <cstddef>
 #include <string>
 #include <tuple>

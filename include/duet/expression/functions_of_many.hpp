@@ -12,6 +12,7 @@
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
 
+#include <type_traits>
 #include <utility>
 
 /// \file

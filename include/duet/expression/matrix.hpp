@@ -8,9 +8,7 @@
 #include <duet/expression/tree/bindings.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/tree/printed.hpp>
 #include <duet/expression/variables.hpp>
-#include <duet/expression/vector.hpp>
 
 #include <Eigen/Core>
 

@@ -22,11 +22,9 @@
 #include <array>
 #include <concepts>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <sstream>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 

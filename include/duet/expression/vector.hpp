@@ -8,7 +8,6 @@
 #include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/latex_text.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/three_vector.hpp>

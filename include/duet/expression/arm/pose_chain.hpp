@@ -61,6 +61,7 @@ inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> = A::kind_o
 template <class Factor>
 struct link_of {
   using link = any_motion;
+  static constexpr kind kind_of_rate = Factor::kind_of;
   static constexpr int value_count = 1;
   template <class Held>
   static constexpr int add(tape_builder& tape, int* values) {
@@ -72,6 +73,7 @@ template <int I, class Angle, class S, class C>
 struct link_of<
     applied_node<op::axis_exponential, unit_vector_node<kind::dual_vector, I>, Angle, S, C>> {
   using link = about_axis<I>;
+  static constexpr kind kind_of_rate = kind::scalar;
   static constexpr int value_count = 2;
   template <class Held>
   static constexpr int add(tape_builder& tape, int* values) {
@@ -84,6 +86,7 @@ template <class N, class D>
   requires is_axis<N>
 struct link_of<applied_node<op::translation_along, N, D>> {
   using link = along_axis<axis_of<N>>;
+  static constexpr kind kind_of_rate = kind::scalar;
   static constexpr int value_count = 1;
   template <class Held>
   static constexpr int add(tape_builder& tape, int* values) {
@@ -122,10 +125,12 @@ struct build_chain<mp11::mp_list<Factors...>, Motions...> {
         (Pass + 1) * motions_in_pass < motions ? (Pass + 1) * motions_in_pass : motions;
     for (int m = Pass * motions_in_pass; m < end; ++m) {
       motion.template add_rates<use>(tape, size, inputs + m, 1);
-      for (int k = 0; k < factors; ++k) {
-        roots[rate_root(k, m)] =
-            column_of<spatial_frame>(motion, tape_term<use>{&tape, moving[k]}).index;
-      }
+      int k = 0;
+      ((roots[rate_root(k, m)] = column_of<link_of<Factors>::kind_of_rate, spatial_frame>(
+                                     motion, tape_term<use>{&tape, moving[k]})
+                                     .index,
+        ++k),
+       ...);
     }
   }
 };

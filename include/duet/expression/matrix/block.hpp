@@ -6,14 +6,11 @@
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/number.hpp>
 #include <duet/expression/tree/printed.hpp>
-#include <duet/expression/vector.hpp>
 
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cstddef>
 #include <string>
-#include <tuple>
 #include <type_traits>
 
 /// \file

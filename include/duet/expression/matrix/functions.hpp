@@ -134,7 +134,7 @@ struct solution {
   }
   static printed print(notation style, const printed& a, const printed& b) {
     return style != notation::text
-               ? matrix_product::print(
+               ? product::print(
                      style,
                      detail::latex_of_kind(detail::printed_operation<inverse>(style, a), false), b)
                : printed{"solve(" + a.text + ", " + b.text + ")"};

@@ -7,12 +7,8 @@
 #include <duet/expression/matrix/block.hpp>
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
-#include <duet/expression/tree/printed.hpp>
-#include <duet/expression/vector.hpp>
 
 #include <Eigen/Core>
-
-#include <algorithm>
 
 /// \file
 /// Products of matrices and their traces.
@@ -49,9 +45,6 @@ struct matrix_product {
       return result;
     }
   }
-  static printed print(notation style, const printed& a, const printed& b) {
-    return product::print(style, a, b);
-  }
 };
 
 /// tr(A B), without computing A B.
@@ -62,7 +55,6 @@ struct trace_of_product {
     using S = promote_t<typename A::Scalar, typename B::Scalar>;
     return S(detail::factor_over<S>(a).cwiseProduct(detail::factor_over<S>(b).transpose()).sum());
   }
-  static printed print(notation style, const printed& a, const printed& b);
 };
 
 /// tr A
@@ -74,10 +66,6 @@ struct trace {
     return typename M::Scalar(m.trace());
   }
 };
-
-inline printed trace_of_product::print(notation style, const printed& a, const printed& b) {
-  return detail::printed_operation<trace>(style, matrix_product::print(style, a, b));
-}
 
 } // namespace op
 } // namespace duet::expression

@@ -605,59 +605,77 @@ public:
     return entry;
   }
 
+  /// An operation that the algebra knows, by its code, with a result of a kind.
+  [[nodiscard]] constexpr int apply(tape_code c, kind k, int parameter, const int* x) {
+    switch (c) {
+    case tape_code::negative:
+      return negative(x[0]);
+    case tape_code::sum:
+      return sum(x[0], x[1]);
+    case tape_code::difference:
+      return difference(x[0], x[1]);
+    case tape_code::quotient:
+      return quotient(x[0], x[1]);
+    case tape_code::slope_product:
+      return slope_product(x[0], x[1]);
+    case tape_code::conj:
+      return conj(x[0]);
+    case tape_code::transpose:
+      return transpose(x[0]);
+    case tape_code::trace:
+      return trace(x[0]);
+    case tape_code::trace_of_product:
+      return trace_of_product(x[0], x[1]);
+    case tape_code::entries:
+      return entries(k, x);
+    case tape_code::power:
+      return power(x[0], parameter);
+    case tape_code::component:
+      return component(x[0], parameter);
+    case tape_code::block:
+      return block(x[0], k, parameter / 8, parameter % 8);
+    case tape_code::embedded_block:
+      return embedded_block(x[0], k, parameter / 8, parameter % 8);
+    case tape_code::sine:
+      return sine(x[0]);
+    case tape_code::cosine:
+      return cosine(x[0]);
+    default: // products
+      return product(x[0], x[1]);
+    }
+  }
+
   /// Rate of an operation, of whose operands at least one has a rate other than zero.
   [[nodiscard]] constexpr int rate(int i, tape_motion& motion, const tape_numbers& rates) {
-    const tape_entry& e = entries_[i];
+    const tape_entry e = entries_[i];
     const int* x = operands_ + e.first;
     if (e.code == tape_code::other) {
       return e.operation->rate(*this, x, motion);
     }
-    const int a = x[0];
-    const int da = rates[a];
-    const int b = e.count > 1 ? x[1] : 0;
-    const int db = rates[b];
-    const int p = e.parameter;
-    switch (e.code) {
-    case tape_code::negative:
-      return negative(da);
-    case tape_code::sine:
-      return product(cosine(a), da);
-    case tape_code::cosine:
-      return product(negative(sine(a)), da);
-    case tape_code::power:
-      return p == 2 ? product(product(number(2), a), da)
-                    : slope_product(product(number(p), power(a, p - 1)), da);
-    case tape_code::conj:
-      return conj(da);
-    case tape_code::component:
-      return component(da, p);
-    case tape_code::block:
-      return block(da, e.kind_of, p / 8, p % 8);
-    case tape_code::embedded_block:
-      return embedded_block(da, e.kind_of, p / 8, p % 8);
-    case tape_code::entries: {
-      int dx[36] = {};
-      for (int k = 0; k < e.count; ++k) {
-        dx[k] = rates[x[k]];
-      }
-      return entries(e.kind_of, dx);
+    int dx[36] = {};
+    for (int k = 0; k < e.count; ++k) {
+      dx[k] = rates[x[k]];
     }
-    case tape_code::transpose:
-      return transpose(da);
-    case tape_code::trace:
-      return trace(da);
-    case tape_code::trace_of_product:
-      return sum(trace_of_product(da, b), trace_of_product(a, db));
-    case tape_code::sum:
-      return sum(da, db);
-    case tape_code::difference:
-      return difference(da, db);
+    switch (e.code) {
+    case tape_code::sine:
+      return product(cosine(x[0]), dx[0]);
+    case tape_code::cosine:
+      return product(negative(sine(x[0])), dx[0]);
+    case tape_code::power:
+      return e.parameter == 2
+                 ? product(product(number(2), x[0]), dx[0])
+                 : slope_product(product(number(e.parameter), power(x[0], e.parameter - 1)), dx[0]);
     case tape_code::quotient:
-      return quotient(is_zero(db) ? da : difference(da, product(db, i)), b);
-    case tape_code::slope_product:
-      return sum(slope_product(da, b), slope_product(a, db));
-    default: // products
-      return sum(product(da, b), product(a, db));
+      return quotient(is_zero(dx[1]) ? dx[0] : difference(dx[0], product(dx[1], i)), x[1]);
+    case tape_code::product:
+    case tape_code::matrix_product:
+    case tape_code::trace_of_product:
+    case tape_code::slope_product: {
+      const int first[] = {dx[0], x[1]}, second[] = {x[0], dx[1]};
+      return sum(apply(e.code, e.kind_of, 0, first), apply(e.code, e.kind_of, 0, second));
+    }
+    default: // linear in all operands together
+      return apply(e.code, e.kind_of, e.parameter, dx);
     }
   }
 

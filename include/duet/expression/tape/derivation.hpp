@@ -281,19 +281,20 @@ struct recipe<rate_node<Node, Moving...>> {
   }
 };
 
-/// Column of a Jacobian: rate of a scalar, vector or matrix, velocity of a rotation or pose.
-template <class Frame, class Use>
+/// Column of a Jacobian of a formula of kind K: rate of a scalar, vector or matrix, velocity of a
+/// rotation or pose.
+template <kind K, class Frame, class Use>
 [[nodiscard]] constexpr tape_term<Use> column_of(tape_motion& motion, tape_term<Use> f) {
-  const kind k = f.of_kind();
-  if (k != kind::quaternion && k != kind::pose) {
+  if constexpr (K != kind::quaternion && K != kind::pose) {
     return f.at(motion.rates[f.index]);
+  } else {
+    const auto v = velocity_of(motion, !std::is_same_v<Frame, body_frame>, f);
+    if (std::is_same_v<Frame, hybrid_frame> && K == kind::pose && !v.is_zero()) { // ṗ = v + ω × p
+      const auto omega = apply<op::part_of_dual<false>>(v);
+      return at_point<op::sum>(v, apply<op::cross>(omega, apply<op::translation>(f)));
+    }
+    return v;
   }
-  const auto v = velocity_of(motion, !std::is_same_v<Frame, body_frame>, f);
-  if (std::is_same_v<Frame, hybrid_frame> && k == kind::pose && !v.is_zero()) { // ṗ = v + ω × p
-    const auto omega = apply<op::part_of_dual<false>>(v);
-    return at_point<op::sum>(v, apply<op::cross>(omega, apply<op::translation>(f)));
-  }
-  return v;
 }
 
 /// Puts a formula and its derivatives up to `Order` on a tape: the columns of its Jacobian, in a
@@ -325,7 +326,8 @@ struct build_derivatives {
       motion.need(tape, roots[0]);
       for (int m = first; m < end; ++m) {
         motion.template add_rates<use>(tape, roots[0] + 1, inputs + m, 1);
-        roots[1 + m] = column_of<Frame>(motion, tape_term<use>{&tape, roots[0]}).index;
+        roots[1 + m] =
+            column_of<Node::kind_of, Frame>(motion, tape_term<use>{&tape, roots[0]}).index;
       }
     } else {
       // Rows of the Hessian, which need the roots from the m-th on.

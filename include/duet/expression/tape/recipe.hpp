@@ -9,7 +9,6 @@
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
 
-#include <cstddef>
 #include <cstdint>
 #include <utility>
 

@@ -15,7 +15,6 @@
 #include <concepts>
 #include <cstddef>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 /// \file
@@ -224,42 +223,9 @@ inline constexpr tape_operation operation_on_tape<Operation, Use, std::index_seq
 template <class Operation, class Use, std::size_t... I>
 [[nodiscard]] constexpr int apply_on_tape(tape_builder& tape, const int* x,
                                           std::index_sequence<I...>) {
-  constexpr tape_code code = code_of<Operation>;
-  constexpr int p = parameter_of<Operation>;
-  if constexpr (code == tape_code::negative) {
-    return tape.negative(x[0]);
-  } else if constexpr (code == tape_code::sine) {
-    return tape.sine(x[0]);
-  } else if constexpr (code == tape_code::cosine) {
-    return tape.cosine(x[0]);
-  } else if constexpr (code == tape_code::sum) {
-    return tape.sum(x[0], x[1]);
-  } else if constexpr (code == tape_code::difference) {
-    return tape.difference(x[0], x[1]);
-  } else if constexpr (code == tape_code::product || code == tape_code::matrix_product) {
-    return tape.product(x[0], x[1]);
-  } else if constexpr (code == tape_code::quotient) {
-    return tape.quotient(x[0], x[1]);
-  } else if constexpr (code == tape_code::slope_product) {
-    return tape.slope_product(x[0], x[1]);
-  } else if constexpr (code == tape_code::power) {
-    return tape.power(x[0], p);
-  } else if constexpr (code == tape_code::conj) {
-    return tape.conj(x[0]);
-  } else if constexpr (code == tape_code::transpose) {
-    return tape.transpose(x[0]);
-  } else if constexpr (code == tape_code::trace) {
-    return tape.trace(x[0]);
-  } else if constexpr (code == tape_code::trace_of_product) {
-    return tape.trace_of_product(x[0], x[1]);
-  } else if constexpr (code == tape_code::component) {
-    return tape.component(x[0], p);
-  } else if constexpr (code == tape_code::block) {
-    return tape.block(x[0], Operation::kind_of(kind::scalar), p / 8, p % 8);
-  } else if constexpr (code == tape_code::embedded_block) {
-    return tape.embedded_block(x[0], Operation::kind_of(kind::scalar), p / 8, p % 8);
-  } else if constexpr (code == tape_code::entries) {
-    return tape.entries(Operation::kind_of(kind::scalar), x);
+  if constexpr (code_of<Operation> != tape_code::other) {
+    return tape.apply(code_of<Operation>, Operation::kind_of(tape.kind_of(x[I])...),
+                      parameter_of<Operation>, x);
   } else {
     const kind k = Operation::kind_of(tape.kind_of(x[I])...);
     if constexpr (std::derived_from<Operation, linear_operation>) {

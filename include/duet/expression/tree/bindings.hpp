@@ -4,7 +4,6 @@
 #include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
-#include <duet/dual/promotion.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/expression/tree/held.hpp>
 #include <duet/expression/tree/node.hpp>
@@ -14,7 +13,6 @@
 #include <concepts>
 #include <cstdint>
 #include <type_traits>
-#include <utility>
 
 /// \file
 /// Values bound to the symbols of a formula, and compile-time errors for missing, unknown and
