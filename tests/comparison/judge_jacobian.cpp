@@ -585,6 +585,77 @@ TEST_CASE("formulas by stored numbers for a vector that is no argument") {
               {{1, 3}});
 }
 
+TEST_CASE("blocks of other units, singular ones and their inverses hide no second slip") {
+  for (const double unit : {1., 1e9, 1e-9}) {
+    const auto f = [unit](const auto& q, const auto& t, const auto& p) {
+      const auto r = rotate(q, p);
+      using S = std::decay_t<decltype(r[0] + t[0])>;
+      return vector3<S>(unit * r[0] + t[0], unit * r[1] + t[1], unit * r[2] + t[2]);
+    };
+    const auto inputs =
+        sampler(rotations{}, vectors<3>{2 * unit}, vectors<3>{2}).named("q", "t", "p");
+    const auto judge = [&](slip s) {
+      return judge_jacobian("moved point", f,
+                            [s, unit](const rotation_type& q, const Vector3d&, const Vector3d& p) {
+                              const Matrix3d r = rotation_matrix(q);
+                              Matrix3d by_q = (s == 1 ? 1 : -1) * unit * r * hat(p),
+                                       by_t = Matrix3d::Identity();
+                              if (s == 2) { // as the inverse of a singular matrix
+                                by_q += 1e16 / unit * p * (r * p).transpose();
+                              }
+                              by_t = s == 3 ? Matrix3d::Zero() : s == 4 ? Matrix3d(-by_t) : by_t;
+                              by_t = s == 5 ? Matrix3d(Vector3d(1.1, .9, 1.05).asDiagonal()) : by_t;
+                              const Matrix3d by_p = unit * (s == 6 ? Matrix3d(r.transpose()) : r);
+                              Eigen::Matrix<double, 3, 9> j;
+                              j << (s == 7 ? 57.3 : 1) * by_q, by_t, by_p;
+                              j.row(2) *= s == 8 ? -1 : 1;
+                              return j;
+                            },
+                            inputs, {.samples = 40});
+    };
+    check_slips(judge,
+                {{1, "sign", "d f / d q"},
+                 {3, "missing: zero", "d f / d t"},
+                 {4, "sign", "d f / d t"},
+                 {6, "transposed", "d f / d p"},
+                 {7, "scaled by a constant, 57.3", "d f / d q"},
+                 {8, "sign", "row 2 of d f"}},
+                {{2, 3}, {2, 4}, {2, 5}, {2, 6}, {5, 0}, {1, 5}, {5, 6}, {7, 4}, {3, 7}, {4, 8}});
+  }
+}
+
+TEST_CASE("a curve: blocks of zeros, and entries of one column") {
+  const auto f = [](const auto& u, const auto& a, const auto& b, const auto& c) {
+    using S = std::decay_t<decltype(u * a[0])>;
+    const S v = 1 - u;
+    const auto at = [&](int i) { return v * v * a[i] + 2 * u * v * b[i] + 0 * c[i]; };
+    return vector3<S>(at(0), at(1), at(2));
+  };
+  const auto inputs = sampler(real_numbers{0, 1}, vectors<3>{1}, vectors<3>{1}, vectors<3>{1})
+                          .named("u", "a", "b", "c");
+  const auto judge = [&](slip s) {
+    return judge_jacobian("curve", f,
+                          [s](double u, const Vector3d& a, const Vector3d& b, const Vector3d&) {
+                            const double v = 1 - u;
+                            const Vector3d by_u = -2 * v * a + 2 * (v - u) * b;
+                            Eigen::Matrix<double, 3, 10> j = Eigen::Matrix<double, 3, 10>::Zero();
+                            j.col(0) = s == 1 ? Vector3d(by_u[1], by_u[0], by_u[2]) : by_u;
+                            j.middleCols<3>(s == 2 ? 7 : 1).diagonal().array() += v * v;
+                            j.middleCols<3>(4).diagonal().array() += 2 * u * (s == 3 ? -v : v);
+                            j(0, 9) += s == 4 ? u : 0;
+                            j(1, 1) += s == 5 ? v : 0;
+                            return j;
+                          },
+                          inputs, {.samples = 40});
+  };
+  check_slips(judge,
+              {{1, "rows: 1, 0, 2", "d f / d u"},
+               {2, "columns 0, 7, 8, 9, 4, 5, 6, 1, 2, 3", "d f"},
+               {3, "sign", "d f / d b"},
+               {4, "a multiple of u", "entry (0, 2) of d f / d c"}},
+              {{1, 2}, {1, 3}, {2, 3}, {1, 4}, {3, 4}, {4, 5}});
+}
+
 TEST_CASE("round-off of code over double is told from slips, also beside one") {
   const auto f = [](const auto& r) { return from_rotation_vector(r); };
   const auto inputs = sampler(vectors<3>{3}).named("r");

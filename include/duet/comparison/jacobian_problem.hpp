@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -172,6 +173,30 @@ struct jacobian_sample {
 
 [[nodiscard]] inline double largest_entry(const Eigen::MatrixXd& m) {
   return m.size() > 0 ? m.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() : 0;
+}
+
+/// True if no entry of an error exceeds `allowed` plus `relative` times the largest size in its row
+/// or its column, of whichever is less. The round-off of D A B E, with diagonal D and E for units,
+/// keeps that bound if `relative` exceeds some ulps times the condition number of A or B.
+[[nodiscard]] inline bool is_within(const Eigen::MatrixXd& error, double allowed, double relative,
+                                    const Eigen::MatrixXd& sizes, const Eigen::MatrixXd& others) {
+  Eigen::VectorXd rows = Eigen::VectorXd::Zero(error.rows());
+  Eigen::VectorXd columns = Eigen::VectorXd::Zero(error.cols());
+  for (Eigen::Index k = 0; k < error.cols(); ++k) {
+    for (Eigen::Index i = 0; i < error.rows(); ++i) {
+      const double size = std::max(std::abs(sizes(i, k)), std::abs(others(i, k)));
+      rows[i] = std::max(rows[i], size);
+      columns[k] = std::max(columns[k], size);
+    }
+  }
+  for (Eigen::Index k = 0; k < error.cols(); ++k) {
+    for (Eigen::Index i = 0; i < error.rows(); ++i) {
+      if (!(std::abs(error(i, k)) <= allowed + relative * std::min(rows[i], columns[k]))) {
+        return false;
+      }
+    }
+  }
+  return true;
 }
 
 /// The X of least norm that minimises |A X − B|, by the singular values of A (one-sided Jacobi

@@ -468,18 +468,18 @@ private:
         }
         const matrix a = divided(exact, factor);
         matrix b = divided(written, used);
-        is_chain = is_chain && largest_entry(exact - product_of(a, factor)) <=
-                                   s.allowed + 1e-9 * largest_entry(exact);
+        is_chain =
+            is_chain && is_within(exact - product_of(a, factor), s.allowed, 1e-9, exact, exact);
         for (Eigen::Index k = 0; k < exact.cols() && has_outer; ++k) {
           const double error = largest_entry(written.col(k) - product_of(b, used.col(k)));
           has_outer =
-              !is_used[std::size_t(k)] || error <= s.allowed + 1e-9 * largest_entry(written);
+              !is_used[std::size_t(k)] || error <= s.allowed + 1e-9 * largest_entry(written.col(k));
         }
         if (!is_chain) {
           break;
         }
         jacobian_sample sample = s;
-        sample.allowed += 1e-10 * (largest_entry(s.exact) + largest_entry(s.written));
+        sample.allowed += 1e-12 * largest_entry(s.exact);
         sample.exact = factor;
         sample.written = written;
         sample.outer = a;
@@ -488,6 +488,7 @@ private:
         sample.outer.resize(0, 0);
         sample.exact = a;
         sample.written = b;
+        sample.allowed += 1e-10 * largest_entry(a);
         sample.raw = b;
         sample.is_wrong = largest_entry(a - b) > sample.allowed;
         sample.state.resize(s.state.size() + middle.value.size());
@@ -542,12 +543,11 @@ private:
         std::vector<jacobian_sample> samples = samples_;
         matrix axes;
         for (jacobian_sample& s : samples) {
-          if (!adjoint(s, m, rows, axes)) {
+          if (!adjoint(s, m, rows, -power, axes)) {
             return;
           }
-          const matrix factor = power_of(axes, -power);
-          s.exact = factor * s.exact;
-          s.written = factor * s.written;
+          s.exact = product_of(axes, s.exact);
+          s.written = product_of(axes, s.written);
           s.allowed += 1e-12 * largest_entry(s.exact);
         }
         append(jacobian_slip_search(part, samples).found(),

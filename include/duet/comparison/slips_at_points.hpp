@@ -305,6 +305,7 @@ protected:
           const matrix term = of(summand, *at);
           if (std::isnan(factor)) {
             factor = coefficient(of(s.written, *at) - of(s.exact, *at), term);
+            factor = std::abs(factor) <= most_condition ? factor : 0; // round-off of zero
             const matrix all = of(s.exact, *at);
             if (s.is_wrong &&
                 largest_entry(term - coefficient(term, all) * all) > 1e-6 * largest_entry(term)) {
@@ -314,7 +315,7 @@ protected:
           // The part of an even function is what is left of a difference.
           const double round_off = 4e-16 * std::abs(factor) * largest_entry(s.exact) /
                                    std::max(largest_entry(s.written), largest_entry(s.exact));
-          return !fits(s, *at, of(s.exact, *at) + factor * term, 1e-9 + round_off);
+          return !fits_with(s, *at, factor * term, 1e-9 + round_off);
         });
         if (alive.empty()) {
           break;

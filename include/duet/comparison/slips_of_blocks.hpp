@@ -53,8 +53,9 @@ protected:
         worst = s.is_wrong ? std::max(worst, error_of(s)) : worst;
       }
       for (jacobian_sample& s : samples_) { // round-off leaves at least half of the digits
-        s.little_error =
-            s.is_wrong && error_of(s) < 1e-6 * worst ? largest_entry(s.written - s.exact) : 0;
+        s.little_error = s.is_wrong && error_of(s) < 1e-6 * std::min(worst, 1.)
+                             ? largest_entry(s.written - s.exact)
+                             : 0;
       }
     }
     find_wrong_entries();
@@ -194,14 +195,17 @@ protected:
       matrix changed = s.exact;
       changed.block(at.row, at.column, at.rows, at.columns) = candidate;
       const matrix product = product_of(s.outer, changed);
-      return largest_entry(s.written - product) <=
-             s.allowed + s.little_error +
-                 relative * std::max(largest_entry(s.written), largest_entry(product));
+      return is_within(s.written - product, s.allowed + s.little_error, relative, product, product);
     }
-    const double tolerance =
-        s.allowed + s.little_error +
-        relative * std::max(largest_entry(of(s.exact, at)), largest_entry(candidate));
-    return largest_entry(of(s.written, at) - candidate) <= tolerance;
+    return is_within(of(s.written, at) - candidate, s.allowed + s.little_error, relative,
+                     of(s.exact, at), candidate);
+  }
+
+  /// True if the right matrix plus a term is what is written, and is not lost in its round-off.
+  [[nodiscard]] static bool fits_with(const jacobian_sample& s, const scope& at, const matrix& term,
+                                      double relative) {
+    return largest_entry(term) <= most_condition * largest_entry(s.exact) &&
+           fits(s, at, of(s.exact, at) + term, relative);
   }
 
   /// The derivative at another state; NaN where the function refuses it.
@@ -312,7 +316,8 @@ protected:
         return false;
       }
       out = inverse_of(m);
-      return largest_entry(product_of(out, m) - matrix::Identity(m.rows(), m.rows())) < 1e-6;
+      return largest_entry(product_of(out, m) - matrix::Identity(m.rows(), m.rows())) <
+             1 / most_condition;
     });
     attempt_change("column-major data in a row-major array", [](const matrix& m, matrix& out) {
       out.resize(m.rows(), m.cols());
@@ -492,24 +497,20 @@ protected:
     return rotation_matrix(rotation(pose_of(s, m)));
   }
 
-  /// Adjoint matrix of size 3 or 6; false for other sizes.
+  /// A power of the adjoint matrix of size 3 or 6; false for other sizes.
   [[nodiscard]] static bool adjoint(const jacobian_sample& s, const motion& m, Eigen::Index size,
-                                    matrix& out) {
+                                    int power, matrix& out) {
     if (size != 3 && size != 6) {
       return false;
     }
-    out = Ad(pose_of(s, m)).bottomRightCorner(size, size);
+    const auto a = pose_of(s, m), b = power < 0 ? conj(a) : a;
+    out = Ad(power * power == 4 ? b * b : b).bottomRightCorner(size, size);
     return true;
   }
 
   [[nodiscard]] static matrix inverse_of(const matrix& m) {
     return divided(matrix::Identity(m.rows(), m.cols()), m);
   }
-  [[nodiscard]] static matrix power_of(const matrix& m, int power) {
-    const matrix base = power < 0 ? inverse_of(m) : m;
-    return std::abs(power) == 2 ? product_of(base, base) : base;
-  }
-
   void try_frames() {
     matrix factor;
     for (const motion& m : motions(true)) {
@@ -523,14 +524,13 @@ protected:
         // Of all, or of all but an identity matrix.
         const auto multiplied = [&](bool is_left, double one) -> hypothesis {
           return [&, is_left, one](const jacobian_sample& s, const scope& at, matrix& out) {
-            if (!adjoint(s, m, is_left ? at.rows : at.columns, factor) ||
+            if (!adjoint(s, m, is_left ? at.rows : at.columns, power, factor) ||
                 (one != 0 && at.rows != at.columns)) {
               return false;
             }
             const matrix identity = one * matrix::Identity(at.rows, at.columns);
             out = of(s.exact, at) - identity;
-            out = identity + (is_left ? product_of(power_of(factor, power), out)
-                                      : product_of(out, power_of(factor, power)));
+            out = identity + (is_left ? product_of(factor, out) : product_of(out, factor));
             return true;
           };
         };
@@ -555,11 +555,12 @@ protected:
           attempt(message("exchanged factors: multiplied by ", which,
                           " from the left and by its inverse from the right"),
                   [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                    if (at.rows != at.columns || !adjoint(s, m, at.rows, factor)) {
+                    if (at.rows != at.columns || !adjoint(s, m, at.rows, power, factor)) {
                       return false;
                     }
-                    out = product_of(product_of(power_of(factor, power), of(s.exact, at)),
-                                     power_of(factor, -power));
+                    out = product_of(factor, of(s.exact, at));
+                    adjoint(s, m, at.rows, -power, factor);
+                    out = product_of(out, factor);
                     return true;
                   });
         }
@@ -619,8 +620,8 @@ protected:
                          : Eigen::Vector3d(
                                state.segment<3>(from.part->state + from.part->dimension - 3))) *
                     sign * half;
-                return power_of(is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi),
-                                power);
+                const matrix m = is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi);
+                return power == 2 ? product_of(m, m) : m;
               };
               const std::string name =
                   message("right only at the identity of ", from.name, ": multiplied by the ",
@@ -799,6 +800,10 @@ protected:
     }
   }
 
+  /// A hypothesis with a factor, or a factor's condition number, beyond it is numerically void:
+  /// its own round-off exceeds half of the digits.
+  static constexpr double most_condition = 1e8; // 1/sqrt(epsilon), rounded
+
   /// Rows of the error in the columns of a rectangle, and what a term of a rectangle makes of it.
   [[nodiscard]] static matrix error_in(const jacobian_sample& s, const scope& at) {
     return s.outer.size() > 0
@@ -841,7 +846,7 @@ protected:
     const Eigen::Vector3d c = least_norm_solution(normal, right);
     if (!c.allFinite() || c.norm() < 1e-9 ||
         !std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-          return fits(s, at, of(s.exact, at) + term(s, c), 1e-8);
+          return fits_with(s, at, term(s, c), 1e-8);
         })) {
       return false;
     }

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -35,16 +36,16 @@ protected:
       bool is_injective = true, is_identity = true;
       for (Eigen::Index k = 0; k < at.columns; ++k) {
         Eigen::Index source = -1;
-        for (Eigen::Index n = 0; n < samples_[0].exact.cols() && source < 0; ++n) {
-          // Tried in order of distance, the column itself first.
-          const Eigen::Index column = (at.column + k + n) % samples_[0].exact.cols();
+        for (Eigen::Index n = -1; n < samples_[0].exact.cols() && source < 0; ++n) {
+          // First the column itself, then that after the last source, then in order of distance.
+          const Eigen::Index column =
+              (n == 0 && k > 0 ? from.back() + 1 : at.column + k + std::max<Eigen::Index>(n, 0)) %
+              samples_[0].exact.cols();
           const bool is_source =
               std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-                const double tolerance =
-                    s.allowed + s.little_error +
-                    1e-9 * largest_entry(s.exact.block(at.row, column, at.rows, 1));
-                return largest_entry(s.written.block(at.row, at.column + k, at.rows, 1) -
-                                     s.exact.block(at.row, column, at.rows, 1)) <= tolerance;
+                const matrix other = s.exact.block(at.row, column, at.rows, 1);
+                return is_within(s.written.block(at.row, at.column + k, at.rows, 1) - other,
+                                 s.allowed + s.little_error, 1e-9, other, other);
               });
           source = is_source ? column : -1;
         }
@@ -76,6 +77,7 @@ protected:
     // Rows that contain other rows.
     for (const scope& at : scopes_) {
       std::string list;
+      std::set<Eigen::Index> from;
       bool has_all = true;
       for (Eigen::Index i = 0; i < at.rows && has_all; ++i) {
         Eigen::Index source = -1;
@@ -84,16 +86,16 @@ protected:
           const bool is_source =
               std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
                 const matrix other = s.exact.block(row, at.column, 1, at.columns);
-                return largest_entry(s.written.block(at.row + i, at.column, 1, at.columns) -
-                                     other) <=
-                       s.allowed + s.little_error + 1e-9 * largest_entry(other);
+                return is_within(s.written.block(at.row + i, at.column, 1, at.columns) - other,
+                                 s.allowed + s.little_error, 1e-9, other, other);
               });
           source = is_source ? row : -1;
         }
         has_all = source >= 0;
+        from.insert(source);
         list += (list.empty() ? "" : ", ") + std::to_string(source);
       }
-      if (has_all && at.columns > 1) {
+      if (has_all && (at.columns > 1 || (at.rows > 1 && Eigen::Index(from.size()) == at.rows))) {
         accept(message(at.rows == 1 ? "wrong index: row " : "permuted or wrong rows: ", list,
                        " of the matrix"),
                at.name);
@@ -269,7 +271,7 @@ protected:
         matrix value = terms_of(s, at)[t].value * numbers_of(s, !is_square).values[f];
         value *=
             std::isnan(factor) ? coefficient(error_in(s, at), effect_of(s, at, value)) : factor;
-        return fits(s, at, of(s.exact, at) + value, 1e-8);
+        return fits_with(s, at, value, 1e-8);
       };
       const auto is_found = [&](std::size_t t, std::size_t f, bool is_weighted) {
         double factor = NAN;
@@ -379,8 +381,8 @@ protected:
               matrix written = s.written;
               written.middleCols(a.first, a.dimension) =
                   read(s, s.raw.middleCols(a.state, a.state_size()));
-              return largest_entry(written - s.exact) <=
-                     s.allowed + s.little_error + 1e-9 * largest_entry(s.exact);
+              return is_within(written - s.exact, s.allowed + s.little_error, 1e-9, s.exact,
+                               s.exact);
             })) {
           accept(name, message("all of d / d ", a.name));
         }
@@ -448,23 +450,26 @@ protected:
       }
     }
     // Written entries that are c a/b or c a/b^2 times the right ones; errors that are c m, c m/d or
-    // c m (a - b), where m is a product of at most three numbers.
-    const std::vector<const jacobian_sample*> used = some_wrong_samples();
+    // c m (a - b), where m is a product of at most three numbers. Some wrong samples refute most.
+    std::vector<const jacobian_sample*> used = some_wrong_samples();
+    const std::size_t some = used.size();
+    std::transform(samples_.begin(), samples_.end(), std::back_inserter(used),
+                   [](const jacobian_sample& s) { return &s; });
     std::vector<std::vector<double>> values;
     std::vector<double> errors, tolerances;
     numbers names;
     for (const jacobian_sample* s : used) {
       names = numbers_of(*s);
       values.push_back(names.values);
+      values.back().push_back(s->exact(i, k));
       errors.push_back(s->written(i, k) - s->exact(i, k));
       tolerances.push_back(s->allowed + s->little_error +
                            1e-9 * (std::abs(s->exact(i, k)) + std::abs(errors.back())));
     }
-    if (values.size() < 4) {
+    if (some < 4) {
       return;
     }
     const std::size_t count = names.names.size();
-    std::vector<double> ratio(values.size());
     // Of the errors, or of the entries as written.
     const auto is_constant = [&](const auto& ratio_of, bool is_entry = false) {
       const auto number = [&](std::size_t n) {
@@ -476,7 +481,9 @@ protected:
         return false;
       }
       for (std::size_t n = 1; n < values.size(); ++n) {
-        if (!(std::abs(number(n) - factor * ratio_of(values[n])) <= 4 * tolerances[n])) {
+        const double ratio = ratio_of(values[n]); // elsewhere 0/0 refutes nothing
+        if (!(std::abs(number(n) - factor * ratio) <= 4 * tolerances[n]) &&
+            (n < some || std::isfinite(ratio))) {
           return false;
         }
       }
@@ -485,12 +492,11 @@ protected:
     for (std::size_t a = 0; a < count; ++a) {
       for (std::size_t b = 0; b < count; ++b) {
         for (const bool is_square : {false, true}) {
-          std::size_t n = 0;
           if (a != b && (a > 0 || b > 0) &&
               is_constant(
                   [&](const auto& v) {
                     const double factor = v[a] / (is_square ? v[b] * v[b] : v[b]);
-                    return used[n++]->exact(i, k) * factor;
+                    return v.back() * factor;
                   },
                   true)) {
             accept(message("wrong factor: times ", names.names[a],
