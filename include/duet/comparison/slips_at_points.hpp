@@ -315,7 +315,7 @@ protected:
           // The part of an even function is what is left of a difference.
           const double round_off = 4e-16 * std::abs(factor) * largest_entry(s.exact) /
                                    std::max(largest_entry(s.written), largest_entry(s.exact));
-          return !fits_with(s, *at, factor * term, 1e-9 + round_off);
+          return !fits(s, *at, of(s.exact, *at) + factor * term, 1e-9 + round_off);
         });
         if (alive.empty()) {
           break;

@@ -201,13 +201,6 @@ protected:
                      of(s.exact, at), candidate);
   }
 
-  /// True if the right matrix plus a term is what is written, and is not lost in its round-off.
-  [[nodiscard]] static bool fits_with(const jacobian_sample& s, const scope& at, const matrix& term,
-                                      double relative) {
-    return largest_entry(term) <= most_condition * largest_entry(s.exact) &&
-           fits(s, at, of(s.exact, at) + term, relative);
-  }
-
   /// The derivative at another state; NaN where the function refuses it.
   [[nodiscard]] matrix derivative_at(const vector& state) const {
     matrix result = matrix::Constant(samples_[0].exact.rows(), samples_[0].exact.cols(), NAN);
@@ -800,8 +793,8 @@ protected:
     }
   }
 
-  /// A hypothesis with a factor, or a factor's condition number, beyond it is numerically void:
-  /// its own round-off exceeds half of the digits.
+  /// Of a matrix that a hypothesis inverts, and of a coefficient of its own for every sample:
+  /// beyond it, the round-off of the hypothesis leaves less than half of the digits.
   static constexpr double most_condition = 1e8; // 1/sqrt(epsilon), rounded
 
   /// Rows of the error in the columns of a rectangle, and what a term of a rectangle makes of it.
@@ -844,9 +837,9 @@ protected:
       right += product_of(columns.transpose(), error.reshaped());
     }
     const Eigen::Vector3d c = least_norm_solution(normal, right);
-    if (!c.allFinite() || c.norm() < 1e-9 ||
+    if (!c.allFinite() || c.norm() == 0 ||
         !std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-          return fits_with(s, at, term(s, c), 1e-8);
+          return fits(s, at, of(s.exact, at) + term(s, c), 1e-8);
         })) {
       return false;
     }

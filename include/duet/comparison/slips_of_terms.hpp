@@ -127,7 +127,8 @@ protected:
         count += is_wrong ? 1 : 0;
         is_whole = is_whole &&
                    (!is_wrong || std::all_of(samples_.begin(), samples_.end(), [&](const auto& s) {
-                     return std::abs(of(s.exact, at)(i) - of(samples_[0].exact, at)(i)) < 1e-9;
+                     const double x = of(s.exact, at)(i), y = of(samples_[0].exact, at)(i);
+                     return std::abs(x - y) <= s.allowed + 1e-9 * std::abs(x);
                    }));
       }
       if ((!is_whole || count < 2) &&
@@ -271,22 +272,22 @@ protected:
         matrix value = terms_of(s, at)[t].value * numbers_of(s, !is_square).values[f];
         value *=
             std::isnan(factor) ? coefficient(error_in(s, at), effect_of(s, at, value)) : factor;
-        return fits_with(s, at, value, 1e-8);
+        return fits(s, at, of(s.exact, at) + value, 1e-8);
       };
       const auto is_found = [&](std::size_t t, std::size_t f, bool is_weighted) {
         double factor = NAN;
+        bool is_lost = is_weighted; // the right matrix, in the round-off of the term
         for (std::size_t n = 0; n < used.size(); ++n) {
           const matrix value = effect_of(*used[n], at, terms[n][t].value * factors[n].values[f]);
-          if (n == 0 && !(largest_entry(value) > 1e-9)) {
-            return false; // round-off of zero
-          }
           factor = n == 0 || is_weighted ? coefficient(errors[n], value) : factor;
+          is_lost = is_lost && std::abs(factor) * largest_entry(terms[n][t].value) >
+                                   most_condition * largest_entry(used[n]->exact);
           if (!(largest_entry(errors[n] - factor * value) <=
                 4 * used[n]->allowed + used[n]->little_error + 1e-9 * largest_entry(errors[n]))) {
             return false;
           }
         }
-        return std::abs(factor) > 1e-9 &&
+        return !is_lost && factor != 0 &&
                std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
                  return explains(s, t, f, is_weighted ? NAN : factor);
                });
