@@ -624,6 +624,13 @@ TEST_CASE("blocks of other units, singular ones and their inverses hide no secon
   }
 }
 
+TEST_CASE("a constant of a wrong factor is named") {
+  const auto f = [](double x) { return x * x * x; };
+  const auto half = [](double x) { return std::array{-1.5 * x * x * x}; };
+  CHECK(has(judge_jacobian("cube", f, half, sampler(real_numbers{1, 2}).named("x")),
+            "wrong factor: times -0.5 x", "d f / d x"));
+}
+
 TEST_CASE("a curve: blocks of zeros, and entries of one column") {
   const auto f = [](const auto& u, const auto& a, const auto& b, const auto& c) {
     using S = std::decay_t<decltype(u * a[0])>;

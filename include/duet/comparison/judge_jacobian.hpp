@@ -732,10 +732,13 @@ DUET_ABI_END
 /// have tangent coordinates: small rotation vectors and twists [v; ω] on `options.side`.
 ///
 /// A slip is named if it alone explains the matrices at all inputs, also at special ones; all that
-/// do are listed. Random errors, other functions and two slips are not named, except two that
-/// together equal a single one, as a sign and the factor 1/2 equal the factor -1/2. Round-off is
-/// distinguished from slips as it differs between inputs that are almost equal: it counts as
-/// `loses_precision`. With differences, an error below their estimated error is `inconclusive`.
+/// do are listed. It explains an entry up to the tolerance and 1e-9 (with a fitted term 1e-8) of
+/// the largest in its row or column, whichever is less: a bound of the round-off of products A B if
+/// the condition number of A or B is below 1e6. Inverses of a condition number above 1e8 have no
+/// name. Random errors, other functions and two slips are not named, except two that together equal
+/// a single one, as a sign and the factor 1/2 equal the factor -1/2. Round-off is distinguished
+/// from slips as it differs between inputs that are almost equal: it counts as `loses_precision`.
+/// With differences, an error below their estimated error is `inconclusive`.
 ///
 /// \param label     name of the judgement in the report
 /// \param f         the function of the arguments, best a template over their scalar

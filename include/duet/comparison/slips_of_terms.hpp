@@ -471,6 +471,7 @@ protected:
       return;
     }
     const std::size_t count = names.names.size();
+    double constant = 1;
     // Of the errors, or of the entries as written.
     const auto is_constant = [&](const auto& ratio_of, bool is_entry = false) {
       const auto number = [&](std::size_t n) {
@@ -481,6 +482,7 @@ protected:
       if (!std::isfinite(factor)) {
         return false;
       }
+      constant = factor;
       for (std::size_t n = 1; n < values.size(); ++n) {
         const double ratio = ratio_of(values[n]); // elsewhere 0/0 refutes nothing
         if (!(std::abs(number(n) - factor * ratio) <= 4 * tolerances[n]) &&
@@ -500,7 +502,9 @@ protected:
                     return v.back() * factor;
                   },
                   true)) {
-            accept(message("wrong factor: times ", names.names[a],
+            accept(message("wrong factor: times ",
+                           std::abs(constant - 1) < 1e-9 ? "" : to_text(float(constant)) + " ",
+                           names.names[a],
                            b > 0 ? message("/", names.names[b], is_square ? "^2" : "") : ""),
                    at.name);
             return;
