@@ -793,8 +793,8 @@ protected:
     }
   }
 
-  /// Of a matrix that a hypothesis inverts, and of a coefficient of its own for every sample:
-  /// beyond it, the round-off of the hypothesis leaves less than half of the digits.
+  /// Limit of the condition number of a matrix that a hypothesis inverts, and of a coefficient of
+  /// its own for every sample: beyond it, round-off leaves less than half of the digits.
   static constexpr double most_condition = 1e8; // 1/sqrt(epsilon), rounded
 
   /// Rows of the error in the columns of a rectangle, and what a term of a rectangle makes of it.
