@@ -548,12 +548,12 @@ protected:
           attempt(message("exchanged factors: multiplied by ", which,
                           " from the left and by its inverse from the right"),
                   [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                    if (at.rows != at.columns || !adjoint(s, m, at.rows, power, factor)) {
+                    matrix inverse;
+                    if (at.rows != at.columns || !adjoint(s, m, at.rows, power, factor) ||
+                        !adjoint(s, m, at.rows, -power, inverse)) {
                       return false;
                     }
-                    out = product_of(factor, of(s.exact, at));
-                    adjoint(s, m, at.rows, -power, factor);
-                    out = product_of(out, factor);
+                    out = product_of(product_of(factor, of(s.exact, at)), inverse);
                     return true;
                   });
         }
