@@ -254,6 +254,29 @@ TEST_CASE(
   check_solutions(arm, found, goal);
 }
 
+/// Only the tool has a length.
+TEST_CASE(
+    "all_inverse_kinematics: six axes through one point are solved, with tools of any length") {
+  std::array<joint<>, 6> joints;
+  for (std::size_t i = 0; i < 6; ++i) {
+    joints[i].origin.rotation =
+        quaternion<double>(1, i % 2 == 0 ? 0 : 1, i % 2 == 0 ? 1 : 0, 0) * std::sqrt(.5);
+  }
+  vector theta(6);
+  theta << .3, .4, -.7, .6, .2, .5;
+  for (const double length : {0., .3, 1e6}) {
+    CAPTURE(length);
+    const chain arm = serial_chain<6>(joints, {quaternion<double>(1), {0, 0, length}});
+    const auto goal = arm.pose(theta);
+    const result found = all_inverse_kinematics(arm, goal);
+    CHECK_FALSE(found.is_complete); // the joints have a self-motion
+    CHECK(!found.solutions.empty());
+    for (const auto& s : found.solutions) {
+      CHECK(matrix_distance(arm, s.joints, goal) <= 1e-13 * std::max(1., length));
+    }
+  }
+}
+
 /// Round-off in the position of the tip is proportional to the displacements.
 TEST_CASE("all_inverse_kinematics: prismatic displacements up to 1e6 arm lengths keep their "
           "relative accuracy") {
