@@ -76,6 +76,7 @@ TEST_CASE("derivatives as text") {
   CHECK(to_text(derivative(sqrt(x * x), x)) == "2 * x / (2 * sqrt(x^2))");
   CHECK(to_text(derivative(tanh(x + y), x)) == "1 / cosh(x + y)^2");
   CHECK(to_text(derivative(pow(x, 2.5_c), x)) == "2.5 * x^1.5");
+  CHECK(to_text(derivative(pow(x, 0.6_c), x)) == "0.6 * x^(-0.4)"); // 0.6 + 1 is not exact
   CHECK(to_text(derivative(pow(x, y), x)) == "y * x^(y - 1)");
   CHECK(to_text(derivative(x * acos(y), y)) == "-x / sqrt(1 - y^2)");
   CHECK(to_text(derivative(atan2(y + 1, x), x)) == "-(y + 1) / (x^2 + (y + 1)^2)");
