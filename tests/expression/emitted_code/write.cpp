@@ -114,6 +114,9 @@ std::vector<code_case> cases() {
                                         max(x, y) - min(x, 1 - y), abs(x - y) + copysign(x, y));
           },
           u, lambda));
+  const double infinity = std::numeric_limits<double>::infinity();
+  add("infinite",
+      trace([&](auto x) { return max(min(x, decltype(x)(infinity)), decltype(x)(-infinity)); }, u));
   add("elementary", trace(
                         [](auto x) {
                           using std::atan2;
@@ -136,7 +139,6 @@ std::vector<code_case> cases() {
                           const std::vector<std::vector<double>>& inputs) {
     result.push_back({name, f, inputs, false});
   };
-  const double infinity = std::numeric_limits<double>::infinity();
   std::vector<std::vector<double>> numbers;
   for (const double x : {-2.5, -2.0, -1.5, -1.0, -0.5, -0.3, -0.0, 0.0, 0.3, 0.5, 1.0, 1.5, 2.5,
                          3.0, 1e300, infinity, -infinity}) {
