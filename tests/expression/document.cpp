@@ -46,6 +46,11 @@ TEST_CASE("gradients, Hessians, Jacobians and motions in LaTeX") {
   CHECK(to_latex(motion(rotation(screw(axis::z, x * x)), x, duet::frame::body)) ==
         "\\begin{bmatrix}0\\\\0\\\\2 x\\end{bmatrix}, \\quad "
         "\\begin{bmatrix}0\\\\0\\\\2\\end{bmatrix}");
+  const symbol<"theta_1"> apart; // looks like theta1, though in another entry
+  const symbol<"theta1"> plain;
+  CHECK(duet_test::message_of<duet::invalid_input>([&] {
+          (void)to_latex(gradient(plain * plain + apart * apart, wrt(plain, apart)));
+        }).starts_with("duet: to_latex: theta1 and theta_1 both look like"));
 }
 
 TEST_CASE("derivations step by step") {

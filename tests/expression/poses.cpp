@@ -125,21 +125,34 @@ TEST_CASE("N18: twists and their rates, in all frames") {
 
 TEST_CASE("Jacobians by scalars, vectors, rotations and poses") {
   constexpr quaternion_symbol<"q"> q;
-  const auto f = translation_along(axis::z, u) * A * pose(q, v) * screw(helix, u);
-  const auto q0 = duet::exp(vector3<double>(.5, .1, -.4));
-  const auto check = [&](auto frame) {
-    const auto [value, J] = jacobian(f, wrt(u, v, A, q), frame)(u = 0.3, v = v0, A = a0, q = q0);
-    const auto expected = duet::jacobian(
-        [&](const auto& x) {
-          return f(u = std::get<0>(x), v = std::get<1>(x), A = std::get<2>(x), q = std::get<3>(x));
-        },
-        std::make_tuple(0.3, v0, a0, q0), frame);
-    CHECK(length(value - expected.value) < 1e-14);
-    CHECK((J - expected.jacobian).norm() < 1e-14);
+  const auto check = [&](const auto& f, auto frame) {
+    // No turn, half a turn, and more than one.
+    for (const vector3<double>& half :
+         {vector3<double>(.5, .1, -.4), vector3<double>(0, 0, 0),
+          vector3<double>(0, duet::constant::pi<double>() / 2, 0), vector3<double>(4, 0, 0)}) {
+      const auto q0 = duet::exp(half);
+      for (const double u0 : {0.3, 0.0, duet::constant::pi<double>(), 7.0}) {
+        CAPTURE(half.transpose());
+        CAPTURE(u0);
+        const auto [value, J] = jacobian(f, wrt(u, v, A, q), frame)(u = u0, v = v0, A = a0, q = q0);
+        const auto expected = duet::jacobian(
+            [&](const auto& x) {
+              return f(u = std::get<0>(x), v = std::get<1>(x), A = std::get<2>(x),
+                       q = std::get<3>(x));
+            },
+            std::make_tuple(u0, v0, a0, q0), frame);
+        CHECK(length(value - expected.value) < 1e-14);
+        CHECK((J - expected.jacobian).norm() < 1e-13);
+      }
+    }
   };
-  check(duet::frame::spatial);
-  check(duet::frame::body);
-  check(duet::frame::hybrid);
+  const auto f = translation_along(axis::z, u) * A * pose(q, v) * screw(helix, u);
+  check(f, duet::frame::spatial);
+  check(f, duet::frame::body);
+  check(f, duet::frame::hybrid);
+  check(f * c<1>, duet::frame::spatial);
+  check(-conj(f) * screw(axis::x, u), duet::frame::spatial);
+  check(-conj(f) * screw(axis::x, u), duet::frame::body);
 }
 
 TEST_CASE("gradients with respect to rotations and poses") {

@@ -168,6 +168,9 @@ TEST_CASE("LaTeX of what does not commute") {
   CHECK(to_latex(A * rotate(q, n)) == R"(A \left(q \vec{n} q^{*}\right))");
   CHECK(to_latex(transpose(n) * A * n / 2) == R"(\frac{\vec{n}^{\top} A \vec{n}}{2})");
   CHECK(to_text(translation_along(axis::x, x)) == "translation_along(e1, x)");
+  constexpr auto row = transpose(real_part(axis::y)); // zeros that are known
+  CHECK(to_text(row) == "[0, 1, 0]");
+  CHECK(to_text(n * row) == "[0, n[0], 0; 0, n[1], 0; 0, n[2], 0]");
   CHECK(to_latex(translation_along(axis::x, x)) ==
         R"(\operatorname{Trans}\left(\vec{e}_{1}, x\right))");
   CHECK(to_latex(x * dot(n, v) * norm(v)) ==

@@ -149,9 +149,15 @@ template <class Item>
   return {};
 }
 
-/// Text of an operation that the algebra of the tape knows.
-[[nodiscard]] inline printed print_coded(notation style, const tape_entry& e, const printed* x) {
+/// Text of an operation that the algebra of the tape knows, whose first operand is of a kind.
+[[nodiscard]] inline printed print_coded(notation style, const tape_entry& e, kind first,
+                                         const printed* x) {
   const int p = e.parameter;
+  const auto component = [&](int i) {
+    return style != notation::text
+               ? with_index(x[0], std::to_string(i + 1))
+               : printed{x[0].inside(precedence::atom) + "[" + std::to_string(i) + "]"};
+  };
   switch (e.code) {
   case tape_code::negative:
     return op::negative::print(style, x[0]);
@@ -180,15 +186,23 @@ template <class Item>
                : printed{x[0].inside(precedence::atom) + "^" + n, precedence::power};
   }
   case tape_code::component:
-    return style != notation::text
-               ? with_index(x[0], std::to_string(p + 1))
-               : printed{x[0].inside(precedence::atom) + "[" + std::to_string(p) + "]"};
+    return component(p);
   case tape_code::block:
     return print_block(style, x[0], p / 8, p % 8, e.kind_of);
-  case tape_code::entries: {
+  case tape_code::entries:
+  case tape_code::embedded_block: {
+    const bool is_whole = e.code == tape_code::entries;
+    const int rows = is_whole ? rows_of(e.kind_of) : rows_of(first);
+    const int columns = is_whole ? columns_of(e.kind_of) : columns_of(first);
     std::vector<std::string> all;
-    for (int k = 0; k < e.count; ++k) {
-      all.push_back(x[k].text);
+    for (int k = 0; k < rows_of(e.kind_of) * columns_of(e.kind_of); ++k) {
+      const int i = k / columns_of(e.kind_of) - p / 8, j = k % columns_of(e.kind_of) - p % 8;
+      const bool is_zero = i < 0 || j < 0 || i >= rows || j >= columns;
+      all.push_back(is_zero                 ? "0"
+                    : is_whole              ? x[k].text
+                    : first == kind::scalar ? x[0].text
+                    : columns == 1          ? component(i).text
+                                            : print_block(style, x[0], i, j, kind::scalar).text);
     }
     return printed_matrix(style, std::size_t(columns_of(e.kind_of)), all);
   }
@@ -225,11 +239,7 @@ public:
     const tape_builder tape(memory_);
     tape_numbers is_needed(tape.size());
     is_needed[root_] = 1;
-    for (int i = tape.size() - 1; i >= 0; --i) {
-      for (int k = 0; is_needed[i] != 0 && k < tape[i].count; ++k) {
-        is_needed[tape.operand(i, k)] = 1;
-      }
-    }
+    mark_operands(tape, is_needed, root_);
     for (int i = 0; i < tape.size(); ++i) {
       const tape_entry& e = tape[i];
       const bool is_symbol = e.code == tape_code::input && e.parameter >= 0;
@@ -272,8 +282,9 @@ private:
     if (is_pi(e)) {
       return e.operation->print(style_, nullptr);
     }
-    printed result = e.code == tape_code::other ? e.operation->print(style_, x.data())
-                                                : print_coded(style_, e, x.data());
+    printed result = e.code == tape_code::other
+                         ? e.operation->print(style_, x.data())
+                         : print_coded(style_, e, tape.kind_of(tape.operand(i, 0)), x.data());
     return style_ != notation::text ? latex_of_kind(std::move(result), e.kind_of == kind::scalar)
                                     : result;
   }

@@ -34,7 +34,7 @@ struct factors {
   using type = mp11::mp_list<Node>;
 };
 template <class A, class B>
-  requires(A::kind_of == kind::pose)
+  requires(A::kind_of == kind::pose && B::kind_of == kind::pose)
 struct factors<applied_node<op::product, A, B>> {
   using type = mp11::mp_append<typename factors<A>::type, typename factors<B>::type>;
 };
@@ -54,7 +54,8 @@ inline constexpr bool is_axis = axis_of<Node> >= 0;
 template <class Node>
 inline constexpr bool is_pose_chain = false;
 template <class A, class B>
-inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> = A::kind_of == kind::pose;
+inline constexpr bool is_pose_chain<applied_node<op::product, A, B>> =
+    A::kind_of == kind::pose&& B::kind_of == kind::pose;
 
 /// Class of a factor for `moving_frame`, the entries whose values it is appended with, and its
 /// rate: a velocity, or the rate of a scalar.

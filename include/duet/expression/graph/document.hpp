@@ -76,6 +76,8 @@ template <class Made, Formula F>
                                    [[maybe_unused]] notation style = notation::latex) {
   using derivatives = detail::scalar_derivatives<Made, F>;
   if constexpr (derivatives::exist) {
+    detail::printed_formula(typename F::node_type{}, f.formula().held(), style)
+        .require_different_looks();
     std::vector<std::string> entries = derivatives::latex(f.formula(), style);
     const formula_graph expanded = components(f);
     const named_value& matrix = expanded.outputs().back();

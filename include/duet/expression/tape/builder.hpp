@@ -155,7 +155,6 @@ public:
 
   [[nodiscard]] constexpr int size() const { return size_; }
   [[nodiscard]] constexpr int capacity() const { return capacity_; }
-  [[nodiscard]] constexpr bool is_full() const { return is_full_; }
   [[nodiscard]] constexpr const tape_entry& operator[](int i) const { return entries_[i]; }
   [[nodiscard]] constexpr int operand(int i, int k) const {
     return operands_[entries_[i].first + k];
@@ -826,5 +825,14 @@ private:
   bool is_full_;
   bool is_printed_; ///< true if derivatives of functions are formulas of other functions
 };
+
+/// Marks the operands of all marked entries, from the last-th down.
+constexpr void mark_operands(const tape_builder& tape, auto& is_marked, int last) {
+  for (int i = last; i >= 0; --i) {
+    for (int k = 0; is_marked[i] != 0 && k < tape[i].count; ++k) {
+      is_marked[tape.operand(i, k)] = 1;
+    }
+  }
+}
 
 } // namespace duet::expression::detail

@@ -55,14 +55,7 @@ struct tape_motion {
   /// Marks an entry and all that it needs.
   constexpr void need(const tape_builder& tape, int i) {
     is_needed[i] = 1;
-    for (; i >= 0; --i) {
-      if (is_needed[i] != 0) {
-        const int* x = tape.operands(i);
-        for (int k = 0; k < tape[i].count; ++k) {
-          is_needed[x[k]] = 1;
-        }
-      }
-    }
+    mark_operands(tape, is_needed, i);
   }
 
   /// The input that an entry is, if it moves, otherwise null.

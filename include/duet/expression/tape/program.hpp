@@ -100,11 +100,7 @@ struct tape_program : tape_memory<Capacity> {
     for (int root : roots) {
       is_needed[root] = true;
     }
-    for (int i = tape.size() - 1; i >= 0; --i) {
-      for (int k = 0; is_needed[i] && k < tape[i].count; ++k) {
-        is_needed[tape.operand(i, k)] = true;
-      }
-    }
+    mark_operands(tape, is_needed, tape.size() - 1);
     for (int& i : inputs) {
       i = -1;
     }
