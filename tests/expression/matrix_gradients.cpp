@@ -84,6 +84,17 @@ TEST_CASE("Jacobians by the entries of a matrix") {
   CHECK(max_abs_difference(by_entry.jacobian.col(2), -by_entry.value.transpose() / B0(0, 1)) <
         1e-15);
 
+  const Eigen::Matrix<double, 2, 3> last_rows = one.bottomRows<2>();
+  const auto rows = jacobian(block<1, 0, 2, 3>(A * A0), wrt(A))(A = A0).jacobian;
+  CHECK(max_abs_difference(rows, kronecker(A0.transpose(), last_rows)) == 0);
+  const auto columns = jacobian(block<0, 1, 3, 2>(A0 * transpose(A)), wrt(A))(A = A0).jacobian;
+  for (int k = 0; k < 9; ++k) { // of A0 times the transposed unit matrix
+    matrix3 unit = matrix3::Zero();
+    unit.data()[k] = 1;
+    const Eigen::Matrix<double, 3, 2> expected = (A0 * unit.transpose()).rightCols<2>();
+    CHECK(max_abs_difference(columns.col(k), expected.reshaped()) == 0);
+  }
+
   const auto q0 = duet::exp(duet::vector3<double>(-0.4, 0.1, 0.9));
   const auto R = jacobian(rotation_matrix(q), wrt(q), duet::frame::spatial)(q = q0);
   for (int i = 0; i < 3; ++i) {
