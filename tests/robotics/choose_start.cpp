@@ -2,6 +2,7 @@
 
 #include "robotics/chains.hpp"
 #include "support/message.hpp"
+#include "support/samples.hpp"
 
 #include <duet/duet.hpp>
 #include <duet/robotics.hpp>
@@ -46,7 +47,7 @@ TEST_CASE("find_start_configuration: finds a start for every path of a known joi
                                   duet_test::every_joint()};
   for (const chain& arm : arms) {
     CAPTURE(&arm - arms.data());
-    const int count = arm.size() == 6 ? 20 : 1;
+    const int count = arm.size() == 6 ? duet_test::sample_count(20) : 1;
     int solved = 0;
     for (int k = 0; k < count; ++k) {
       const vector from = configuration(arm, random), to = configuration(arm, random);

@@ -3,6 +3,7 @@
 #include "kinematics/loops.hpp"
 #include "support/message.hpp"
 #include "support/multiprecision.hpp"
+#include "support/samples.hpp"
 
 #include <duet/duet.hpp>
 #include <duet/robotics.hpp>
@@ -129,7 +130,7 @@ TEST_CASE("trace: a flat parallelogram continues as parallelogram or antiparalle
 
 TEST_CASE("trace: tangents at branch points of random foldable four-bars agree with 100 digits") {
   duet::random_source random(7);
-  for (int k = 0; k < 10; ++k) {
+  for (int k = 0; k < duet_test::sample_count(10); ++k) {
     CAPTURE(k);
     const std::array<double, 4> bar = change_point(random);
     closed_chain_mechanism mechanism = bars(bar);
@@ -239,7 +240,7 @@ TEST_CASE("trace: a kite and a five-bar have their branch points") {
 
 TEST_CASE("trace: nearly foldable four-bars have no branch point") {
   duet::random_source random(11);
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < duet_test::sample_count(12); ++k) {
     const std::array<double, 4> flat = change_point(random);
     for (const double miss : {1e-3, -1e-3, 1e-6, -1e-6, 1e-9, -1e-9}) {
       CAPTURE(k);

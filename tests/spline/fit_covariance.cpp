@@ -3,6 +3,7 @@
 #include "support/instantiated.hpp"
 #include "support/message.hpp"
 #include "support/random.hpp"
+#include "support/samples.hpp"
 #include "support/test.hpp"
 
 #include <duet/derivative/nonlinear_least_squares.hpp>
@@ -201,26 +202,29 @@ Eigen::Vector3d variance_ratios(const problem<Q>& p, const fit_options& options,
 }
 
 TEST_CASE("fit: covariances are those of the errors of 10 000 fits") {
+  const int count = duet_test::sample_count(10000);
+  const double tolerance = .03 * std::sqrt(10000. / count);
   const auto deviation = [](const Eigen::Vector3d& ratios) {
     return (ratios - Eigen::Vector3d::Ones()).cwiseAbs().maxCoeff();
   };
   CHECK(deviation(variance_ratios(
             problem<rotation>(),
-            {.covariances = {sample_covariance<rotation>()}, .keeps_covariance = true}, 0, 10000,
-            .8, duet::frame::spatial)) < .03);
+            {.covariances = {sample_covariance<rotation>()}, .keeps_covariance = true}, 0, count,
+            .8, duet::frame::spatial)) < tolerance);
   CHECK(deviation(variance_ratios(problem<pose_type>(),
-                                  {.characteristic_length = .2, .keeps_covariance = true}, 0, 10000,
-                                  1.37, duet::frame::body)) < .03);
+                                  {.characteristic_length = .2, .keeps_covariance = true}, 0, count,
+                                  1.37, duet::frame::body)) < tolerance);
 }
 
 TEST_CASE_TEMPLATE("fit: covariances of robust fits are those of the errors", Q, rotation,
                    pose_type) {
+  const int count = duet_test::sample_count(3000);
   const auto ratios = variance_ratios(
       problem<Q>(181),
-      {.characteristic_length = .2, .outlier_threshold = 0, .keeps_covariance = true}, .1, 3000,
+      {.characteristic_length = .2, .outlier_threshold = 0, .keeps_covariance = true}, .1, count,
       1.37, duet::frame::body);
   CAPTURE(ratios);
-  CHECK((ratios - Eigen::Vector3d::Ones()).cwiseAbs().maxCoeff() < .05);
+  CHECK((ratios - Eigen::Vector3d::Ones()).cwiseAbs().maxCoeff() < .05 * std::sqrt(3000. / count));
 }
 
 TEST_CASE("fit: plain least squares have no covariance without degrees of freedom") {

@@ -1,0 +1,15 @@
+// Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
+#pragma once
+
+#include <cstdlib>
+
+namespace duet_test {
+
+/// Number of inputs of a test labelled SAMPLED: a quarter of `all`, and all before a release, where
+/// the variable DUET_TEST_ALL_SAMPLES is set.
+inline int sample_count(int all) {
+  static const bool takes_all = std::getenv("DUET_TEST_ALL_SAMPLES") != nullptr;
+  return takes_all ? all : (all + 3) / 4;
+}
+
+} // namespace duet_test
