@@ -4,13 +4,13 @@
 # follows, with nothing but blank lines between, it must be what the program prints. Other blocks
 # are excerpts for the eye and are not compiled.
 #
-# A program that begins with duet/duet.hpp, as all do that can, is given it precompiled: nothing else
-# is, so that it must still include what else it needs. One that includes a header of duet/io or duet/robotics is
+# A program that begins with duet/duet.hpp, as all do that can, is given it precompiled, and the instantiations that
+# tests share: nothing else is, so that it must still include what else it needs. One that includes a header of duet/io or duet/robotics is
 # linked to the libraries, one that includes duet/interop/ceres to Ceres, without which it is left out; others must do
 # without.
 #
 # cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header> -Dlibraries=<files and flags>
-#   -Dceres=<flags> -Dfolder=<for programs> -P check.cmake
+#   -Dceres=<flags> -Dinstantiated=<header> -Doptimised=<object files> -Dfolder=<for programs> -P check.cmake
 
 cmake_minimum_required(VERSION 3.22)
 
@@ -49,20 +49,21 @@ while(TRUE)
   set(include "")
   set(link "")
   if(precompiled AND code MATCHES "^\n*#include <duet/duet.hpp>\n")
-    set(include -include ${precompiled})
+    set(include -include ${precompiled} -include ${instantiated})
+    set(link ${optimised})
   endif()
   if(code MATCHES "#include <duet/(io|robotics)[/.]")
-    set(link ${libraries})
+    list(APPEND link ${libraries})
   endif()
   if(code MATCHES "#include <duet/interop/ceres")
     if(NOT ceres)
       message("program ${count} is left out: there is no Ceres")
       continue()
     endif()
-    set(link ${ceres})
+    list(APPEND link ${ceres})
   endif()
   if(code MATCHES "judge_cost_function") # else it would run for longer than that takes
-    set(link ${link} -O1)
+    list(APPEND link -O1)
   endif()
   execute_process(
     COMMAND ${compile} -Wall -Wextra -Werror ${include} ${program}.cpp -o ${program} ${link}
