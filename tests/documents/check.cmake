@@ -4,10 +4,10 @@
 # follows, with nothing but blank lines between, it must be what the program prints. Other blocks
 # are excerpts for the eye and are not compiled.
 #
-# A program that begins with duet/duet.hpp, as all do that can, is given it precompiled, and the instantiations that
-# tests share: nothing else is, so that it must still include what else it needs. One that includes a header of duet/io or duet/robotics is
-# linked to the libraries, one that includes duet/interop/ceres to Ceres, without which it is left out; others must do
-# without.
+# A program that begins with duet/duet.hpp, as all do that can, is given this header precompiled and the instantiations
+# that tests share, but no other header: it must include what else it needs. One that includes a header of duet/io or
+# duet/robotics is linked to the libraries, one that includes duet/interop/ceres to Ceres, without which it is left out;
+# others must do without.
 #
 # cmake -Dcompile=<compiler and flags> -Ddocument=<file> -Dprecompiled=<header> -Dlibraries=<files and flags>
 #   -Dceres=<flags> -Dinstantiated=<header> -Doptimised=<object files> -Dfolder=<for programs> -P check.cmake

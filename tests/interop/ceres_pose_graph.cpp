@@ -18,9 +18,9 @@
 #include "support/samples.hpp"
 #include "support/test.hpp"
 
-// A pose graph of 10 000 poses on a sphere, before a release, as in the usual data sets: by cost
-// functions of duet on its manifold, by functors through `duet::cost_function`, and by Ceres' own
-// means.
+// A pose graph on a sphere, as in the usual data sets, of 10 000 poses before a release and of 2500
+// otherwise: by cost functions of duet on its manifold, by functors through `duet::cost_function`,
+// and by Ceres' own means.
 
 namespace test_interop_ceres_pose_graph {
 namespace {

@@ -201,7 +201,7 @@ Eigen::Vector3d variance_ratios(const problem<Q>& p, const fit_options& options,
   return estimated.cwiseQuotient(squares);
 }
 
-TEST_CASE("fit: covariances are those of the errors of 10 000 fits") {
+TEST_CASE("fit: covariances are those of the errors of many fits") {
   const int count = duet_test::sample_count(10000);
   const double tolerance = .03 * std::sqrt(10000. / count);
   const auto deviation = [](const Eigen::Vector3d& ratios) {
