@@ -101,7 +101,7 @@ struct nonlinear_least_squares_result {
 
 namespace detail {
 
-template <class F, class X>
+template <class F, class X, class R = double>
 class nonlinear_least_squares_problem;
 template <class Y>
 struct residual_blocks;
@@ -222,8 +222,12 @@ struct residual_blocks<Y> {
 };
 
 /// The problem in tangent coordinates at the estimate, for `levenberg_marquardt`.
-template <class F, class X>
+///
+/// \tparam R  scalar of the linear problem, so that its matrices are compiled only where it is used
+template <class F, class X, class R>
 class nonlinear_least_squares_problem {
+  using vector = Eigen::VectorX<R>;
+  using matrix = Eigen::MatrixX<R>;
   using tag = tag_for<void, F>;
   using set = parameters<X>;
   static constexpr int partials =
@@ -238,12 +242,12 @@ public:
       : f_(f), x_(start), options_(options), size_(set::size(start)),
         lower_(bound("lower", options.lower, -std::numeric_limits<double>::infinity())),
         upper_(bound("upper", options.upper, std::numeric_limits<double>::infinity())),
-        scale_(Eigen::VectorXd::Zero(size_)) {
+        scale_(vector::Zero(size_)) {
     require(size_ > 0, "duet: nonlinear_least_squares: there are no parameters");
     require(options.loss.scale > 0 && std::isfinite(options.loss.scale),
             "duet: nonlinear_least_squares: the scale of the loss is ", options.loss.scale,
             " (expected a finite positive number)");
-    const Eigen::VectorXd values = values_of(start);
+    const vector values = values_of(start);
     for (Eigen::Index i = 0; i < size_; ++i) {
       const bool has_bounds = lower_[i] > -std::numeric_limits<double>::infinity() ||
                               upper_[i] < std::numeric_limits<double>::infinity();
@@ -285,7 +289,7 @@ public:
 
   /// Residuals and Jacobian at the estimate, reduced to R of J = Q R and Qᵀr; returns the cost.
   [[nodiscard]] double linearise() {
-    Eigen::MatrixXd& jacobian = jacobian_;
+    matrix& jacobian = jacobian_;
     for (Eigen::Index first = 0; first < size_; first += partials) {
       const auto y = result_of_call(call(f_, set::at(x_, 0, [&](double value, Eigen::Index k) {
                                            return first <= k && k < first + partials
@@ -309,11 +313,11 @@ public:
       scale_[k] = std::max(.7 * scale_[k], jacobian.col(k).norm());
     }
     gradient_ = jacobian.transpose() * weighted_;
-    Eigen::MatrixXd both(jacobian.rows(), size_ + 1);
+    matrix both(jacobian.rows(), size_ + 1);
     both << jacobian, weighted_;
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(both);
+    const Eigen::HouseholderQR<matrix> qr(both);
     const Eigen::Index rows = std::min(size_, both.rows());
-    const Eigen::MatrixXd r = qr.matrixQR().topRows(rows).template triangularView<Eigen::Upper>();
+    const matrix r = qr.matrixQR().topRows(rows).template triangularView<Eigen::Upper>();
     r_ = r.leftCols(size_);
     right_ = r.col(size_);
     return cost;
@@ -321,16 +325,16 @@ public:
 
   /// The step that minimises |r + J δ|² + λ |D δ|² within the bounds.
   [[nodiscard]] bool solve(double damping) {
-    const Eigen::VectorXd values = values_of(x_);
+    const vector values = values_of(x_);
     const Eigen::Index rows = r_.rows(), more = damping > 0 ? size_ : 0;
     std::vector<bool> is_fixed(std::size_t(size_), false);
-    step_ = Eigen::VectorXd::Zero(size_);
+    step_ = vector::Zero(size_);
     for (Eigen::Index k = 0; k < size_; ++k) {
       is_fixed[std::size_t(k)] = scale_[k] == 0 || is_held(values, k);
     }
     for (bool is_within = false; !is_within;) {
-      Eigen::MatrixXd a = Eigen::MatrixXd::Zero(rows + more, size_);
-      Eigen::VectorXd b = Eigen::VectorXd::Zero(rows + more);
+      matrix a = matrix::Zero(rows + more, size_);
+      vector b = vector::Zero(rows + more);
       b.head(rows) = -right_;
       for (Eigen::Index k = 0; k < size_; ++k) {
         if (is_fixed[std::size_t(k)]) {
@@ -342,13 +346,13 @@ public:
           a(rows + k, k) = std::sqrt(damping);
         }
       }
-      const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(a);
-      Eigen::VectorXd y = qr.solve(b);
+      const Eigen::ColPivHouseholderQR<matrix> qr(a);
+      vector y = qr.solve(b);
       for (Eigen::Index k = 0; k < size_; ++k) {
         step_[k] = is_fixed[std::size_t(k)] ? step_[k] : y[k] / scale_[k];
       }
       if (damping > 0) {
-        const Eigen::VectorXd bend = acceleration(qr, is_fixed);
+        const vector bend = acceleration(qr, is_fixed);
         if (!(bend.norm() <= max_bend * y.norm())) {
           return false;
         }
@@ -375,7 +379,7 @@ public:
 
   /// Largest change of a parameter relative to its size, for rotations in radians.
   [[nodiscard]] double step_size() const {
-    const Eigen::VectorXd values = values_of(x_);
+    const vector values = values_of(x_);
     double result = 0;
     for (Eigen::Index k = 0; k < size_; ++k) {
       const double size = std::max(std::abs(values[k]), std::numeric_limits<double>::min());
@@ -407,25 +411,26 @@ private:
   /// Second-order correction a/2 of the step δ, J a = −r″ of the second derivative r″ along δ
   /// (geodesic acceleration, Transtrum and Sethna 2012), scaled as the columns; `qr` is that of the
   /// damped Jacobian.
-  [[nodiscard]] Eigen::VectorXd acceleration(const Eigen::ColPivHouseholderQR<Eigen::MatrixXd>& qr,
-                                             const std::vector<bool>& is_fixed) const {
+  [[nodiscard]] vector acceleration(const Eigen::ColPivHouseholderQR<matrix>& qr,
+                                    const std::vector<bool>& is_fixed) const {
     using along_step = taylor<double, 2, tag>;
     const auto y = result_of_call(call(f_, set::at(x_, 0, [&](double value, Eigen::Index k) {
                                          return value + step_[k] * along_step::variable(0.);
                                        })));
     using blocks = residual_blocks<std::decay_t<decltype(y)>>;
     constexpr int size = blocks::block_size;
-    Eigen::VectorXd second(residuals_.size());
+    vector second(residuals_.size());
     for (Eigen::Index i = 0; i < second.size(); ++i) {
       second[i] = part<tag>(blocks::component(y, i), 2);
     }
     for (Eigen::Index i = 0; i < second.size() / size; ++i) {
       if (!whitening_.empty()) {
-        second.segment<size>(i * size) = (whitening(i) * second.segment<size>(i * size)).eval();
+        second.template segment<size>(i * size) =
+            (whitening(i) * second.template segment<size>(i * size)).eval();
       }
-      second.segment<size>(i * size) *= roots_[i];
+      second.template segment<size>(i * size) *= roots_[i];
     }
-    Eigen::VectorXd right = -(jacobian_.transpose() * second) / 2;
+    vector right = -(jacobian_.transpose() * second) / 2;
     for (Eigen::Index k = 0; k < size_; ++k) {
       right[k] = is_fixed[std::size_t(k)] ? 0 : right[k] / scale_[k];
     }
@@ -433,8 +438,8 @@ private:
   }
 
   /// Values of scalars and components of vectors; NaN for rotations and poses.
-  [[nodiscard]] Eigen::VectorXd values_of(const X& x) const {
-    Eigen::VectorXd result(size_);
+  [[nodiscard]] vector values_of(const X& x) const {
+    vector result(size_);
     set::values(x, result, 0);
     return result;
   }
@@ -443,7 +448,7 @@ private:
     return result.empty() ? "the parameter" : result[0] == ' ' ? result.substr(1) : result;
   }
   /// True if parameter k is at a bound beyond which the cost decreases.
-  [[nodiscard]] bool is_held(const Eigen::VectorXd& values, Eigen::Index k) const {
+  [[nodiscard]] bool is_held(const vector& values, Eigen::Index k) const {
     return (values[k] <= lower_[k] && gradient_[k] > 0) ||
            (values[k] >= upper_[k] && gradient_[k] < 0);
   }
@@ -456,8 +461,8 @@ private:
     if (residuals_.size() == 0) {
       require(count > 0, "duet: nonlinear_least_squares: the function returns no residuals");
       require_weights("nonlinear_least_squares", options_.weights, std::size_t(count), "residuals");
-      whitening_ = inverse_roots<Eigen::MatrixXd>("nonlinear_least_squares", options_.covariances,
-                                                  std::size_t(count), block_size, "residuals");
+      whitening_ = inverse_roots<matrix>("nonlinear_least_squares", options_.covariances,
+                                         std::size_t(count), block_size, "residuals");
       residuals_.resize(count * block_size);
     }
     require(count * block_size == residuals_.size(),
@@ -471,14 +476,14 @@ private:
   /// Whitens residuals, and the Jacobian if there is one, and scales both by the loss; returns the
   /// cost. (Triggs et al. 2000: curvature along a residual is ρ″, not less than a tenth of ρ′/r, so
   /// that the matrix stays positive definite.)
-  [[nodiscard]] double weigh(Eigen::MatrixXd* jacobian) {
+  [[nodiscard]] double weigh(matrix* jacobian) {
     constexpr int size = block_size;
     const Eigen::Index count = residuals_.size() / size;
     weighted_.resize(count * size);
     roots_.resize(count);
     double cost = 0;
     for (Eigen::Index i = 0; i < count; ++i) {
-      Eigen::Matrix<double, size, 1> r = residuals_.segment<size>(i * size);
+      Eigen::Matrix<R, size, 1> r = residuals_.template segment<size>(i * size);
       if (!whitening_.empty()) {
         r = (whitening(i) * r).eval();
       }
@@ -489,27 +494,27 @@ private:
       if (jacobian == nullptr) {
         continue;
       }
-      auto rows = jacobian->middleRows<size>(i * size);
+      auto rows = jacobian->template middleRows<size>(i * size);
       if (!whitening_.empty()) {
         rows = (whitening(i) * rows).eval();
       }
       const double root = roots_[i] = std::sqrt(weight * loss.weight);
       rows *= root;
-      weighted_.segment<size>(i * size) = root * r;
+      weighted_.template segment<size>(i * size) = root * r;
       if (loss.weight > 0 && loss.curvature != loss.weight) {
         const double ratio = std::sqrt(std::max(.1, loss.curvature / loss.weight));
-        const Eigen::Matrix<double, size, 1> u = r / length;
+        const Eigen::Matrix<R, size, 1> u = r / length;
         rows += (ratio - 1) * u * (u.transpose() * rows).eval();
-        weighted_.segment<size>(i * size) /= ratio;
+        weighted_.template segment<size>(i * size) /= ratio;
         if (is_final_) {
-          const Eigen::VectorXd along = rows.transpose() * u;
+          const vector along = rows.transpose() * u;
           curvature_change_ +=
               (loss.curvature / (loss.weight * ratio * ratio) - 1) * along * along.transpose();
         }
       }
       if (is_final_) {
         gradient_bias_.add(length, size, weight, loss.weight, loss.curvature);
-        const Eigen::VectorXd gradient = rows.transpose() * weighted_.segment<size>(i * size);
+        const vector gradient = rows.transpose() * weighted_.template segment<size>(i * size);
         gradient_squares_ += gradient * gradient.transpose();
       }
     }
@@ -519,7 +524,7 @@ private:
   /// Covariance, degrees of freedom and undetermined parameters at the estimate.
   void set_covariance(nonlinear_least_squares_result<X>& result) const {
     const double infinity = std::numeric_limits<double>::infinity();
-    const Eigen::VectorXd values = values_of(x_);
+    const vector values = values_of(x_);
     std::vector<Eigen::Index> free; // columns of R
     for (Eigen::Index k = 0; k < size_; ++k) {
       if (!is_held(values, k)) {
@@ -527,12 +532,12 @@ private:
       }
     }
     const Eigen::Index n = Eigen::Index(free.size());
-    Eigen::VectorXd units(n);
+    vector units(n);
     for (Eigen::Index k = 0; k < n; ++k) {
       const double scale = r_.col(free[std::size_t(k)]).norm();
       units[k] = scale > 0 ? 1 / scale : 1;
     }
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(r_.rows(), n);
+    Eigen::ColPivHouseholderQR<matrix> qr(r_.rows(), n);
     qr.setThreshold(1e3 * double(n) * std::numeric_limits<double>::epsilon());
     qr.compute(r_(Eigen::all, free) * units.asDiagonal());
     const Eigen::Index rank = n > 0 ? qr.rank() : 0;
@@ -540,7 +545,7 @@ private:
     const auto top =
         qr.matrixQR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>();
     // Columns of the null space are [−R₁⁻¹ R₂; I].
-    const Eigen::MatrixXd dependence = top.solve(qr.matrixQR().topRightCorner(rank, n - rank));
+    const matrix dependence = top.solve(qr.matrixQR().topRightCorner(rank, n - rank));
     std::vector<bool> is_undetermined(std::size_t(n), false);
     for (Eigen::Index k = 0; k < n; ++k) {
       is_undetermined[std::size_t(position[k])] =
@@ -550,10 +555,10 @@ private:
     for (Eigen::Index k = 0; k < rank; ++k) {
       kept.push_back(free[std::size_t(position[k])]);
     }
-    const Eigen::VectorXd scale = units(position.head(rank));
-    const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(rank, rank);
+    const vector scale = units(position.head(rank));
+    const matrix identity = matrix::Identity(rank, rank);
     const double components = double(residuals_.size()), freedom = components - double(rank);
-    Eigen::MatrixXd inverse;
+    matrix inverse;
     if (options_.loss.form == loss_function::kind::squares) {
       inverse = top.solve(identity);
       inverse *= inverse.transpose().eval(); // (RᵀR)⁻¹
@@ -561,16 +566,16 @@ private:
                  : freedom > 0       ? 2 * result.cost / freedom
                                      : std::numeric_limits<double>::quiet_NaN();
     } else if (rank > 0) { // sandwich H⁻¹ (Σ gᵢgᵢᵀ) H⁻¹ of the gradients gᵢ of single losses
-      const auto scaled = [&](const Eigen::MatrixXd& m) -> Eigen::MatrixXd {
+      const auto scaled = [&](const matrix& m) -> matrix {
         return scale.asDiagonal() * m(kept, kept) * scale.asDiagonal();
       };
-      const Eigen::MatrixXd h = scaled(r_.transpose() * r_ + curvature_change_);
-      inverse = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(h).solve(identity);
+      const matrix h = scaled(r_.transpose() * r_ + curvature_change_);
+      inverse = Eigen::ColPivHouseholderQR<matrix>(h).solve(identity);
       inverse = inverse * scaled(gradient_squares_) * inverse.transpose();
       inverse *= gradient_bias_.factor(double(rank));
     }
     result.degrees_of_freedom = int(freedom);
-    result.covariance = Eigen::MatrixXd::Zero(size_, size_);
+    result.covariance = matrix::Zero(size_, size_);
     result.covariance(kept, kept) = scale.asDiagonal() * inverse * scale.asDiagonal();
     for (Eigen::Index k = 0; k < n; ++k) {
       if (is_undetermined[std::size_t(k)]) {
@@ -583,39 +588,37 @@ private:
     }
   }
 
-  [[nodiscard]] const Eigen::MatrixXd& whitening(Eigen::Index i) const {
+  [[nodiscard]] const matrix& whitening(Eigen::Index i) const {
     return whitening_[whitening_.size() > 1 ? std::size_t(i) : 0];
   }
 
-  [[nodiscard]] Eigen::VectorXd bound(const char* name, const Eigen::VectorXd& given,
-                                      double none) const {
+  [[nodiscard]] vector bound(const char* name, const vector& given, double none) const {
     require(given.size() == 0 || given.size() == size_, "duet: nonlinear_least_squares: ", name,
             " has ", given.size(), " entries for ", size_, " parameters");
     for (Eigen::Index i = 0; i < given.size(); ++i) {
       require(!std::isnan(given[i]), "duet: nonlinear_least_squares: ", name, "[", i, "] is ",
               given[i]);
     }
-    return given.size() > 0 ? given : Eigen::VectorXd(Eigen::VectorXd::Constant(size_, none));
+    return given.size() > 0 ? given : vector(vector::Constant(size_, none));
   }
 
   const F& f_;
   X x_, next_ = x_;
   options_type options_;
   Eigen::Index size_;
-  std::vector<Eigen::MatrixXd> whitening_; ///< L⁻¹ of the covariances L Lᵀ
-  Eigen::VectorXd lower_, upper_;
-  Eigen::VectorXd residuals_, weighted_; ///< components of f; whitened and scaled by the loss
-  Eigen::VectorXd roots_;                ///< √(wᵢ ρ′/r)
-  Eigen::MatrixXd jacobian_;             ///< of `weighted_`
-  Eigen::MatrixXd r_;                    ///< R of the QR decomposition of the Jacobian
-  Eigen::VectorXd right_, gradient_;     ///< Qᵀr, Jᵀr
-  Eigen::VectorXd scale_;                ///< largest norms of columns of the Jacobian so far
-  Eigen::VectorXd step_;
+  std::vector<matrix> whitening_; ///< L⁻¹ of the covariances L Lᵀ
+  vector lower_, upper_;
+  vector residuals_, weighted_; ///< components of f; whitened and scaled by the loss
+  vector roots_;                ///< √(wᵢ ρ′/r)
+  matrix jacobian_;             ///< of `weighted_`
+  matrix r_;                    ///< R of the QR decomposition of the Jacobian
+  vector right_, gradient_;     ///< Qᵀr, Jᵀr
+  vector scale_;                ///< largest norms of columns of the Jacobian so far
+  vector step_;
   bool is_final_ = false; ///< true to compute these, for the covariance
   gradient_bias<double> gradient_bias_;
   /// Σ gᵢgᵢᵀ of the gradients of single losses; H − JᵀJ, H with the curvature of the loss
-  Eigen::MatrixXd gradient_squares_ = Eigen::MatrixXd::Zero(size_, size_),
-                  curvature_change_ = gradient_squares_;
+  matrix gradient_squares_ = matrix::Zero(size_, size_), curvature_change_ = gradient_squares_;
 };
 
 } // namespace detail
