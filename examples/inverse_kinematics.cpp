@@ -11,6 +11,7 @@
 #include "support/progress_line.hpp"
 
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/duet.hpp>
 #include <duet/robotics/inverse_kinematics.hpp>
 

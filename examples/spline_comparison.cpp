@@ -10,6 +10,7 @@
 #include "support/program.hpp"
 #include <duet/core/text/csv.hpp>
 
+#include <duet/core/text/file.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/exponential.hpp>

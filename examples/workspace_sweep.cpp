@@ -15,6 +15,7 @@
 
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/kinematics/sweep.hpp>
 
 #include <Eigen/Core>

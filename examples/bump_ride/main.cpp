@@ -13,6 +13,7 @@
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
 
 #include <cmath>

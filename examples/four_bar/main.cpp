@@ -12,6 +12,7 @@
 #include "../support/program.hpp"
 
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/derivative.hpp>
 #include <duet/kinematics/constrained_mechanism.hpp>

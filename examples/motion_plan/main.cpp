@@ -14,6 +14,7 @@
 #include "../support/program.hpp"
 #include "../support/progress_line.hpp"
 
+#include <duet/core/text/file.hpp>
 #include <duet/robotics/plan_screw_motion.hpp>
 #include <duet/robotics/time_parametrised.hpp>
 

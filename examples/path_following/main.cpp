@@ -10,6 +10,7 @@
 #include "tables.hpp"
 
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/robotics/follow_path.hpp>
 
 #include <algorithm>

@@ -11,6 +11,7 @@
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 
 #include <cstdio>
 #include <filesystem>

@@ -6,6 +6,7 @@
 #include "toleranced_carrier.hpp"
 
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 #include <duet/core/text/number_text.hpp>
 
 #include <algorithm>

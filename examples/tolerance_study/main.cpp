@@ -18,6 +18,7 @@
 
 #include <duet/core/parallel_for.hpp>
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 
 #include <cmath>
 #include <cstddef>

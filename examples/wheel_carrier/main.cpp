@@ -20,6 +20,7 @@
 #include "../support/gnuplot.hpp"
 #include "../support/program.hpp"
 #include <duet/core/text/csv.hpp>
+#include <duet/core/text/file.hpp>
 
 #include <cmath>
 #include <cstdio>

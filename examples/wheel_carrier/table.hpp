@@ -3,7 +3,7 @@
 
 #include "equal_arcs.hpp"
 
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/io/table_file.hpp>
 #include <duet/spline/orientations.hpp>
 

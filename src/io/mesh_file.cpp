@@ -3,7 +3,7 @@
 #include <duet/core/compiler/types.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/io/mesh_file.hpp>
 

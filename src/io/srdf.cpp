@@ -1,6 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/io/srdf.hpp>
 
 #include "xml.hpp"

@@ -3,7 +3,7 @@
 #include "table_rows.hpp"
 
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/quaternion/norm.hpp>
 #include <duet/quaternion/rotation.hpp>

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/io/urdf.hpp>

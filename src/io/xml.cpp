@@ -4,7 +4,7 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/text/csv.hpp>
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 
 #if __has_include(<expat.h>) && !defined(DUET_WITHOUT_EXPAT)
 #define DUET_IO_HAS_EXPAT

@@ -2,7 +2,7 @@
 
 // A program that links duet::io: it reads a robot description, and catches errors by their types.
 
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/io/loop_file.hpp>
 #include <duet/io/urdf.hpp>
 

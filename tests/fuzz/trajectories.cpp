@@ -2,7 +2,7 @@
 
 #include "fuzz/seeded_loop.hpp"
 
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/dual_quaternion/pose_coordinates.hpp>
 #include <duet/io/recording.hpp>
 

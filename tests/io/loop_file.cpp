@@ -3,6 +3,7 @@
 #include "kinematics/loops.hpp"
 #include "support/message.hpp"
 
+#include <duet/core/text/file.hpp>
 #include <duet/duet.hpp>
 #include <duet/io/loop_file.hpp>
 

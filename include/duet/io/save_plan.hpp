@@ -1,7 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 
 #include <string>

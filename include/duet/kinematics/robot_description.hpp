@@ -3,7 +3,7 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/serial_chain.hpp>

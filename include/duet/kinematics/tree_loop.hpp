@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/quaternion/quaternion.hpp>

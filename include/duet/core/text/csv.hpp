@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/text/file.hpp>
+#include <duet/core/text/file_error.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
 

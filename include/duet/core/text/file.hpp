@@ -2,11 +2,10 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/printable.hpp>
+#include <duet/core/text/file_error.hpp>
 
 #include <cerrno>
 #include <chrono>
-#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -18,15 +17,6 @@
 /// Files written as a whole or not at all.
 
 namespace duet {
-
-/// A file that cannot be used: `duet: path:line: reason`, on one line whatever it quotes.
-class file_error : public invalid_input {
-public:
-  file_error(const std::string& path, const std::string& reason)
-      : invalid_input(printable("duet: " + path + ": " + reason)) {}
-  file_error(const std::string& path, std::size_t line, const std::string& reason)
-      : file_error(path + ":" + std::to_string(line), reason) {}
-};
 
 namespace detail {
 
