@@ -280,12 +280,36 @@ struct joint_cubic {
   Eigen::VectorXd c0, c1, c2, c3;
   double length;
 
-  [[nodiscard]] Eigen::VectorXd value(double s) const { return c0 + s * (c1 + s * (c2 + s * c3)); }
-  [[nodiscard]] Eigen::VectorXd first(double s) const { return c1 + s * (2 * c2 + 3 * s * c3); }
-  [[nodiscard]] Eigen::VectorXd second(double s) const { return 2 * c2 + 6 * s * c3; }
+  // Coordinates are computed one by one: expressions of vectors would cost every program that
+  // includes this header more than its parsing.
+  [[nodiscard]] double value(Eigen::Index i, double s) const {
+    return c0[i] + s * (c1[i] + s * (c2[i] + s * c3[i]));
+  }
+  [[nodiscard]] double first(Eigen::Index i, double s) const {
+    return c1[i] + s * (2 * c2[i] + 3 * s * c3[i]);
+  }
+  [[nodiscard]] double second(Eigen::Index i, double s) const { return 2 * c2[i] + 6 * s * c3[i]; }
+  [[nodiscard]] Eigen::VectorXd value(double s) const {
+    return each([&](Eigen::Index i) { return value(i, s); });
+  }
+  [[nodiscard]] Eigen::VectorXd first(double s) const {
+    return each([&](Eigen::Index i) { return first(i, s); });
+  }
+  [[nodiscard]] Eigen::VectorXd second(double s) const {
+    return each([&](Eigen::Index i) { return second(i, s); });
+  }
   /// This cubic from s on, as a cubic with the parameter counted from there.
   [[nodiscard]] joint_cubic part(double s, double its_length) const {
-    return {value(s), first(s), Eigen::VectorXd(second(s) / 2), c3, its_length};
+    return {value(s), first(s), each([&](Eigen::Index i) { return second(i, s) / 2; }), c3,
+            its_length};
+  }
+  /// The numbers f(i) of all coordinates.
+  [[nodiscard]] Eigen::VectorXd each(const auto& f) const {
+    Eigen::VectorXd result(c0.size());
+    for (Eigen::Index i = 0; i < result.size(); ++i) {
+      result[i] = f(i);
+    }
+    return result;
   }
 };
 
@@ -358,20 +382,28 @@ public:
   void operator()(double t, joint_state<Eigen::VectorXd>& state) const {
     const auto& [scaling, path] = piece_at(t);
     const auto [s, speed, acceleration, jerk] = scaling.at(t, path.length);
-    const auto& [c0, c1, c2, c3, length] = path;
-    state.value = c0 + s * (c1 + s * (c2 + s * c3));
-    state.velocity = c1 + s * (2 * c2 + 3 * s * c3);
-    state.acceleration = acceleration * state.velocity + speed * speed * (2 * c2 + 6 * s * c3);
-    state.velocity *= speed;
+    const Eigen::Index size = path.c0.size();
+    state.value.resize(size);
+    state.velocity.resize(size);
+    state.acceleration.resize(size);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      const double slope = path.first(i, s);
+      state.value[i] = path.value(i, s);
+      state.velocity[i] = slope * speed;
+      state.acceleration[i] = acceleration * slope + speed * speed * path.second(i, s);
+    }
   }
   /// Jerk at time t, the derivative of the acceleration; at a jump, one of both values.
   ///
   /// \throws invalid_input as `operator()`
   [[nodiscard]] Eigen::VectorXd jerk(double t) const {
-    const auto& [scaling, path] = piece_at(t);
-    const auto [s, speed, acceleration, jerk] = scaling.at(t, path.length);
-    return jerk * path.first(s) + 3 * speed * acceleration * path.second(s) +
-           speed * speed * speed * 6 * path.c3;
+    const detail::timed_piece& piece = piece_at(t);
+    const detail::joint_cubic& path = piece.path;
+    const detail::path_state at = piece.scaling.at(t, path.length);
+    return path.each([&](Eigen::Index i) {
+      return at.jerk * path.first(i, at.s) + 3 * at.speed * at.acceleration * path.second(i, at.s) +
+             at.speed * at.speed * at.speed * 6 * path.c3[i];
+    });
   }
 
 private:
