@@ -122,6 +122,8 @@ TEST_CASE("LaTeX: powers, numbers and signs") {
   CHECK(to_latex(pow(x, -1)) == R"(\frac{1}{x})");
   CHECK(to_latex(pow(x * y, 0.5)) == R"(\left(x y\right)^{0.5})");
   CHECK(to_latex(pow(sin(x), c<2>)) == R"(\sin^{2}(x))");
+  CHECK(to_latex(pow(log2(x), c<2>) + exp2(x / y)) == R"(\log_{2}^{2}(x) + 2^{x/y})");
+  CHECK(to_latex(pow(exp2(x), c<2>) * log10(x)) == R"(\left(2^{x}\right)^{2} \log_{10}(x))");
   CHECK(to_latex(pow(lgamma(x), c<2>)) == R"(\left(\log\Gamma(x)\right)^{2})");
   CHECK(to_latex(pow(exp(x), c<2>) * exp(x)) == R"(e^{3 x})");
   CHECK(to_latex(sqrt(x) * x * sqrt(y)) == R"(x^{3/2} \sqrt{y})");

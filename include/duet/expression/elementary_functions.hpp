@@ -44,7 +44,7 @@ struct log : detail::function<log, duet::rule::log> {
   static constexpr auto symbolic_derivative(auto x) { return whole<1> / x; }
 };
 struct exp2 : detail::function<exp2, duet::rule::exp2> {
-  static constexpr detail::function_name name = {"exp2", ""};
+  static constexpr detail::function_name name = {"exp2", "2^{#}"};
   static constexpr bool slopes_take_value = true;
   static constexpr auto symbolic_derivative(auto x) {
     return apply<log>(whole<2>) * apply<exp2>(x);
@@ -55,13 +55,13 @@ struct expm1 : detail::function<expm1, duet::rule::expm1> {
   static constexpr auto differential(auto x, auto dx) { return apply<exp>(x) * dx; }
 };
 struct log2 : detail::function<log2, duet::rule::log2> {
-  static constexpr detail::function_name name = {"log2", ""};
+  static constexpr detail::function_name name = {"log2", "\\log_{2}"};
   static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / (apply<log>(whole<2>) * x);
   }
 };
 struct log10 : detail::function<log10, duet::rule::log10> {
-  static constexpr detail::function_name name = {"log10", ""};
+  static constexpr detail::function_name name = {"log10", "\\log_{10}"};
   static constexpr auto symbolic_derivative(auto x) {
     return whole<1> / (apply<log>(whole<10>) * x);
   }

@@ -3,9 +3,15 @@
 
 #include <duet/core/errors.hpp>
 #include <duet/core/text/number_text.hpp>
+#include <duet/expression/arithmetic.hpp>
+#include <duet/expression/condition.hpp>
+#include <duet/expression/elementary_functions.hpp>
+#include <duet/expression/functions_of_many.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/functions_of_one.hpp>
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/graph_text.hpp>
+#include <duet/expression/special_functions.hpp>
 #include <duet/expression/text.hpp>
 #include <duet/expression/tree/latex_arithmetic.hpp>
 #include <duet/expression/tree/latex_text.hpp>
@@ -14,10 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <iterator>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 /// \file
@@ -26,33 +29,6 @@
 namespace duet::expression {
 
 namespace detail {
-
-/// The command of a function in LaTeX, or its form with # for the argument; empty for its name.
-[[nodiscard]] inline const char* latex_command(operation what) {
-  using enum operation;
-  static constexpr std::pair<operation, const char*> commands[] = {
-      {log, "\\log"},
-      {log2, "\\log_{2}"},
-      {log10, "\\log_{10}"},
-      {exp2, "2^{#}"},
-      {sin, "\\sin"},
-      {cos, "\\cos"},
-      {tan, "\\tan"},
-      {asin, "\\arcsin"},
-      {acos, "\\arccos"},
-      {atan, "\\arctan"},
-      {sinh, "\\sinh"},
-      {cosh, "\\cosh"},
-      {tanh, "\\tanh"},
-      {tgamma, "\\Gamma"},
-      {lgamma, "\\log\\Gamma"},
-      {abs, "\\left|#\\right|"},
-      {floor, "\\left\\lfloor #\\right\\rfloor"},
-      {ceil, "\\left\\lceil #\\right\\rceil"}};
-  const auto* const found = std::find_if(std::begin(commands), std::end(commands),
-                                         [&](const auto& each) { return each.first == what; });
-  return found == std::end(commands) ? "" : found->second;
-}
 
 /// A variable, with the index of a component behind it.
 [[nodiscard]] inline printed latex_variable(const std::string& name) {
@@ -71,73 +47,73 @@ namespace detail {
   return x;
 }
 
-/// An operation of a graph in LaTeX.
+/// An operation of a graph in LaTeX, as a typed formula writes it.
 [[nodiscard]] inline printed latex_node(const graph& g, const graph_node& n,
                                         const std::array<printed, 3>& x) {
   using enum operation;
   const auto style = notation::latex;
-  const auto infix = [&](const char* sign, precedence beside) -> printed {
-    return {x[0].inside(beside) + sign + x[1].inside(beside), precedence::condition, style};
+  const auto infix = [&](const char* sign) -> printed {
+    return {x[0].inside(precedence::sum) + sign + x[1].inside(precedence::sum),
+            precedence::condition, style};
   };
+  if (n.what == acos && g.is_number(n.operands[0], -1)) {
+    return {"\\pi", precedence::atom, style, factor_order::pi};
+  }
+#define DUET_CASE(name)                                                                            \
+  case operation::name:                                                                            \
+    return printed_operation<op::name>(style, x[0]);
   switch (n.what) {
+    DUET_EACH_FUNCTION(DUET_CASE)
+#undef DUET_CASE
   case number:
     return printed_number(style, duet::to_text(n.number));
   case variable:
     return latex_variable(g.variable_name(n.index));
   case negative:
-    return latex_product_of({"-1", precedence::negative_number, style, factor_order::number}, x[0]);
+    return op::negative::print(style, x[0]);
   case sum:
-    return latex_sum_of(x[0], 1, x[1]);
+    return op::sum::print(style, x[0], x[1]);
   case difference:
-    return latex_sum_of(x[0], -1, x[1]);
+    return op::difference::print(style, x[0], x[1]);
   case product:
-    return latex_product_of(x[0], x[1]);
+    return op::product::print(style, x[0], x[1]);
   case quotient:
-    return latex_product_of(x[0], x[1], -1);
+    return op::quotient::print(style, x[0], x[1]);
   case power:
     return latex_power(x[0], printed_number(style, std::to_string(n.index)));
   case pow:
     return latex_power(x[0], x[1]);
-  case sqrt:
-    return latex_root(x[0]);
-  case exp:
-    return latex_exponential(x[0]);
-  case acos:
-    if (g.is_number(n.operands[0], -1)) {
-      return {"\\pi", precedence::atom, style, factor_order::pi};
-    }
-    break;
-  case hypot: {
-    const printed two = printed_number(style, "2");
-    return latex_root(latex_sum_of(latex_power(x[0], two), 1, latex_power(x[1], two)));
-  }
+  case hypot:
+    return op::hypot::print(style, x[0], x[1]);
   case stumpff: {
     const std::string letter = "c_{" + std::to_string(n.index) + "}";
     return printed_call(style, {"", letter.c_str()}, {x[0]});
   }
+  case floor:
+    return printed_call(style, {"", "\\left\\lfloor #\\right\\rfloor"}, {x[0]});
+  case ceil:
+    return printed_call(style, {"", "\\left\\lceil #\\right\\rceil"}, {x[0]});
   case fma:
     return latex_sum_of(latex_product_of(x[0], x[1]), 1, x[2]);
   case less:
-    return infix(" < ", precedence::sum);
+    return op::less<false>::print(style, x[0], x[1]);
   case less_equal:
-    return infix(" \\le ", precedence::sum);
+    return op::less<true>::print(style, x[0], x[1]);
   case equal:
-    return infix(" = ", precedence::sum);
+    return infix(" = ");
   case both:
-    return infix(" \\land ", precedence::sum);
+    return infix(" \\land ");
   case either:
-    return infix(" \\lor ", precedence::sum);
+    return infix(" \\lor ");
   case no:
     return {"\\lnot " + x[0].inside(precedence::atom), precedence::product, style};
   case select:
-    return {"\\begin{cases}" + x[1].text + " & " + x[0].text + "\\\\" + x[2].text +
-                " & \\text{else}\\end{cases}",
-            precedence::atom, style};
+    return op::select::print(style, x[0], x[1], x[2]);
   default:
     break;
   }
   const std::string name(function_name_of(n.what));
-  const function_name written = {name.c_str(), latex_command(n.what)};
+  const function_name written = {name.c_str(), ""};
   return operand_count(n.what) == 1 ? printed_call(style, written, {x[0]})
                                     : printed_call(style, written, {x[0], x[1]});
 }
