@@ -46,7 +46,7 @@ public:
   [[nodiscard]] std::string function(const std::string& name) const {
     return is_cpp() ? "std::" + name : name + (is_single_ ? "f" : "");
   }
-  [[nodiscard]] bound_text call(const graph_node& n, const std::array<bound_text, 3>& x) const {
+  [[nodiscard]] printed call(const graph_node& n, const std::array<printed, 3>& x) const {
     const std::string name(function_name_of(n.what));
     return call_of(n.what == operation::stumpff     ? helper(name + std::to_string(n.index))
                    : n.what == operation::arc_ratio ? helper(name)
@@ -54,13 +54,12 @@ public:
                                                     : function(name),
                    n, x);
   }
-  [[nodiscard]] bound_text choice(const std::array<bound_text, 3>& x) const {
-    return {x[0].inside(binding::atom) + " ? " + x[1].inside(binding::sum) + " : " +
-                x[2].inside(binding::sum),
-            binding::condition};
+  [[nodiscard]] printed choice(const std::array<printed, 3>& x) const {
+    return {x[0].inside(precedence::atom) + " ? " + x[1].inside(precedence::sum) + " : " +
+                x[2].inside(precedence::sum),
+            precedence::condition};
   }
-  [[nodiscard]] bound_text condition(const graph_node& n,
-                                     const std::array<bound_text, 3>& x) const {
+  [[nodiscard]] printed condition(const graph_node& n, const std::array<printed, 3>& x) const {
     return infix_condition(n, x, "!", is_cpp() ? "std::" : "");
   }
   [[nodiscard]] std::string assignment(const std::string& name, const std::string& value,

@@ -187,53 +187,15 @@ private:
   return result;
 }
 
-/// A function called with the operands of a node.
-[[nodiscard]] inline bound_text call_of(const std::string& function, const graph_node& n,
-                                        const std::array<bound_text, 3>& x) {
-  std::string text = function + "(" + x[0].text;
-  for (int k = 1; k < operand_count(n.what); ++k) {
-    text += ", " + x[std::size_t(k)].text;
-  }
-  return {text + ")"};
-}
-
-/// A condition with the signs that C and MATLAB share.
-///
-/// \param prefix  of functions
-[[nodiscard]] inline bound_text infix_condition(const graph_node& n,
-                                                const std::array<bound_text, 3>& x,
-                                                const std::string& negation,
-                                                const std::string& prefix) {
-  const auto infix = [&](const char* sign, binding inner) -> bound_text {
-    return {x[0].inside(inner) + sign + x[1].inside(inner), binding::condition};
-  };
-  switch (n.what) {
-  case operation::less:
-    return infix(" < ", binding::sum);
-  case operation::less_equal:
-    return infix(" <= ", binding::sum);
-  case operation::equal:
-    return infix(" == ", binding::sum);
-  case operation::both:
-    return infix(" && ", binding::atom);
-  case operation::either:
-    return infix(" || ", binding::atom);
-  case operation::no:
-    return {negation + x[0].inside(binding::atom)};
-  default:
-    return {prefix + std::string(function_name_of(n.what)) + "(" + x[0].text + ")"};
-  }
-}
-
 /// A language: how numbers, functions, conditions, choices and assignments are written, where
 /// operands come as texts.
 template <class L>
 concept CodeLanguage = requires(const L& language, const graph_node& n,
-                                const std::array<bound_text, 3>& x) {
+                                const std::array<printed, 3>& x) {
   { language.number(1.0) } -> std::same_as<std::string>;
-  { language.call(n, x) } -> std::same_as<bound_text>;
-  { language.condition(n, x) } -> std::same_as<bound_text>;
-  { language.choice(x) } -> std::same_as<bound_text>;
+  { language.call(n, x) } -> std::same_as<printed>;
+  { language.condition(n, x) } -> std::same_as<printed>;
+  { language.choice(x) } -> std::same_as<printed>;
   { language.assignment(std::string(), std::string(), true) } -> std::same_as<std::string>;
 };
 
@@ -262,37 +224,27 @@ template <CodeLanguage Language>
 [[nodiscard]] code_body write_body(const formula_graph& f, const std::vector<std::string>& inputs,
                                    const std::string& prefix, const Language& language) {
   const graph& g = f.operations();
-  const std::vector<bool> needed = f.needed();
-  std::vector<int> uses(needed.size(), 0);
-  for (int i = 0; i < g.size(); ++i) {
-    for (int k = 0; needed[std::size_t(i)] && k < operand_count(g[i].what); ++k) {
-      ++uses[std::size_t(g[i].operands[std::size_t(k)])];
-    }
-  }
-  for (const named_value& y : f.outputs()) {
-    for (const int node : y.nodes) {
-      ++uses[std::size_t(node)];
-    }
-  }
+  const std::vector<int> uses = f.uses();
   code_body body;
-  std::vector<bound_text> texts(needed.size());
+  std::vector<printed> texts(uses.size());
   std::map<int, std::array<std::string, 2>> pairs; // sine and cosine by the node of the angle
   const auto new_name = [&] { return prefix + std::to_string(++body.temporaries); };
   for (int i = 0; i < g.size(); ++i) {
     const graph_node& n = g[i];
-    bound_text& text = texts[std::size_t(i)];
-    if (!needed[std::size_t(i)]) {
+    printed& text = texts[std::size_t(i)];
+    if (uses[std::size_t(i)] == 0) {
       continue;
     }
     if (n.what == operation::number) {
-      text = {language.number(n.number), n.number < 0 ? binding::negative : binding::atom};
+      text = {language.number(n.number),
+              n.number < 0 ? precedence::negative_number : precedence::atom};
       continue;
     }
     if (n.what == operation::variable) {
       text = {inputs[std::size_t(n.index)]};
       continue;
     }
-    std::array<bound_text, 3> x;
+    std::array<printed, 3> x;
     for (int k = 0; k < operand_count(n.what); ++k) {
       x[std::size_t(k)] = texts[std::size_t(n.operands[std::size_t(k)])];
     }

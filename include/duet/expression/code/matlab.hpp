@@ -35,7 +35,7 @@ public:
     }
     return number_literal(x);
   }
-  [[nodiscard]] bound_text call(const graph_node& n, const std::array<bound_text, 3>& x) const {
+  [[nodiscard]] printed call(const graph_node& n, const std::array<printed, 3>& x) const {
     std::string name(function_name_of(n.what));
     if (n.what == operation::trunc) {
       name = "fix";
@@ -46,11 +46,10 @@ public:
     }
     return call_of(name, n, x);
   }
-  [[nodiscard]] bound_text choice(const std::array<bound_text, 3>& x) const {
+  [[nodiscard]] printed choice(const std::array<printed, 3>& x) const {
     return {"duet_select(" + x[0].text + ", " + x[1].text + ", " + x[2].text + ")"};
   }
-  [[nodiscard]] bound_text condition(const graph_node& n,
-                                     const std::array<bound_text, 3>& x) const {
+  [[nodiscard]] printed condition(const graph_node& n, const std::array<printed, 3>& x) const {
     return infix_condition(n, x, "~", n.what == operation::is_negative ? "duet_" : "");
   }
   [[nodiscard]] std::string assignment(const std::string& name, const std::string& value,

@@ -33,16 +33,16 @@ public:
     }
     return number_literal(x);
   }
-  [[nodiscard]] bound_text call(const graph_node& n, const std::array<bound_text, 3>& x) const {
+  [[nodiscard]] printed call(const graph_node& n, const std::array<printed, 3>& x) const {
     return call_of(function(n), n, x);
   }
-  [[nodiscard]] bound_text choice(const std::array<bound_text, 3>& x) const {
+  [[nodiscard]] printed choice(const std::array<printed, 3>& x) const {
     return {"np.where(" + x[0].text + ", " + x[1].text + ", " + x[2].text + ")"};
   }
-  [[nodiscard]] bound_text condition(const graph_node& n,
-                                     const std::array<bound_text, 3>& x) const {
-    const auto infix = [&](const char* sign) -> bound_text {
-      return {x[0].inside(binding::sum) + sign + x[1].inside(binding::sum), binding::condition};
+  [[nodiscard]] printed condition(const graph_node& n, const std::array<printed, 3>& x) const {
+    const auto infix = [&](const char* sign) -> printed {
+      return {x[0].inside(precedence::sum) + sign + x[1].inside(precedence::sum),
+              precedence::condition};
     };
     const std::string both = "(" + x[0].text + ", " + x[1].text + ")";
     switch (n.what) {

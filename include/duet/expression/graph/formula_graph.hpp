@@ -93,24 +93,28 @@ public:
     return *found;
   }
 
-  /// The nodes that the outputs need, in order: true for each of them.
-  [[nodiscard]] std::vector<bool> needed() const {
-    std::vector<bool> result(std::size_t(operations_.size()), false);
+  /// Numbers of uses of the nodes, as outputs and as operands of nodes that the outputs need: 0 for
+  /// those that they do not need.
+  [[nodiscard]] std::vector<int> uses() const {
+    std::vector<int> result(std::size_t(operations_.size()), 0);
     for (const named_value& y : outputs_) {
       for (const int node : y.nodes) {
-        result[std::size_t(node)] = true;
+        ++result[std::size_t(node)];
       }
     }
     for (int i = operations_.size() - 1; i >= 0; --i) {
-      if (result[std::size_t(i)]) {
-        for (const int operand : operations_[i].operands) {
-          if (operand >= 0) {
-            result[std::size_t(operand)] = true;
-          }
+      for (const int operand : operations_[i].operands) {
+        if (operand >= 0 && result[std::size_t(i)] > 0) {
+          ++result[std::size_t(operand)];
         }
       }
     }
     return result;
+  }
+  /// The nodes that the outputs need, in order: true for each of them.
+  [[nodiscard]] std::vector<bool> needed() const {
+    const std::vector<int> counts = uses();
+    return {counts.begin(), counts.end()};
   }
 
 private:

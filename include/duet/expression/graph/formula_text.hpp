@@ -45,18 +45,17 @@ class formula_writer {
 public:
   /// \param exact_constants  as for `read_formula`
   formula_writer(const formula_graph& f, bool exact_constants)
-      : f_(f), g_(f.operations()), has_exact_constants_(exact_constants), needed_(f.needed()),
-        uses_(needed_.size(), 0), texts_(needed_.size()) {}
+      : f_(f), g_(f.operations()), has_exact_constants_(exact_constants), uses_(f.uses()),
+        texts_(uses_.size()) {}
 
   [[nodiscard]] std::string text(bool has_declarations = true) {
-    count_uses();
     const bool is_long = measure();
     std::string body;
     const std::string prefix = unused_prefix();
     int shared = 0;
     for (int i = 0; i < g_.size(); ++i) {
       const std::size_t k = std::size_t(i);
-      if (!needed_[k]) {
+      if (uses_[k] == 0) {
         continue;
       }
       texts_[k] = node(g_[i]);
@@ -74,29 +73,15 @@ public:
 
 private:
   [[nodiscard]] bool is_leaf(int i) const { return g_[i].what <= operation::variable; }
-  void count_uses() {
-    for (int i = 0; i < g_.size(); ++i) {
-      for (const int operand : g_[i].operands) {
-        if (operand >= 0 && needed_[std::size_t(i)]) {
-          ++uses_[std::size_t(operand)];
-        }
-      }
-    }
-    for (const named_value& y : f_.outputs()) {
-      for (const int node : y.nodes) {
-        ++uses_[std::size_t(node)];
-      }
-    }
-  }
   /// True if names are needed: without, the text would be long or deeply nested.
   [[nodiscard]] bool measure() {
-    depths_.assign(needed_.size(), 0);
-    std::vector<double> lengths(needed_.size(), 0);
+    depths_.assign(uses_.size(), 0);
+    std::vector<double> lengths(uses_.size(), 0);
     double length = 0;
     bool is_deep = false;
     for (int i = 0; i < g_.size(); ++i) {
       const std::size_t k = std::size_t(i);
-      if (needed_[k]) {
+      if (uses_[k] > 0) {
         lengths[k] = double(node(g_[i]).text.size());
         for (const int operand : g_[i].operands) {
           lengths[k] += operand >= 0 ? lengths[std::size_t(operand)] : 0;
@@ -148,8 +133,8 @@ private:
     }
     return power == x;
   }
-  [[nodiscard]] bound_text node(const graph_node& n) const {
-    std::array<bound_text, 3> operands;
+  [[nodiscard]] printed node(const graph_node& n) const {
+    std::array<printed, 3> operands;
     for (std::size_t k = 0; k < 3; ++k) {
       if (n.operands[k] >= 0) {
         operands[k] = texts_[std::size_t(n.operands[k])];
@@ -157,11 +142,11 @@ private:
     }
     const auto is_number = [&](int k) { return g_.is_number(n.operands[std::size_t(k)]); };
     if (n.what == operation::number && std::isnan(n.number)) {
-      return {"0 / 0", binding::product};
+      return {"0 / 0", precedence::product};
     }
     if (n.what == operation::pow) {
-      return {operands[0].inside(binding::atom) + "^" + operands[1].inside(binding::atom),
-              binding::power};
+      return {operands[0].inside(precedence::atom) + "^" + operands[1].inside(precedence::atom),
+              precedence::power};
     }
     if (has_exact_constants_ && n.what == operation::acos && g_.is_number(n.operands[0], -1)) {
       return {"pi"};
@@ -227,9 +212,8 @@ private:
   const formula_graph& f_;
   const graph& g_;
   bool has_exact_constants_;
-  std::vector<bool> needed_;
   std::vector<int> uses_, depths_;
-  std::vector<bound_text> texts_;
+  std::vector<printed> texts_;
 };
 
 } // namespace detail

@@ -3,6 +3,7 @@
 
 #include <duet/core/text/number_text.hpp>
 #include <duet/expression/graph/graph.hpp>
+#include <duet/expression/tree/printed.hpp>
 
 #include <array>
 #include <cstddef>
@@ -62,73 +63,82 @@ namespace duet::expression::detail {
   return result;
 }
 
-/// Precedence of the outermost operation of a text.
-enum class binding { condition, sum, negative, product, power, atom };
-
-struct bound_text {
-  std::string text;
-  binding strength = binding::atom;
-
-  [[nodiscard]] std::string inside(binding around) const {
-    return strength < around ? "(" + text + ")" : text;
+/// A function called with the operands of a node.
+[[nodiscard]] inline printed call_of(const std::string& function, const graph_node& n,
+                                     const std::array<printed, 3>& x) {
+  std::string text = function + "(" + x[0].text;
+  for (int k = 1; k < operand_count(n.what); ++k) {
+    text += ", " + x[std::size_t(k)].text;
   }
-};
+  return {text + ")"};
+}
+
+/// A condition with the signs that formulas share with C and MATLAB.
+///
+/// \param prefix  of functions
+[[nodiscard]] inline printed infix_condition(const graph_node& n, const std::array<printed, 3>& x,
+                                             const std::string& negation,
+                                             const std::string& prefix) {
+  const auto infix = [&](const char* sign, precedence inner) -> printed {
+    return {x[0].inside(inner) + sign + x[1].inside(inner), precedence::condition};
+  };
+  switch (n.what) {
+  case operation::less:
+    return infix(" < ", precedence::sum);
+  case operation::less_equal:
+    return infix(" <= ", precedence::sum);
+  case operation::equal:
+    return infix(" == ", precedence::sum);
+  case operation::both:
+    return infix(" && ", precedence::atom);
+  case operation::either:
+    return infix(" || ", precedence::atom);
+  case operation::no:
+    return {negation + x[0].inside(precedence::atom)};
+  default:
+    return call_of(prefix + std::string(function_name_of(n.what)), n, x);
+  }
+}
 
 /// The operation of a node applied to the texts of its operands.
-[[nodiscard]] inline bound_text text_of(const graph& g, const graph_node& n,
-                                        const std::array<bound_text, 3>& x) {
+[[nodiscard]] inline printed text_of(const graph& g, const graph_node& n,
+                                     const std::array<printed, 3>& x) {
   using enum operation;
-  const auto infix = [&](const char* sign, binding strength, binding right) -> bound_text {
-    return {x[0].inside(strength) + sign + x[1].inside(right), strength};
+  const auto infix = [&](const char* sign, precedence own, precedence right) -> printed {
+    return {x[0].inside(own) + sign + x[1].inside(right), own};
   };
   switch (n.what) {
   case number:
-    return {duet::to_text(n.number), n.number < 0 ? binding::negative : binding::atom};
+    return {duet::to_text(n.number), n.number < 0 ? precedence::negative_number : precedence::atom};
   case variable:
     return {g.variable_name(n.index)};
   case negative:
-    return {"-" + x[0].inside(binding::product), binding::negative};
+    return {"-" + x[0].inside(precedence::product), precedence::negative_number};
   case sum:
-    return infix(" + ", binding::sum, binding::negative);
+    return infix(" + ", precedence::sum, precedence::negative_number);
   case difference:
-    return infix(" - ", binding::sum, binding::product);
+    return infix(" - ", precedence::sum, precedence::product);
   case product:
-    return infix(" * ", binding::product, binding::power);
+    return infix(" * ", precedence::product, precedence::power);
   case quotient:
-    return infix(" / ", binding::product, binding::power);
+    return infix(" / ", precedence::product, precedence::power);
   case power:
-    return {x[0].inside(binding::atom) + "^" + std::to_string(n.index), binding::power};
+    return {x[0].inside(precedence::atom) + "^" + std::to_string(n.index), precedence::power};
   case stumpff:
     return {"stumpff" + std::to_string(n.index) + "(" + x[0].text + ")"};
-  case less:
-    return infix(" < ", binding::condition, binding::sum);
-  case less_equal:
-    return infix(" <= ", binding::condition, binding::sum);
-  case equal:
-    return infix(" == ", binding::condition, binding::sum);
-  case both:
-    return {x[0].inside(binding::atom) + " && " + x[1].inside(binding::atom), binding::condition};
-  case either:
-    return {x[0].inside(binding::atom) + " || " + x[1].inside(binding::atom), binding::condition};
-  case no:
-    return {"!" + x[0].inside(binding::atom)};
-  default: {
-    std::string text = std::string(function_name_of(n.what)) + "(" + x[0].text;
-    for (int k = 1; k < operand_count(n.what); ++k) {
-      text += ", " + x[std::size_t(k)].text;
-    }
-    return {text + ")"};
-  }
+  default:
+    return is_condition(n.what) ? infix_condition(n, x, "!", "")
+                                : call_of(std::string(function_name_of(n.what)), n, x);
   }
 }
 
 /// A node as text, in which what is nested deeper than `depth` is left out.
-[[nodiscard]] inline bound_text node_text(const graph& g, int i, int depth) {
-  std::array<bound_text, 3> operands;
+[[nodiscard]] inline printed node_text(const graph& g, int i, int depth) {
+  std::array<printed, 3> operands;
   const graph_node& n = g[i];
   for (int k = 0; k < operand_count(n.what); ++k) {
     operands[std::size_t(k)] =
-        depth == 0 ? bound_text{"..."} : node_text(g, n.operands[std::size_t(k)], depth - 1);
+        depth == 0 ? printed{"..."} : node_text(g, n.operands[std::size_t(k)], depth - 1);
   }
   return text_of(g, n, operands);
 }
