@@ -107,6 +107,19 @@ namespace detail {
   return stream;
 }
 
+/// The numbers of inputs with each verdict of a comparison or judgement.
+template <class Result>
+void write_counts(std::ostream& out, const Result& r) {
+  out << r.label << ": ";
+  for (const verdict v :
+       {verdict::disagrees, verdict::not_finite, verdict::loses_precision, verdict::inconclusive}) {
+    if (const std::size_t count = r.counts[std::size_t(v)]; count > 0) {
+      out << to_text(v) << " at " << count << ", ";
+    }
+  }
+  out << "agrees at " << r.counts[0] << " of " << r.samples << " inputs\n";
+}
+
 /// Text of the components; those negligible beside the largest component are printed as 0.
 [[nodiscard]] inline std::string components_text(std::span<const double> numbers, int digits) {
   double largest = 0;
@@ -155,13 +168,7 @@ namespace detail {
 /// A paragraph for people.
 [[nodiscard]] inline std::string to_text(const comparison& c) {
   auto out = detail::plain_stream(3);
-  out << c.label << ": ";
-  for (const verdict v : {verdict::disagrees, verdict::not_finite, verdict::loses_precision}) {
-    if (const std::size_t count = c.counts[std::size_t(v)]; count > 0) {
-      out << to_text(v) << " at " << count << ", ";
-    }
-  }
-  out << "agrees at " << c.counts[0] << " of " << c.samples << " inputs\n";
+  detail::write_counts(out, c);
   for (const worst_errors& e : c.errors) {
     out << "  " << e.digits << " digits";
     if (e.compared_digits > 0) {

@@ -44,9 +44,15 @@ struct jacobian_part {
 
   [[nodiscard]] bool is_motion() const { return type == kind::rotation || type == kind::pose; }
   [[nodiscard]] Eigen::Index state_size() const { return dimension + (is_motion() ? 1 : 0); }
+  /// A translation, a number or a vector: its name, its first number in the state, and its size.
+  [[nodiscard]] std::string vector_name() const {
+    return type == kind::pose ? name + ".translation" : name;
+  }
+  [[nodiscard]] Eigen::Index vector_first() const { return type == kind::pose ? state + 4 : state; }
+  [[nodiscard]] Eigen::Index vector_size() const { return is_motion() ? dimension - 3 : dimension; }
   /// Index of a translation or a vector of three components in the state; or −1.
   [[nodiscard]] Eigen::Index vector_state() const {
-    return type == kind::pose ? state + 4 : type == kind::vector && dimension == 3 ? state : -1;
+    return type != kind::number && vector_size() == 3 ? vector_first() : -1;
   }
 };
 

@@ -310,11 +310,10 @@ private:
     Eigen::Index first = 0;
     std::vector<Eigen::Index> order; // columns as returned
     for (const jacobian_part& a : problem_.arguments) {
-      const Eigen::Index count = a.type == kind::pose ? 3 : a.is_motion() ? 0 : a.dimension;
+      const Eigen::Index count = a.vector_size();
       if (count > 0) {
         part.arguments.push_back({a.type == kind::number ? kind::number : kind::vector,
-                                  a.name + (a.type == kind::pose ? ".translation" : ""),
-                                  a.state + (a.type == kind::pose ? 4 : 0), first, count});
+                                  a.vector_name(), a.vector_first(), first, count});
       }
       for (Eigen::Index k = 0; k < count; ++k) {
         order.push_back(a.state + k);
@@ -351,13 +350,7 @@ private:
           // its difference to the vector before.
           try_continued(part, order, [&](const vector& x, const auto&, const matrix& exact) {
             const matrix factor = z.evaluate(x).jacobian.template cast<double>();
-            matrix columns = exact;
-            for (const jacobian_part& a : problem_.arguments) {
-              if (std::find(z.arguments.begin(), z.arguments.end(), &a) == z.arguments.end()) {
-                columns.middleCols(a.first, a.dimension).setZero();
-              }
-            }
-            const matrix outer = divided(columns, factor);
+            const matrix outer = divided(in_columns(exact, columns_of(z)), factor);
             const auto [rotated, before] = z.rotated(x);
             return std::pair(
                 z.arguments[0],
@@ -417,6 +410,23 @@ private:
     }
   }
 
+  /// True for the columns of arguments of an intermediate.
+  [[nodiscard]] std::vector<bool> columns_of(const intermediate& z) const {
+    std::vector<bool> result(std::size_t(tangent_size(problem_.arguments)), false);
+    for (const jacobian_part* a : z.arguments) {
+      std::fill_n(result.begin() + a->first, a->dimension, true);
+    }
+    return result;
+  }
+  /// Without the other columns.
+  [[nodiscard]] static matrix in_columns(matrix m, const std::vector<bool>& is_column) {
+    for (Eigen::Index k = 0; k < m.cols(); ++k) {
+      if (!is_column[std::size_t(k)]) {
+        m.col(k).setZero();
+      }
+    }
+    return m;
+  }
   /// Without rows of results, or of halves of them, in which all is right.
   [[nodiscard]] matrix in_wrong_rows(matrix m) const {
     for (const jacobian_part& r : problem_.results) {
@@ -434,10 +444,7 @@ private:
   /// intermediate one, J = A Z, and the slip is in A or in Z.
   void try_chains() {
     for (const intermediate& z : intermediates()) {
-      std::vector<bool> is_column(std::size_t(samples_[0].exact.cols()), false);
-      for (const jacobian_part* a : z.arguments) {
-        std::fill_n(is_column.begin() + a->first, a->dimension, true);
-      }
+      const std::vector<bool> is_column = columns_of(z);
       // The slip may be in the columns of some arguments alone.
       std::vector<bool> is_used = is_column;
       bool has_wrong_elsewhere = false;
@@ -456,18 +463,10 @@ private:
       for (const jacobian_sample& s : samples_) {
         const jacobian_evaluation middle = z.evaluate(s.state);
         const matrix factor = middle.jacobian.template cast<double>();
-        matrix exact = in_wrong_rows(s.exact), written = in_wrong_rows(s.written), used = factor;
-        for (Eigen::Index k = 0; k < exact.cols(); ++k) {
-          if (!is_column[std::size_t(k)]) {
-            exact.col(k).setZero();
-            written.col(k).setZero();
-          }
-          if (!is_used[std::size_t(k)]) {
-            used.col(k).setZero();
-          }
-        }
-        const matrix a = divided(exact, factor);
-        matrix b = divided(written, used);
+        const matrix exact = in_columns(in_wrong_rows(s.exact), is_column),
+                     written = in_columns(in_wrong_rows(s.written), is_column),
+                     used = in_columns(factor, is_used), a = divided(exact, factor),
+                     b = divided(written, used);
         is_chain =
             is_chain && is_within(exact - product_of(a, factor), s.allowed, 1e-9, exact, exact);
         for (Eigen::Index k = 0; k < exact.cols() && has_outer; ++k) {
@@ -508,12 +507,8 @@ private:
           const vector state = z.set(x.head(size), x.tail(x.size() - size));
           jacobian_evaluation there = problem_.truth(state);
           const matrix factor = z.evaluate(state).jacobian.template cast<double>();
-          matrix exact = in_wrong_rows(there.jacobian.template cast<double>());
-          for (Eigen::Index k = 0; k < exact.cols(); ++k) {
-            if (!is_column[std::size_t(k)]) {
-              exact.col(k).setZero();
-            }
-          }
+          const matrix exact =
+              in_columns(in_wrong_rows(there.jacobian.template cast<double>()), is_column);
           there.jacobian = divided(exact, factor).template cast<long double>();
           return there;
         };
@@ -541,9 +536,9 @@ private:
     for (const motion& m : motions()) {
       for (const int power : {1, -1}) {
         std::vector<jacobian_sample> samples = samples_;
-        matrix axes;
         for (jacobian_sample& s : samples) {
-          if (!adjoint(s, m, rows, -power, axes)) {
+          const matrix axes = adjoint(s, m, rows, -power);
+          if (axes.size() == 0) {
             return;
           }
           s.exact = product_of(axes, s.exact);

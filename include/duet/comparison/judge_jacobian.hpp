@@ -80,14 +80,7 @@ struct jacobian_judgement {
 /// A paragraph for people: verdict, slips, and both matrices at the simplest input.
 [[nodiscard]] inline std::string to_text(const jacobian_judgement& j) {
   auto out = detail::plain_stream(3);
-  out << j.label << ": ";
-  for (const verdict v :
-       {verdict::disagrees, verdict::not_finite, verdict::loses_precision, verdict::inconclusive}) {
-    if (const std::size_t count = j.counts[std::size_t(v)]; count > 0) {
-      out << to_text(v) << " at " << count << ", ";
-    }
-  }
-  out << "agrees at " << j.counts[0] << " of " << j.samples << " inputs\n";
+  detail::write_counts(out, j);
   if (j.worst_error > 0) {
     out << "  worst error: " << j.worst_error << " of the largest entry, at " << j.worst_input
         << "\n";
@@ -128,17 +121,16 @@ struct jacobian_judgement {
 namespace detail {
 DUET_ABI_BEGIN
 
-/// Describes an argument or result of type X and its elements.
-///
-/// - `append(list, name)`: appends its parts
-/// - `save(x, state, next)`: writes its state
-/// - `load<T>(state, next)`: it over T, of unit norm in that precision
+/// An argument or result of several parts: an array or a tuple.
 template <class X>
-struct jacobian_argument {
-  static_assert(!std::is_same_v<X, X>,
-                "duet: judge_jacobian: arguments and results are numbers, Eigen vectors of fixed "
-                "size, rotations, poses, and arrays and tuples of these");
+concept JacobianParts = !EigenMatrix<X> && requires {
+  std::tuple_size<X>::value;
 };
+
+template <class X>
+inline constexpr bool is_judged_pose = false;
+template <class S>
+inline constexpr bool is_judged_pose<quaternion<dual<S, 1, screw_tag>>> = true;
 
 inline void append_part(std::vector<jacobian_part>& list, jacobian_part::kind type,
                         const std::string& name, Eigen::Index dimension) {
@@ -146,120 +138,75 @@ inline void append_part(std::vector<jacobian_part>& list, jacobian_part::kind ty
                   tangent_size(list), dimension});
 }
 
+/// Appends the parts of an argument or result of type X.
 template <class X>
-  requires(Real<X> || Arithmetic<X>)
-struct jacobian_argument<X> {
-  static void append(std::vector<jacobian_part>& list, const std::string& name) {
-    append_part(list, jacobian_part::kind::number, name, 1);
-  }
-  static void save(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
-    state[next++] = static_cast<double>(x);
-  }
-  template <class T>
-  static T load(const Eigen::VectorXd& state, Eigen::Index& next) {
-    return T(state[next++]);
-  }
-};
-
-template <EigenMatrix X>
-struct jacobian_argument<X> {
-  static void append(std::vector<jacobian_part>& list, const std::string& name) {
+void append_parts(std::vector<jacobian_part>& list, const std::string& name) {
+  using kind = jacobian_part::kind;
+  if constexpr (JacobianParts<X>) {
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (append_parts<std::tuple_element_t<I, X>>(list, message(name, "[", I, "]")), ...);
+    }
+    (std::make_index_sequence<std::tuple_size_v<X>>{});
+  } else if constexpr (EigenMatrix<X>) {
     static_assert(X::SizeAtCompileTime > 0,
                   "duet: judge_jacobian: vectors need a size known at compile time");
-    append_part(list, jacobian_part::kind::vector, name, X::SizeAtCompileTime);
+    append_part(list, kind::vector, name, X::SizeAtCompileTime);
+  } else if constexpr (requires { manifold<X>::takes_rates_of_any_scalar; }) {
+    append_part(list, is_judged_pose<X> ? kind::pose : kind::rotation, name,
+                manifold<X>::dimension);
+  } else {
+    static_assert(Real<X> || Arithmetic<X>,
+                  "duet: judge_jacobian: arguments and results are numbers, Eigen vectors of fixed "
+                  "size, rotations, poses, and arrays and tuples of these");
+    append_part(list, kind::number, name, 1);
   }
-  static void save(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      state[next++] = static_cast<double>(x(i));
-    }
-  }
-  template <class T>
-  static auto load(const Eigen::VectorXd& state, Eigen::Index& next) {
-    Eigen::Matrix<T, X::RowsAtCompileTime, X::ColsAtCompileTime> x;
-    for (Eigen::Index i = 0; i < x.size(); ++i) {
-      x(i) = T(state[next++]);
-    }
-    return x;
-  }
-};
+}
 
-template <class S>
-  requires(!contains_tag<S, screw_tag>())
-struct jacobian_argument<quaternion<S>> {
-  static void append(std::vector<jacobian_part>& list, const std::string& name) {
-    append_part(list, jacobian_part::kind::rotation, name, 3);
+/// Writes the state of an argument or result from `next` on.
+template <class X>
+void save_state(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
+  if constexpr (JacobianParts<X>) {
+    std::apply([&](const auto&... each) { (save_state(each, state, next), ...); }, x);
+  } else if constexpr (is_judged_pose<X>) {
+    save_state(rotation(x), state, next);
+    save_state(translation(x), state, next);
+  } else {
+    static_cast<void>(map_scalars(
+        [&](const auto& each) { return state[next++] = static_cast<double>(each); }, x));
   }
-  static void save(const quaternion<S>& q, Eigen::VectorXd& state, Eigen::Index& next) {
-    for (const S& x : {q.w(), q.x(), q.y(), q.z()}) {
-      state[next++] = static_cast<double>(x);
-    }
-  }
-  template <class T>
-  static quaternion<T> load(const Eigen::VectorXd& state, Eigen::Index& next) {
-    next += 4;
-    return normalized(quaternion<T>(T(state[next - 4]), T(state[next - 3]), T(state[next - 2]),
-                                    T(state[next - 1])));
-  }
-};
+}
 
-template <class S>
-struct jacobian_argument<quaternion<dual<S, 1, screw_tag>>> {
-  static void append(std::vector<jacobian_part>& list, const std::string& name) {
-    append_part(list, jacobian_part::kind::pose, name, 6);
-  }
-  static void save(const dual_quaternion<S>& a, Eigen::VectorXd& state, Eigen::Index& next) {
-    jacobian_argument<quaternion<S>>::save(rotation(a), state, next);
-    jacobian_argument<vector3<S>>::save(translation(a), state, next);
-  }
-  template <class T>
-  static dual_quaternion<T> load(const Eigen::VectorXd& state, Eigen::Index& next) {
-    const auto q = jacobian_argument<quaternion<S>>::template load<T>(state, next);
-    return pose(q, jacobian_argument<vector3<S>>::template load<T>(state, next));
-  }
-};
-
-template <class X, std::size_t N>
-struct jacobian_argument<std::array<X, N>> {
-  static void append(std::vector<jacobian_part>& list, const std::string& name) {
-    for (std::size_t i = 0; i < N; ++i) {
-      jacobian_argument<X>::append(list, message(name, "[", i, "]"));
+/// An argument of type X from its state, over T, of unit norm in that precision.
+template <class T, class X>
+[[nodiscard]] auto load_state(const Eigen::VectorXd& state, Eigen::Index& next) {
+  if constexpr (JacobianParts<X>) {
+    return [&]<std::size_t... I>(std::index_sequence<I...>) { // in order: braces
+      using first = decltype(load_state<T, std::tuple_element_t<0, X>>(state, next));
+      using parts = std::conditional_t<
+          is_tuple<X>,
+          std::tuple<decltype(load_state<T, std::tuple_element_t<I, X>>(state, next))...>,
+          std::array<first, sizeof...(I)>>;
+      return parts{load_state<T, std::tuple_element_t<I, X>>(state, next)...};
+    }
+    (std::make_index_sequence<std::tuple_size_v<X>>{});
+  } else if constexpr (is_judged_pose<X>) {
+    const auto q = load_state<T, decltype(rotation(std::declval<const X&>()))>(state, next);
+    return pose(q, load_state<T, decltype(translation(std::declval<const X&>()))>(state, next));
+  } else {
+    const auto x = map_scalars([&](const auto&) { return T(state[next++]); }, X());
+    if constexpr (requires { manifold<X>::takes_rates_of_any_scalar; }) {
+      return normalized(x);
+    } else {
+      return x;
     }
   }
-  static void save(const std::array<X, N>& x, Eigen::VectorXd& state, Eigen::Index& next) {
-    for (const X& each : x) {
-      jacobian_argument<X>::save(each, state, next);
-    }
-  }
-  template <class T>
-  static auto load(const Eigen::VectorXd& state, Eigen::Index& next) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) {
-      return std::array{
-          ((void)I, jacobian_argument<X>::template load<T>(state, next))...}; // in order: braces
-    }
-    (std::make_index_sequence<N>{});
-  }
-};
-
-template <class... X>
-struct jacobian_argument<std::tuple<X...>> {
-  static void append(std::vector<jacobian_part>& list, const std::string& name) {
-    std::size_t i = 0;
-    (jacobian_argument<X>::append(list, message(name, "[", i++, "]")), ...);
-  }
-  static void save(const std::tuple<X...>& x, Eigen::VectorXd& state, Eigen::Index& next) {
-    std::apply([&](const X&... each) { (jacobian_argument<X>::save(each, state, next), ...); }, x);
-  }
-  template <class T>
-  static auto load(const Eigen::VectorXd& state, Eigen::Index& next) {
-    return std::tuple{jacobian_argument<X>::template load<T>(state, next)...};
-  }
-};
+}
 
 template <class X>
 [[nodiscard]] Eigen::VectorXd saved(const X& x, const std::vector<jacobian_part>& parts) {
   Eigen::VectorXd state(stored_size(parts));
   Eigen::Index next = 0;
-  jacobian_argument<X>::save(x, state, next);
+  save_state(x, state, next);
   return state;
 }
 
@@ -269,8 +216,8 @@ template <class F, class Arguments, class Frame>
 class jacobian_truth {
   using tag = derivative_tag<F>;
   template <class T>
-  using arguments = decltype(jacobian_argument<Arguments>::template load<T>(
-      std::declval<const Eigen::VectorXd&>(), std::declval<Eigen::Index&>()));
+  using arguments = decltype(load_state<T, Arguments>(std::declval<const Eigen::VectorXd&>(),
+                                                      std::declval<Eigen::Index&>()));
   template <class T>
   using lifted = decltype(manifold<arguments<T>>::plus(
       std::declval<const arguments<T>&>(),
@@ -290,7 +237,7 @@ public:
                                               const std::vector<jacobian_part>& results) {
     using T = std::conditional_t<std::is_void_v<scalar>, double, scalar>;
     Eigen::Index next = 0;
-    const auto x = jacobian_argument<Arguments>::template load<T>(state, next);
+    const auto x = load_state<T, Arguments>(state, next);
     const auto y = result_of_call(std::apply(f, x));
     using Y = std::decay_t<decltype(y)>;
     jacobian_evaluation out{saved(y, results), long_matrix(tangent_size(results), size), 0};
@@ -695,9 +642,7 @@ judged_jacobian(const std::string& label, const F& f, const J& jacobian,
   problem.order = options.order;
   problem.results = std::move(results);
   [&]<std::size_t... I>(std::index_sequence<I...>) {
-    (jacobian_argument<std::tuple_element_t<I, arguments>>::append(problem.arguments,
-                                                                   inputs.names()[I]),
-     ...);
+    (append_parts<std::tuple_element_t<I, arguments>>(problem.arguments, inputs.names()[I]), ...);
   }
   (std::make_index_sequence<sizeof...(Domains)>{});
   problem.truth = [&](const Eigen::VectorXd& state) {
@@ -707,8 +652,7 @@ judged_jacobian(const std::string& label, const F& f, const J& jacobian,
   problem.written = [&](const Eigen::VectorXd& state) {
     Eigen::Index next = 0;
     return written_matrix(
-        result_of_call(
-            std::apply(jacobian, jacobian_argument<arguments>::template load<double>(state, next))),
+        result_of_call(std::apply(jacobian, load_state<double, arguments>(state, next))),
         tangent_size(problem.results));
   };
   return judged_jacobian(label, problem, inputs.points(options.samples, options.seed),
@@ -768,7 +712,7 @@ judge_jacobian(const std::string& label, const F& f, const J& jacobian,
   using result = std::decay_t<decltype(detail::result_of_call(
       std::apply(f, std::declval<const arguments&>())))>;
   std::vector<detail::jacobian_part> results;
-  detail::jacobian_argument<result>::append(results, "f");
+  detail::append_parts<result>(results, "f");
   return detail::judged_jacobian(label, f, jacobian, std::move(results), inputs, options);
 }
 

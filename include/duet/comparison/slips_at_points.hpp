@@ -45,8 +45,8 @@ protected:
   template <class Add>
   static void add_other_axes(const Add& add, const jacobian_part& a, const jacobian_part& b) {
     for (const bool is_inverse : {false, true}) {
-      add(message("offset in other axes: ", a.name, a.type == kind::pose ? ".translation" : "",
-                  " in those of ", b.name, is_inverse ? "^-1" : ""),
+      add(message("offset in other axes: ", a.vector_name(), " in those of ", b.name,
+                  is_inverse ? "^-1" : ""),
           [&a, &b, is_inverse](vector& x) {
             const Eigen::Matrix3d r = rotation_matrix(rotation_at(b, x));
             const Eigen::Vector3d v = x.segment<3>(a.vector_state());
@@ -109,10 +109,9 @@ protected:
               [&a, to](vector& x) { x.segment<3>(a.state + to) = x.segment<3>(a.state + 3 - to); });
         }
       }
-      if (!a.is_motion() || a.type == kind::pose) {
-        const Eigen::Index first = a.type == kind::pose ? a.state + 4 : a.state,
-                           count = a.type == kind::pose ? 3 : size;
-        const std::string name = a.name + (a.type == kind::pose ? ".translation" : "");
+      if (a.type != kind::rotation) {
+        const Eigen::Index first = a.vector_first(), count = a.vector_size();
+        const std::string name = a.vector_name();
         for (const auto& [text, factor] :
              {std::pair("evaluated with 0 for ", 0.), std::pair("sign of ", -1.),
               std::pair("half of ", .5), std::pair("twice ", 2.),
@@ -198,7 +197,7 @@ protected:
       }
       // Vectors and translations in the axes of another rotation, or from another point.
       if (a.vector_state() >= 0) {
-        const std::string name = a.name + (a.type == kind::pose ? ".translation" : "");
+        const std::string name = a.vector_name();
         for (const jacobian_part& b : problem_.arguments) {
           if (b.is_motion()) {
             add_other_axes(add, a, b);
@@ -252,9 +251,8 @@ protected:
       if (a.type == kind::rotation) {
         continue;
       }
-      const Eigen::Index first = a.type == kind::pose ? a.state + 4 : a.state,
-                         count = a.type == kind::pose ? 3 : a.dimension;
-      const std::string name = a.name + (a.type == kind::pose ? ".translation" : "");
+      const Eigen::Index first = a.vector_first(), count = a.vector_size();
+      const std::string name = a.vector_name();
       try_parts_by(name, [&](const vector& state, double factor) {
         vector x = state;
         x.segment(first, count) *= factor;

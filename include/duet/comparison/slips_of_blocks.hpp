@@ -18,6 +18,7 @@
 #include <iterator>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -70,8 +71,8 @@ protected:
     const jacobian_part* result;
   };
 
-  /// Writes what the entries of a rectangle are by a hypothesis; false if it does not apply.
-  using hypothesis = std::function<bool(const jacobian_sample&, const scope&, matrix&)>;
+  /// What the entries of a rectangle are by a hypothesis; empty if it does not apply.
+  using hypothesis = std::function<matrix(const jacobian_sample&, const scope&)>;
 
   static matrix of(const matrix& m, const scope& s) {
     return m.block(s.row, s.column, s.rows, s.columns);
@@ -253,10 +254,10 @@ protected:
 
   /// Accepts a hypothesis for the least rectangle in which it is right at all samples.
   bool attempt(const std::string& name, const hypothesis& propose) {
-    matrix candidate;
     for (const scope& at : scopes_) {
       if (std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-            return propose(s, at, candidate) && fits(s, at, candidate);
+            const matrix candidate = propose(s, at);
+            return candidate.size() > 0 && fits(s, at, candidate);
           })) {
         accept(name, at.name);
         return true;
@@ -268,122 +269,95 @@ protected:
   /// Attempts a change of the entries of a rectangle alone.
   template <class Change>
   bool attempt_change(const std::string& name, const Change& change) {
-    return attempt(name, [&](const jacobian_sample& s, const scope& at, matrix& out) {
-      return change(of(s.exact, at), out);
+    return attempt(name, [&](const jacobian_sample& s, const scope& at) -> matrix {
+      return change(of(s.exact, at));
     });
   }
 
   void try_algebra() {
-    attempt_change("sign", [](const matrix& m, matrix& out) {
-      out = -m;
-      return true;
-    });
-    attempt_change("missing: zero", [](const matrix& m, matrix& out) {
-      out = matrix::Zero(m.rows(), m.cols());
-      return true;
-    });
-    attempt_change("transposed (column-major data in a row-major array)",
-                   [](const matrix& m, matrix& out) {
-                     out = m.transpose();
-                     return m.rows() == m.cols() && m.rows() > 1;
-                   });
-    attempt_change("transposed, with the sign changed", [](const matrix& m, matrix& out) {
-      out = -m.transpose();
-      return m.rows() == m.cols() && m.rows() > 1;
-    });
+    const auto is_square = [](const matrix& m) { return m.rows() == m.cols() && m.rows() > 1; };
+    const auto try_factor = [&](const std::string& name, double factor) {
+      return attempt_change(name, [&](const matrix& m) -> matrix { return factor * m; });
+    };
+    try_factor("sign", -1);
+    try_factor("missing: zero", 0);
+    for (const double sign : {1., -1.}) {
+      attempt_change(sign > 0 ? "transposed (column-major data in a row-major array)"
+                              : "transposed, with the sign changed",
+                     [&](const matrix& m) -> matrix {
+                       return is_square(m) ? matrix(sign * m.transpose()) : matrix();
+                     });
+    }
     // Sums of an identity matrix, or minus one, and something else.
     for (const double one : {1., -1.}) {
       for (const auto& [name, factor] : {std::pair("sign of", -1.), std::pair("missing:", 0.),
                                          std::pair("twice", 2.), std::pair("half of", .5)}) {
         attempt_change(
             message(name, " one summand: all but ", one < 0 ? "minus " : "", "the identity matrix"),
-            [one, factor = factor](const matrix& m, matrix& out) {
+            [&, one, factor = factor](const matrix& m) -> matrix {
               const matrix identity = one * matrix::Identity(m.rows(), m.cols());
-              out = identity + factor * (m - identity);
-              return m.rows() == m.cols() && m.rows() > 1;
+              return is_square(m) ? matrix(identity + factor * (m - identity)) : matrix();
             });
       }
     }
-    attempt_change("Jacobian of the inverse", [](const matrix& m, matrix& out) {
-      if (m.rows() != m.cols() || m.rows() == 1) {
-        return false;
-      }
-      out = inverse_of(m);
-      return largest_entry(product_of(out, m) - matrix::Identity(m.rows(), m.rows())) <
-             1 / most_condition;
+    attempt_change("Jacobian of the inverse", [&](const matrix& m) -> matrix {
+      const matrix inverse = is_square(m) ? inverse_of(m) : matrix();
+      const bool is_inverse =
+          is_square(m) && largest_entry(product_of(inverse, m) -
+                                        matrix::Identity(m.rows(), m.rows())) < 1 / most_condition;
+      return is_inverse ? inverse : matrix();
     });
-    attempt_change("column-major data in a row-major array", [](const matrix& m, matrix& out) {
-      out.resize(m.rows(), m.cols());
-      for (Eigen::Index i = 0; i < m.size(); ++i) {
-        out(i / m.cols(), i % m.cols()) = m(i % m.rows(), i / m.rows());
-      }
-      return m.rows() > 1 && m.cols() > 1 && m.rows() != m.cols();
-    });
-    attempt_change("row-major data in a column-major array", [](const matrix& m, matrix& out) {
-      out.resize(m.rows(), m.cols());
-      for (Eigen::Index i = 0; i < m.size(); ++i) {
-        out(i % m.rows(), i / m.rows()) = m(i / m.cols(), i % m.cols());
-      }
-      return m.rows() > 1 && m.cols() > 1 && m.rows() != m.cols();
-    });
-    attempt_change("columns [omega; v] for [v; omega]", [](const matrix& m, matrix& out) {
-      if (m.cols() != 6) {
-        return false;
-      }
-      out.resize(m.rows(), 6);
-      out << m.rightCols(3), m.leftCols(3);
-      return true;
-    });
-    attempt_change("rows [omega; v] for [v; omega]", [](const matrix& m, matrix& out) {
-      if (m.rows() != 6) {
-        return false;
-      }
-      out.resize(6, m.cols());
-      out << m.bottomRows(3), m.topRows(3);
-      return true;
-    });
-    attempt_change("rows and columns [omega; v] for [v; omega]", [](const matrix& m, matrix& out) {
-      if (m.rows() != 6 || m.cols() != 6) {
-        return false;
-      }
-      out.resize(6, 6);
-      out << m.bottomRightCorner(3, 3), m.bottomLeftCorner(3, 3), m.topRightCorner(3, 3),
-          m.topLeftCorner(3, 3);
-      return true;
-    });
-    const double degree = constant::pi<double>() / 180;
-    for (const auto& [name, factor] : {std::pair("half angle for full angle: factor 1/2", .5),
-                                       std::pair("half angle for full angle: factor 2", 2.),
-                                       std::pair("degrees: factor pi/180", degree),
-                                       std::pair("degrees: factor 180/pi", 1 / degree)}) {
-      attempt_change(name, [factor = factor](const matrix& m, matrix& out) {
-        out = factor * m;
-        return true;
+    for (const bool is_by_columns : {true, false}) {
+      attempt_change(is_by_columns ? "column-major data in a row-major array"
+                                   : "row-major data in a column-major array",
+                     [&](const matrix& m) -> matrix {
+                       const Eigen::Index rows = m.rows(), columns = m.cols();
+                       if (rows == 1 || columns == 1 || rows == columns) {
+                         return {};
+                       }
+                       return is_by_columns ? matrix(m.reshaped(columns, rows).transpose())
+                                            : matrix(m.transpose().reshaped(rows, columns));
+                     });
+    }
+    for (const char* const which : {"columns", "rows", "rows and columns"}) {
+      attempt_change(message(which, " [omega; v] for [v; omega]"), [&](matrix m) -> matrix {
+        const bool has_rows = which[0] == 'r', has_columns = which != std::string_view("rows");
+        if ((has_rows && m.rows() != 6) || (has_columns && m.cols() != 6)) {
+          return {};
+        }
+        for (Eigen::Index k = 0; k < 3 && has_rows; ++k) {
+          m.row(k).swap(m.row(k + 3));
+        }
+        for (Eigen::Index k = 0; k < 3 && has_columns; ++k) {
+          m.col(k).swap(m.col(k + 3));
+        }
+        return m;
       });
     }
-    const std::vector<jacobian_part> parts = parts_of_state();
-    for (const jacobian_part& a : parts) {
+    const double degree = constant::pi<double>() / 180;
+    try_factor("half angle for full angle: factor 1/2", .5);
+    try_factor("half angle for full angle: factor 2", 2);
+    try_factor("degrees: factor pi/180", degree);
+    try_factor("degrees: factor 180/pi", 1 / degree);
+    // Numbers of the state; lengths of results, of vectors and of their differences.
+    const auto try_powers = [&](const std::string& name, const auto& number) {
       for (const int power : {1, -1, 2, -2}) {
-        if (a.type == kind::number) {
-          attempt(message("scaled by ", a.name, power == 1 ? "" : message("^", power)),
-                  [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                    out = std::pow(s.state[a.state], power) * of(s.exact, at);
-                    return true;
-                  });
-        }
-      }
-    }
-    // Lengths of results, of vectors and of their differences.
-    const auto try_length = [&](const std::string& name, const auto& length) {
-      for (const int power : {1, -1, 2, -2}) {
-        attempt(message("not normalised, or wrong power of a length: scaled by |", name, "|",
-                        power == 1 ? "" : message("^", power)),
-                [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                  out = std::pow(length(s), power) * of(s.exact, at);
-                  return true;
+        attempt(name + (power == 1 ? "" : message("^", power)),
+                [&](const jacobian_sample& s, const scope& at) -> matrix {
+                  return std::pow(number(s), power) * of(s.exact, at);
                 });
       }
     };
+    const auto try_length = [&](const std::string& name, const auto& length) {
+      try_powers("not normalised, or wrong power of a length: scaled by |" + name + "|", length);
+    };
+    const std::vector<jacobian_part> parts = parts_of_state();
+    for (const jacobian_part& a : parts) {
+      if (a.type == kind::number) {
+        try_powers("scaled by " + a.name,
+                   [&](const jacobian_sample& s) { return s.state[a.state]; });
+      }
+    }
     for (const jacobian_part& r : problem_.results) {
       if (!r.is_motion()) {
         try_length(r.name, [&](const jacobian_sample& s) {
@@ -416,11 +390,8 @@ protected:
       if (exact.cwiseAbs().maxCoeff(&i, &k) > 0) {
         const double factor = written(i, k) / exact(i, k);
         const bool is_named = std::abs(std::abs(factor) - 1) < 1e-9 || factor == 0;
-        if (!is_named && attempt_change(message("scaled by a constant, ", to_text(float(factor))),
-                                        [&](const matrix& m, matrix& out) {
-                                          out = factor * m;
-                                          return true;
-                                        })) {
+        if (!is_named &&
+            try_factor(message("scaled by a constant, ", to_text(float(factor))), factor)) {
           break;
         }
       }
@@ -490,22 +461,27 @@ protected:
     return rotation_matrix(rotation(pose_of(s, m)));
   }
 
-  /// A power of the adjoint matrix of size 3 or 6; false for other sizes.
-  [[nodiscard]] static bool adjoint(const jacobian_sample& s, const motion& m, Eigen::Index size,
-                                    int power, matrix& out) {
+  /// A power of the adjoint matrix of size 3 or 6; empty for other sizes.
+  [[nodiscard]] static matrix adjoint(const jacobian_sample& s, const motion& m, Eigen::Index size,
+                                      int power) {
     if (size != 3 && size != 6) {
-      return false;
+      return {};
     }
     const auto a = pose_of(s, m), b = power < 0 ? conj(a) : a;
-    out = Ad(power * power == 4 ? b * b : b).bottomRightCorner(size, size);
-    return true;
+    return Ad(power * power == 4 ? b * b : b).bottomRightCorner(size, size);
+  }
+  /// A matrix times a factor from the left or from the right; empty if the factor is of another
+  /// size.
+  [[nodiscard]] static matrix times(const matrix& m, const matrix& factor, bool is_left) {
+    return factor.rows() != (is_left ? m.rows() : m.cols()) ? matrix()
+           : is_left                                        ? product_of(factor, m)
+                                                            : product_of(m, factor);
   }
 
   [[nodiscard]] static matrix inverse_of(const matrix& m) {
     return divided(matrix::Identity(m.rows(), m.cols()), m);
   }
   void try_frames() {
-    matrix factor;
     for (const motion& m : motions(true)) {
       const bool is_relative = m.other != nullptr;
       for (const int power : {1, -1, 2, -2}) {
@@ -516,15 +492,13 @@ protected:
             message("Ad(", m.name, ")", power == 1 ? "" : message("^", power));
         // Of all, or of all but an identity matrix.
         const auto multiplied = [&](bool is_left, double one) -> hypothesis {
-          return [&, is_left, one](const jacobian_sample& s, const scope& at, matrix& out) {
-            if (!adjoint(s, m, is_left ? at.rows : at.columns, power, factor) ||
-                (one != 0 && at.rows != at.columns)) {
-              return false;
-            }
+          return [&, is_left, one](const jacobian_sample& s, const scope& at) -> matrix {
             const matrix identity = one * matrix::Identity(at.rows, at.columns);
-            out = of(s.exact, at) - identity;
-            out = identity + (is_left ? product_of(factor, out) : product_of(out, factor));
-            return true;
+            const matrix product =
+                times(of(s.exact, at) - identity,
+                      adjoint(s, m, is_left ? at.rows : at.columns, power), is_left);
+            const bool applies = product.size() > 0 && (one == 0 || at.rows == at.columns);
+            return applies ? matrix(identity + product) : matrix();
           };
         };
         for (const bool is_left : {false, true}) {
@@ -547,14 +521,11 @@ protected:
         if (power * power == 1) {
           attempt(message("exchanged factors: multiplied by ", which,
                           " from the left and by its inverse from the right"),
-                  [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                    matrix inverse;
-                    if (at.rows != at.columns || !adjoint(s, m, at.rows, power, factor) ||
-                        !adjoint(s, m, at.rows, -power, inverse)) {
-                      return false;
-                    }
-                    out = product_of(product_of(factor, of(s.exact, at)), inverse);
-                    return true;
+                  [&](const jacobian_sample& s, const scope& at) -> matrix {
+                    return at.rows != at.columns
+                               ? matrix()
+                               : times(times(of(s.exact, at), adjoint(s, m, at.rows, power), true),
+                                       adjoint(s, m, at.rows, -power), false);
                   });
         }
       }
@@ -562,17 +533,14 @@ protected:
     for (const motion& m : motions()) {
       for (const int power : {1, -1}) {
         attempt(message("another rotation: that of ", m.name, power < 0 ? "^-1" : "", " instead"),
-                [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                  const matrix exact = of(s.exact, at);
-                  out = rotation_of(s, m);
-                  out = power < 0 ? matrix(out.transpose()) : out;
+                [&](const jacobian_sample& s, const scope& at) -> matrix {
+                  const matrix exact = of(s.exact, at), r = rotation_of(s, m);
                   if (exact.rows() != 3 || exact.cols() != 3 ||
                       largest_entry(product_of(exact, exact.transpose()) - matrix::Identity(3, 3)) >
                           1e-9) {
-                    return false;
+                    return {};
                   }
-                  out *= Eigen::Matrix3d(exact).determinant();
-                  return true;
+                  return Eigen::Matrix3d(exact).determinant() * (power < 0 ? r.transpose() : r);
                 });
       }
     }
@@ -605,31 +573,29 @@ protected:
               if (half == .5 && !from.part->is_motion()) {
                 continue;
               }
-              const auto factor = [&, half = half, power = power](const jacobian_sample& s) {
-                const vector& state = from.is_result ? s.truth.value : s.state;
-                const Eigen::Vector3d phi =
-                    (from.part->is_motion()
-                         ? Eigen::Vector3d(rotation_vector(rotation_at(*from.part, state)))
-                         : Eigen::Vector3d(
-                               state.segment<3>(from.part->state + from.part->dimension - 3))) *
-                    sign * half;
-                const matrix m = is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi);
-                return power == 2 ? product_of(m, m) : m;
-              };
               const std::string name =
                   message("right only at the identity of ", from.name, ": multiplied by the ",
                           sign > 0 ? "left" : "right", " Jacobian of exp",
                           is_inverse ? ", inverse," : "", half == 1 ? "" : " at half the angle",
                           power == 1 ? "" : " twice (Jacobian for its inverse)", " from the ",
                           is_left ? "left" : "right");
-              attempt(name, [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                if ((is_left ? at.rows : at.columns) != 3) {
-                  return false;
-                }
-                out = is_left ? product_of(factor(s), of(s.exact, at))
-                              : product_of(of(s.exact, at), factor(s));
-                return true;
-              });
+              attempt(name,
+                      [&, half = half, power = power](const jacobian_sample& s,
+                                                      const scope& at) -> matrix {
+                        if ((is_left ? at.rows : at.columns) != 3) {
+                          return {};
+                        }
+                        const vector& state = from.is_result ? s.truth.value : s.state;
+                        const Eigen::Vector3d phi =
+                            (from.part->is_motion()
+                                 ? Eigen::Vector3d(rotation_vector(rotation_at(*from.part, state)))
+                                 : Eigen::Vector3d(state.segment<3>(from.part->state +
+                                                                    from.part->dimension - 3))) *
+                            sign * half;
+                        const matrix m =
+                            is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi);
+                        return times(of(s.exact, at), power == 2 ? product_of(m, m) : m, is_left);
+                      });
             }
           }
         }
@@ -657,8 +623,7 @@ protected:
     const auto add = [&](const std::vector<jacobian_part>& from, const vector& state) {
       for (const jacobian_part& a : from) {
         if (a.vector_state() >= 0) {
-          list.push_back({a.name + (a.type == kind::pose ? ".translation" : ""),
-                          state.segment<3>(a.vector_state())});
+          list.push_back({a.vector_name(), state.segment<3>(a.vector_state())});
         } else if (a.type == kind::vector && a.dimension == 6) {
           list.push_back({a.name + "[0..2]", state.segment<3>(a.state)});
           list.push_back({a.name + "[3..5]", state.segment<3>(a.state + 3)});
@@ -731,24 +696,22 @@ protected:
             }
             for (const double sign : {1., -1., 2., -2.}) {
               for (const bool is_other_side : {false, true}) {
-                attempt(message("moment arm about another point: off by ", arm.name,
-                                arm.type == kind::pose ? ".translation" : "",
+                attempt(message("moment arm about another point: off by ", arm.vector_name(),
                                 is_other_side ? ", and the other side of perturbation" : ""),
-                        [&](const jacobian_sample& s, const scope& at, matrix& out) {
+                        [&](const jacobian_sample& s, const scope& at) -> matrix {
                           if (!covers(at)) {
-                            return false;
+                            return {};
                           }
-                          out = of(s.exact, at);
+                          matrix out = of(s.exact, at);
                           if (is_other_side) {
                             const Eigen::Matrix3d r =
                                 rotation_matrix(rotation_at(rotated_part, s.state));
                             out = product_of(
                                 out, problem_.side == perturbation::right ? r.transpose() : r);
                           }
-                          out += product_of(
-                              force(s, at),
-                              cross_matrix(sign * s.state.segment<3>(arm.vector_state())));
-                          return true;
+                          return out + product_of(force(s, at),
+                                                  cross_matrix(sign * s.state.segment<3>(
+                                                                          arm.vector_state())));
                         });
               }
             }
@@ -779,13 +742,11 @@ protected:
           for (const double sign : {1., -1.}) {
             attempt(message("moment arm about another point: ",
                             vectors_of(samples_[0], true)[n].name, " instead"),
-                    [&](const jacobian_sample& s, const scope& at, matrix& out) {
-                      if (at.column != omega || at.columns != 3) {
-                        return false;
-                      }
-                      out = product_of(s.exact.block(at.row, moved.first, at.rows, 3),
-                                       cross_matrix(sign * vectors_of(s, true)[n].value));
-                      return true;
+                    [&](const jacobian_sample& s, const scope& at) -> matrix {
+                      return at.column != omega || at.columns != 3
+                                 ? matrix()
+                                 : product_of(s.exact.block(at.row, moved.first, at.rows, 3),
+                                              cross_matrix(sign * vectors_of(s, true)[n].value));
                     });
           }
         }

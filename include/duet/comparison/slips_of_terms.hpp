@@ -29,88 +29,76 @@ class slips_of_terms : protected slips_at_points {
 protected:
   using slips_at_points::slips_at_points;
 
-  /// Columns that contain other columns, and entries of rows that contain other entries.
-  void try_columns() {
-    for (const scope& at : scopes_) {
-      std::vector<Eigen::Index> from;
-      bool is_injective = true, is_identity = true;
-      for (Eigen::Index k = 0; k < at.columns; ++k) {
-        Eigen::Index source = -1;
-        for (Eigen::Index n = -1; n < samples_[0].exact.cols() && source < 0; ++n) {
-          // First the column itself, then that after the last source, then in order of distance.
-          const Eigen::Index column =
-              (n == 0 && k > 0 ? from.back() + 1 : at.column + k + std::max<Eigen::Index>(n, 0)) %
-              samples_[0].exact.cols();
-          const bool is_source =
-              std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-                const matrix other = s.exact.block(at.row, column, at.rows, 1);
-                return is_within(s.written.block(at.row, at.column + k, at.rows, 1) - other,
-                                 s.allowed + s.little_error, 1e-9, other, other);
-              });
-          source = is_source ? column : -1;
-        }
-        is_injective = is_injective && source >= 0 &&
-                       std::find(from.begin(), from.end(), source) == from.end();
-        is_identity = is_identity && source == at.column + k;
-        from.push_back(source);
+  /// Lines of a rectangle, columns or rows, that contain other lines: their indices in the whole
+  /// matrix; −1 for those that contain none.
+  [[nodiscard]] std::vector<Eigen::Index> sources_of_lines(const scope& at, bool is_columns) const {
+    const matrix& whole = samples_[0].exact;
+    const Eigen::Index count = is_columns ? at.columns : at.rows,
+                       all = is_columns ? whole.cols() : whole.rows();
+    const auto line = [&](const matrix& m, Eigen::Index i) -> matrix {
+      return is_columns ? m.block(at.row, i, at.rows, 1) : m.block(i, at.column, 1, at.columns);
+    };
+    std::vector<Eigen::Index> from;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::Index own = (is_columns ? at.column : at.row) + k;
+      Eigen::Index source = -1;
+      for (Eigen::Index n = -1; n < all && source < 0; ++n) {
+        // First the line itself, then that after the last source, then in order of distance.
+        const bool is_next = n == 0 && k > 0 && is_columns;
+        const Eigen::Index other =
+            (is_next ? from.back() + 1 : own + std::max<Eigen::Index>(n, 0)) % all;
+        const bool is_source =
+            std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+              const matrix exact = line(s.exact, other);
+              return is_within(line(s.written, own) - exact, s.allowed + s.little_error, 1e-9,
+                               exact, exact);
+            });
+        source = is_source ? other : -1;
       }
-      const bool has_all = std::none_of(from.begin(), from.end(), [](auto c) { return c < 0; });
-      // Copies of columns are one slip if all come from the same distance.
-      std::set<Eigen::Index> distances;
-      for (std::size_t k = 0; k < from.size(); ++k) {
-        distances.insert(from[k] - at.column - Eigen::Index(k));
-      }
-      distances.erase(0);
-      if (has_all && !is_identity && (is_injective || distances.size() == 1)) {
-        std::string list;
-        for (const Eigen::Index c : from) {
-          list += (list.empty() ? "" : ", ") + std::to_string(c);
-        }
-        accept(message(at.columns == 1 ? "wrong index: column "
-                       : is_injective  ? "permuted or shifted: columns "
-                                       : "wrong index: columns ",
-                       list, " of the matrix"),
-               at.name);
-        return;
-      }
+      from.push_back(source);
     }
-    // Rows that contain other rows.
-    for (const scope& at : scopes_) {
-      std::string list;
-      std::set<Eigen::Index> from;
-      bool has_all = true;
-      for (Eigen::Index i = 0; i < at.rows && has_all; ++i) {
-        Eigen::Index source = -1;
-        for (Eigen::Index n = 0; n < samples_[0].exact.rows() && source < 0; ++n) {
-          const Eigen::Index row = (at.row + i + n) % samples_[0].exact.rows();
-          const bool is_source =
-              std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-                const matrix other = s.exact.block(row, at.column, 1, at.columns);
-                return is_within(s.written.block(at.row + i, at.column, 1, at.columns) - other,
-                                 s.allowed + s.little_error, 1e-9, other, other);
-              });
-          source = is_source ? row : -1;
+    return from;
+  }
+
+  /// Columns that contain other columns, and rows that contain other rows.
+  void try_columns() {
+    for (const bool is_columns : {true, false}) {
+      for (const scope& at : scopes_) {
+        const std::vector<Eigen::Index> from = sources_of_lines(at, is_columns);
+        const std::set<Eigen::Index> different(from.begin(), from.end());
+        // Copies of columns are one slip if all come from the same distance.
+        std::set<Eigen::Index> distances;
+        std::string list;
+        for (std::size_t k = 0; k < from.size(); ++k) {
+          distances.insert(from[k] - at.column - Eigen::Index(k));
+          list += (k == 0 ? "" : ", ") + std::to_string(from[k]);
         }
-        has_all = source >= 0;
-        from.insert(source);
-        list += (list.empty() ? "" : ", ") + std::to_string(source);
-      }
-      if (has_all && (at.columns > 1 || (at.rows > 1 && Eigen::Index(from.size()) == at.rows))) {
-        accept(message(at.rows == 1 ? "wrong index: row " : "permuted or wrong rows: ", list,
-                       " of the matrix"),
-               at.name);
-        return;
+        distances.erase(0);
+        const bool is_injective = different.size() == from.size();
+        const bool is_slip = is_columns
+                                 ? !distances.empty() && (is_injective || distances.size() == 1)
+                                 : at.columns > 1 || (at.rows > 1 && is_injective);
+        if (*different.begin() >= 0 && is_slip) {
+          accept(message(from.size() == 1
+                             ? (is_columns ? "wrong index: column " : "wrong index: row ")
+                         : !is_columns  ? "permuted or wrong rows: "
+                         : is_injective ? "permuted or shifted: columns "
+                                        : "wrong index: columns ",
+                         list, " of the matrix"),
+                 at.name);
+          return;
+        }
       }
     }
     // Shifted, with zeros at the end.
     for (const int shift : {1, -1, 3, -3}) {
-      attempt_change(message("shifted by ", shift, " columns"), [&](const matrix& m, matrix& out) {
+      attempt_change(message("shifted by ", shift, " columns"), [&](const matrix& m) {
         const Eigen::Index kept = m.cols() - std::abs(shift);
-        out = matrix::Zero(m.rows(), m.cols());
+        matrix out = kept > 0 ? matrix(matrix::Zero(m.rows(), m.cols())) : matrix();
         if (kept > 0) {
           out.middleCols(std::max(shift, 0), kept) = m.middleCols(std::max(-shift, 0), kept);
         }
-        return kept > 0;
+        return out;
       });
     }
   }
@@ -162,10 +150,8 @@ protected:
         const quaternion<double> q = rotation_at(a, s.state);
         add(a.name, Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()));
       }
-      if (a.type == kind::pose) {
-        add(a.name + ".translation", s.state.segment<3>(a.state + 4));
-      } else if (!a.is_motion()) {
-        add(a.name, s.state.segment(a.state, a.dimension));
+      if (a.type != kind::rotation) {
+        add(a.vector_name(), s.state.segment(a.vector_first(), a.vector_size()));
       }
     }
     for (const jacobian_part& r : problem_.results) {
