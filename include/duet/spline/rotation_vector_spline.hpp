@@ -408,19 +408,40 @@ public:
     return x;
   }
 
-  /// Taylor coefficients x_1 … x_Count at the start, or about the end, for the rates w_0 …
-  /// w_{Count−1}.
+  /// Rates w_0 … w_{Count−1} at an end, 0 the start, from x_1 … x_Count about it.
   template <std::size_t Count>
   [[nodiscard]] std::array<vector3<T>, Count>
-  taylor_at_start(const std::array<vector3<T>, Count>& w) const {
-    return taylor_of_rates(at_start(), zero(), w, [](const vector3<T>& v) { return v; });
+  rates_at(std::size_t end, const std::array<vector3<T>, Count>& x) const {
+    return end == 0 ? half_body_rates(at_start(), zero(), x) : half_body_rates(at_end_, d_, x);
   }
+  /// Taylor coefficients x_1 … x_Count about an end for the rates w_0 … w_{Count−1}: each x_{k+1}
+  /// from w_k minus the contribution of the coefficients x_1 … x_k.
   template <std::size_t Count>
   [[nodiscard]] std::array<vector3<T>, Count>
-  taylor_at_end(const std::array<vector3<T>, Count>& w) const {
-    return taylor_of_rates(at_end_, d_, w,
-                           [this](const vector3<T>& v) { return times_inverse(v); });
+  taylor_at(std::size_t end, const std::array<vector3<T>, Count>& w) const {
+    std::array<vector3<T>, Count> x;
+    const auto next = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+      std::array<vector3<T>, K + 1> lower;
+      std::copy_n(x.begin(), K, lower.begin());
+      lower[K] = vector3<T>::Constant(T(real(0)));
+      const vector3<T> rest = w[K] - rates_at(end, lower)[K];
+      x[K] = (end == 0 ? rest : times_inverse(rest)) * (real(1) / real(K + 1));
+    };
+    [&]<std::size_t... K>(std::index_sequence<K...>) {
+      (next(std::integral_constant<std::size_t, K>{}), ...);
+    }
+    (std::make_index_sequence<Count>{});
+    return x;
   }
+  /// Derivatives of w_0 … w_{Count−1} at an end with respect to x_1 … x_Count about it, see
+  /// `half_body_rate_gradients`.
+  template <std::size_t Count>
+  [[nodiscard]] auto gradients_at(std::size_t end, const std::array<vector3<T>, Count>& x) const {
+    return end == 0 ? half_body_rate_gradients(at_start(), zero(), x)
+                    : half_body_rate_gradients(at_end_, d_, x);
+  }
+  /// Inverse Jacobian J(d)⁻¹.
+  [[nodiscard]] const matrix3<T>& inverse() const { return inverse_; }
 
   /// Rates of the cubic at its start and its end: w_0, w_1 and, for `count` = 3, w_2.
   [[nodiscard]] std::array<std::array<vector3<T>, 3>, 2> rates(const coefficients& x,
@@ -435,35 +456,10 @@ public:
       w[1][1] = components(times_jacobian_rate(y[1])) + real(2) * components(times_jacobian(y[2]));
     } else {
       w[0][2] = real(3) * components(x[3]) - cross(components(x[1]), components(x[2]));
-      w[1] = rates_at_end<3>({y[1], y[2], y[3]});
+      w[1] = rates_at<3>(1, {y[1], y[2], y[3]});
     }
     return w;
   }
-
-  /// Rates w_0 … w_{Count−1} at the start, or the end, from x_1 … x_Count about it.
-  template <std::size_t Count>
-  [[nodiscard]] std::array<vector3<T>, Count>
-  rates_at_start(const std::array<vector3<T>, Count>& x) const {
-    return half_body_rates(at_start(), zero(), x);
-  }
-  template <std::size_t Count>
-  [[nodiscard]] std::array<vector3<T>, Count>
-  rates_at_end(const std::array<vector3<T>, Count>& x) const {
-    return half_body_rates(at_end_, d_, x);
-  }
-
-  /// Derivatives of w_0 … w_{Count−1} at one end with respect to x_1 … x_Count about it, see
-  /// `half_body_rate_gradients`.
-  template <std::size_t Count>
-  [[nodiscard]] auto gradients_at_start(const std::array<vector3<T>, Count>& x) const {
-    return half_body_rate_gradients(at_start(), zero(), x);
-  }
-  template <std::size_t Count>
-  [[nodiscard]] auto gradients_at_end(const std::array<vector3<T>, Count>& x) const {
-    return half_body_rate_gradients(at_end_, d_, x);
-  }
-  /// Inverse Jacobian J(d)⁻¹.
-  [[nodiscard]] const matrix3<T>& inverse() const { return inverse_; }
 
   using rate_gradients = std::array<std::array<std::array<matrix3<T>, 2>, 3>, 2>;
   /// Derivatives of the cubic's rates: element [end][k][knot] is ∂w_k/∂w_0, w_k at its start (end
@@ -496,8 +492,8 @@ public:
     add_axial(result[1][1][1], T(2), end);
     if (count > 2) {
       const coefficients x = polynomial({start}, {end}), y = taylor_shift<4>(x, h_);
-      const std::array of{gradients_at_start<3>({x[1], x[2], x[3]})[2],
-                          gradients_at_end<3>({y[1], y[2], y[3]})[2]};
+      const std::array of{gradients_at<3>(0, {x[1], x[2], x[3]})[2],
+                          gradients_at<3>(1, {y[1], y[2], y[3]})[2]};
       // Derivatives of x_1, x_2, x_3 and of y_1, y_2, y_3 with respect to ẋ at the start and at the
       // end.
       const real a = per_h, aa = a * a, o(0);
@@ -519,26 +515,6 @@ private:
   [[nodiscard]] static const jacobian_coefficients<std::size_t(Order) - 1, real>& at_start() {
     static const jacobian_coefficients<std::size_t(Order) - 1, real> result(real(0));
     return result;
-  }
-
-  /// Computes each x_{k+1} from w_k minus the contribution of the coefficients x_1 … x_k.
-  template <std::size_t Count, class Coefficients, class X, class Inverse>
-  [[nodiscard]] static std::array<vector3<T>, Count>
-  taylor_of_rates(const Coefficients& jacobian, const X& at, const std::array<vector3<T>, Count>& w,
-                  const Inverse& inverse) {
-    std::array<vector3<T>, Count> x;
-    const auto next = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
-      std::array<vector3<T>, K + 1> lower;
-      std::copy_n(x.begin(), K, lower.begin());
-      lower[K] = vector3<T>::Constant(T(real(0)));
-      const vector3<T> contribution = half_body_rates(jacobian, at, lower)[K];
-      x[K] = inverse(vector3<T>(w[K] - contribution)) * (real(1) / real(K + 1));
-    };
-    [&]<std::size_t... K>(std::index_sequence<K...>) {
-      (next(std::integral_constant<std::size_t, K>{}), ...);
-    }
-    (std::make_index_sequence<Count>{});
-    return x;
   }
 
   /// Second derivative ẍ at the end for given w and its derivative.
@@ -621,7 +597,7 @@ jacobian_of_segment(const std::array<quaternion<T>, 2>& ends, const real_type_t<
   std::array<vector3<T>, count> x_start, x_end;
   std::copy_n(piece.begin() + 1, count, x_start.begin());
   std::copy_n(at_end.begin() + 1, count, x_end.begin());
-  const auto start = plain.rates_at_start(x_start), end = plain.rates_at_end(x_end);
+  const auto start = plain.rates_at(0, x_start), end = plain.rates_at(1, x_end);
 
   std::array<vector3<D>, count> wide_start, wide_end;
   vector3<D> d;

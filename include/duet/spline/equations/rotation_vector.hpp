@@ -288,100 +288,93 @@ public:
 
   quintic_piece(const R& h, const vector3<T>& d) : h_(h), d_(d), segment_(h, d) {}
 
-  struct ends {
-    coefficients x, y;
-  };
+  /// x_1 … x_4 and y_1 … y_4.
+  using ends = std::array<coefficients, 2>;
   [[nodiscard]] ends taylor(const coefficients& at_start, const coefficients& at_end) const {
-    return {segment_.template taylor_at_start<count>(at_start),
-            segment_.template taylor_at_end<count>(at_end)};
+    return {segment_.taylor_at(0, at_start), segment_.taylor_at(1, at_end)};
   }
 
   /// Derivatives with respect to all rates of a knot, w_0 … w_3.
   using gradient = Eigen::Matrix<R, 3, 3 * int(count)>;
-  struct end_gradients {
-    std::array<gradient, count> x, y;
-  };
   /// Derivatives of x_1 … x_4 with respect to the rates at the start, and of y_1 … y_4 with respect
   /// to those at the end. For real T.
-  [[nodiscard]] end_gradients taylor_gradients(const ends& e) const {
-    return {inverted(segment_.gradients_at_start(e.x), matrix3<R>::Identity()),
-            inverted(segment_.gradients_at_end(e.y), segment_.inverse())};
+  [[nodiscard]] std::array<std::array<gradient, count>, 2> taylor_gradients(const ends& e) const {
+    return {inverted(segment_.gradients_at(0, e[0]), matrix3<R>::Identity()),
+            inverted(segment_.gradients_at(1, e[1]), segment_.inverse())};
   }
 
-  /// Factors of x_1 … x_4 in the equations, with right sides taken to the left; the equations of
-  /// second and third rates are multiplied by l and l², which scales them to the size of the
-  /// others.
-  [[nodiscard]] factors factors_of_start(const R& l) const {
+  /// Factors of x_1 … x_4 and of y_1 … y_4 in the equations, with right sides taken to the left;
+  /// the equations of second and third rates are multiplied by l and l², which scales them to the
+  /// size of the others.
+  [[nodiscard]] std::array<factors, 2> factors_of_ends(const R& l) const {
     const R h = h_, hh = h * h, ll = l * l, o(0);
-    return {{{R(1), h, hh, R(hh * h * 4 / 5)},
-             {R(-1), R(-2 * h), R(-3 * hh), R(-3 * hh * h)},
-             {o, R(-l), R(-3 * h * l), R(-4 * hh * l)},
-             {o, o, R(-ll), R(-2 * h * ll)}}};
-  }
-  /// Factors of y_1 … y_4 in the same equations.
-  [[nodiscard]] factors factors_of_end(const R& l) const {
-    const R h = h_, hh = h * h, ll = l * l, o(0);
-    return {{{o, o, o, R(hh * h / 5)},
-             {R(1), o, o, R(-hh * h)},
-             {o, l, o, R(-2 * hh * l)},
-             {o, o, ll, R(-2 * h * ll)}}};
+    return {factors{{{R(1), h, hh, R(hh * h * 4 / 5)},
+                     {R(-1), R(-2 * h), R(-3 * hh), R(-3 * hh * h)},
+                     {o, R(-l), R(-3 * h * l), R(-4 * hh * l)},
+                     {o, o, R(-ll), R(-2 * h * ll)}}},
+            factors{{{o, o, o, R(hh * h / 5)},
+                     {R(1), o, o, R(-hh * h)},
+                     {o, l, o, R(-2 * hh * l)},
+                     {o, o, ll, R(-2 * h * ll)}}}};
   }
   /// Residuals of the equations for x and y.
   [[nodiscard]] coefficients residuals(const ends& e, const R& l) const {
-    const factors a = factors_of_start(l), b = factors_of_end(l);
+    const auto [a, b] = factors_of_ends(l);
     coefficients result;
     for (std::size_t m = 0; m < count; ++m) {
       three_vector<T> sum = R(m > 0 ? 0 : -1 / h_) * components(d_);
       for (std::size_t k = 0; k < count; ++k) {
-        sum = sum + (a[m][k] * components(e.x[k]) + b[m][k] * components(e.y[k]));
+        sum = sum + (a[m][k] * components(e[0][k]) + b[m][k] * components(e[1][k]));
       }
       result[m] = sum;
     }
     return result;
   }
 
-  /// Contributions of the rates at the start and at the end to the fifth rate w_4 at the start.
-  [[nodiscard]] std::array<vector3<T>, 2> last_rate_at_start(const ends& e) const {
-    const R per_h = 1 / h_;
-    const vector3<T> w = segment_.template rates_at_start<count + 1>(with_zero(e.x))[count];
-    return {components(w) + R(-per_h) * components(e.x[3]), per_h * components(e.y[3])};
-  }
-  /// Contributions of the rates at the start and at the end to the fifth rate w_4 at the end.
-  [[nodiscard]] std::array<vector3<T>, 2> last_rate_at_end(const ends& e) const {
-    const R per_h = 1 / h_;
-    const vector3<T> w = segment_.template rates_at_end<count + 1>(with_zero(e.y))[count];
+  /// Contributions of the rates at the start and at the end to the fifth rate w_4 at an end, where
+  /// x_5 = (x_4 − x_4 of the other end)/(5h), with the sign of h towards the other.
+  [[nodiscard]] std::array<vector3<T>, 2> last_rate_at(std::size_t end, const ends& e) const {
+    const std::size_t other = 1 - end;
+    const R per_h = R(end == 0 ? -1 : 1) / h_;
     const auto in_body_axes = [&](const vector3<T>& x, const R& factor) {
-      return segment_.template rates_at_end<1>(
-          std::array<vector3<T>, 1>{factor * components(x)})[0];
+      return components(
+          segment_.rates_at(end, std::array<vector3<T>, 1>{factor * components(x)})[0]);
     };
-    return {in_body_axes(e.x[3], R(-per_h)),
-            components(w) + components(in_body_axes(e.y[3], per_h))};
+    std::array<vector3<T>, 2> result;
+    result[end] = components(segment_.rates_at(end, with_zero(e[end]))[count]) +
+                  in_body_axes(e[end][3], per_h);
+    result[other] = in_body_axes(e[other][3], R(-per_h));
+    return result;
   }
   /// Derivatives of these two contributions, each with respect to the rates of its knot. For real
   /// T.
-  [[nodiscard]] std::array<gradient, 2> gradients_of_last_rate_at_start(const ends& e) const {
-    const end_gradients by = taylor_gradients(e);
-    return last_rate_gradients(segment_.gradients_at_start(with_zero(e.x)), by.x, by.y[3],
-                               R(-1 / h_));
-  }
-  [[nodiscard]] std::array<gradient, 2> gradients_of_last_rate_at_end(const ends& e) const {
-    const end_gradients by = taylor_gradients(e);
-    const auto [of_end, of_start] =
-        last_rate_gradients(segment_.gradients_at_end(with_zero(e.y)), by.y, by.x[3], R(1 / h_));
-    return {of_start, of_end};
+  [[nodiscard]] std::array<gradient, 2> last_rate_gradients_at(std::size_t end,
+                                                               const ends& e) const {
+    const std::size_t other = 1 - end;
+    const R per_h = R(end == 0 ? -1 : 1) / h_;
+    const auto by = taylor_gradients(e);
+    const auto of = segment_.gradients_at(end, with_zero(e[end]));
+    std::array<gradient, 2> result{gradient::Zero(), gradient::Zero()};
+    for (std::size_t m = 0; m < count; ++m) {
+      add_product(result[end], R(1), of[count][m], by[end][m]);
+    }
+    add_product(result[end], per_h, of[0][0], by[end][count - 1]);
+    add_product(result[other], R(-per_h), of[0][0], by[other][count - 1]);
+    return result;
   }
 
   /// Coefficients x_0 … x_5.
   [[nodiscard]] std::array<vector3<T>, 6> polynomial(const ends& e) const {
+    const auto& [x, y] = e;
     std::array<vector3<T>, 6> result;
     result[0] = vector3<T>::Constant(T(R(0)));
     for (int k = 0; k < 3; ++k) {
       result[1][k] =
-          d_[k] / h_ - h_ * (e.x[1][k] + h_ * (e.x[2][k] + h_ * ((4 * e.x[3][k] + e.y[3][k]) / 5)));
-      result[2][k] = e.x[1][k];
-      result[3][k] = e.x[2][k];
-      result[4][k] = e.x[3][k];
-      result[5][k] = (e.y[3][k] - e.x[3][k]) / (5 * h_);
+          d_[k] / h_ - h_ * (x[1][k] + h_ * (x[2][k] + h_ * ((4 * x[3][k] + y[3][k]) / 5)));
+      result[2][k] = x[1][k];
+      result[3][k] = x[2][k];
+      result[4][k] = x[3][k];
+      result[5][k] = (y[3][k] - x[3][k]) / (5 * h_);
     }
     return result;
   }
@@ -393,22 +386,6 @@ private:
 
   template <std::size_t Count>
   using rate_gradients = std::array<std::array<matrix3<R>, Count>, Count>;
-
-  /// Derivatives with respect to the rates at the same and at the other end of the segment, where
-  /// x_5 = `per_h` (x_4 − other x_4)/5. `own` are the derivatives of the coefficients at the same
-  /// end, `other` those of the fourth coefficient at the other end.
-  [[nodiscard]] static std::array<gradient, 2>
-  last_rate_gradients(const rate_gradients<count + 1>& of, const std::array<gradient, count>& own,
-                      const gradient& other, const R& per_h) {
-    const matrix3<R>& jacobian = of[0][0];
-    std::array<gradient, 2> result{gradient::Zero(), gradient::Zero()};
-    for (std::size_t m = 0; m < count; ++m) {
-      add_product(result[0], R(1), of[count][m], own[m]);
-    }
-    add_product(result[0], per_h, jacobian, own[count - 1]);
-    add_product(result[1], R(-per_h), jacobian, other);
-    return result;
-  }
 
   /// Derivatives of x_1 … x_4 with respect to w_0 … w_3, from those of w_0 … w_3 with respect to
   /// x_1 … x_4.
@@ -648,8 +625,8 @@ public:
         of_end =
             rates(x[knot])[derivative] - ends_.values[end][k] * T(this->unit_to(derivative + 1));
       } else {
-        const auto before = pieces_[knot - 1].last_rate_at_end(taylor(knot - 1, x));
-        const auto after = pieces_[knot].last_rate_at_start(taylor(knot, x));
+        const auto before = pieces_[knot - 1].last_rate_at(1, taylor(knot - 1, x));
+        const auto after = pieces_[knot].last_rate_at(0, taylor(knot, x));
         of_end = before[0] + before[1] - after[0] - after[1];
       }
       r.back().template segment<3>(end_row(end, k)) = (scale * components(of_end)).eigen();
@@ -674,26 +651,26 @@ public:
     groups.reserve(pieces_.size() + 4);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const auto e = pieces_[i].taylor_gradients(taylor(i, x));
-      const auto of_x = pieces_[i].factors_of_start(scale_of(i));
-      const auto of_y = pieces_[i].factors_of_end(scale_of(i));
-      panel at_start = panel::Zero(n, n), at_end = at_start;
+      const auto factors = pieces_[i].factors_of_ends(scale_of(i));
+      std::array<panel, 2> at{panel::Zero(n, n), panel::Zero(n, n)};
       for (std::size_t m = 0; m < count; ++m) {
         for (std::size_t k = 0; k < count; ++k) {
-          add(at_start.template middleRows<3>(3 * Eigen::Index(m)), of_x[m][k], e.x[k]);
-          add(at_end.template middleRows<3>(3 * Eigen::Index(m)), of_y[m][k], e.y[k]);
+          for (const std::size_t end : {0U, 1U}) {
+            add(at[end].template middleRows<3>(3 * Eigen::Index(m)), factors[end][m][k], e[end][k]);
+          }
         }
       }
       equations group{i, i * std::size_t(n), {}, {}};
       if (!ends_.is_cyclic || i + 2 < pieces_.size()) {
         group.coefficients.resize(n, 2 * n);
-        group.coefficients << at_start, at_end;
+        group.coefficients << at[0], at[1];
       } else if (i + 2 == pieces_.size()) {
-        group.coefficients = at_start;
-        group.of_last = at_end;
+        group.coefficients = at[0];
+        group.of_last = at[1];
       } else { // from the last knot to the first one
         group.first = 0;
-        group.coefficients = at_end;
-        group.of_last = at_start;
+        group.coefficients = at[1];
+        group.of_last = at[0];
       }
       groups.push_back(std::move(group));
     }
@@ -709,8 +686,8 @@ public:
       } else {
         group.coefficients = panel::Zero(3, 3 * n);
         const auto of = [&](int at) { return group.coefficients.template middleCols<n>(at * n); };
-        const auto before = pieces_[knot - 1].gradients_of_last_rate_at_end(taylor(knot - 1, x));
-        const auto after = pieces_[knot].gradients_of_last_rate_at_start(taylor(knot, x));
+        const auto before = pieces_[knot - 1].last_rate_gradients_at(1, taylor(knot - 1, x));
+        const auto after = pieces_[knot].last_rate_gradients_at(0, taylor(knot, x));
         add(of(0), scale, before[0]);
         add(of(1), scale, before[1]);
         add(of(1), R(-scale), after[0]);
