@@ -109,23 +109,21 @@ enum class end_condition_kind {
   periodic
 };
 
+/// Halved rates at the start and the end.
+///
 /// \throws invalid_input for a velocity or acceleration that is not finite
-template <class V>
-void check_end_rates(const char* condition, const V& start, const V& end) {
+template <class T, class V>
+[[nodiscard]] std::array<vector3<T>, 2> half_end_rates(const char* condition, const V& start,
+                                                       const V& end) {
   static_assert(V::SizeAtCompileTime == 3 || V::SizeAtCompileTime == 6,
                 "duet: end rates are angular, 3-vectors, or twists [v; ω], 6-vectors");
-  const auto check = [&](const char* which, const V& rate) {
-    for (int i = 0; i < V::SizeAtCompileTime; ++i) {
-      if (!(innermost(rate[i]) - innermost(rate[i]) == 0)) {
-        raise(invalid_input(
-            message("duet: ", condition, ": the rate at the ", which, ", (",
-                    rate.transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "}),
-                    "), is not finite")));
-      }
-    }
-  };
-  check("start", start);
-  check("end", end);
+  for (const V* rate : {&start, &end}) {
+    require(rate->allFinite(), "duet: ", condition, ": the rate at the ",
+            rate == &start ? "start" : "end", ", (",
+            rate->transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "}),
+            "), is not finite");
+  }
+  return {half_rate<T>(start), half_rate<T>(end)};
 }
 
 } // namespace detail
@@ -148,14 +146,12 @@ struct curve_ends {
   curve_ends(const natural&) : curve_ends(detail::end_condition_kind::natural) {}
   template <class V>
   curve_ends(const clamped<V>& ends) : curve_ends(detail::end_condition_kind::velocity) {
-    detail::check_end_rates("clamped", ends.start, ends.end);
-    velocity = {detail::half_rate<T>(ends.start), detail::half_rate<T>(ends.end)};
+    velocity = detail::half_end_rates<T>("clamped", ends.start, ends.end);
   }
   template <class V>
   curve_ends(const end_acceleration<V>& ends)
       : curve_ends(detail::end_condition_kind::acceleration) {
-    detail::check_end_rates("end_acceleration", ends.start, ends.end);
-    acceleration = {detail::half_rate<T>(ends.start), detail::half_rate<T>(ends.end)};
+    acceleration = detail::half_end_rates<T>("end_acceleration", ends.start, ends.end);
   }
   template <class V>
   curve_ends(const fully_clamped<V>& ends) : curve_ends(ends.velocity) {

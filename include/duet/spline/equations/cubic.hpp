@@ -38,66 +38,6 @@ struct small_angle_equation {
   vector3<T> right;
 };
 
-/// Solution of all these equations; zero if they are singular.
-template <class R, class Equations>
-[[nodiscard]] std::vector<vector3<R>> small_angle_solution(const Equations& equations) {
-  const std::size_t n = equations.size();
-  typename Equations::matrix matrix;
-  auto& rows = matrix.rows();
-  rows.resize(n);
-  std::vector<vector3<R>> x(n);
-  for (std::size_t row = 0; row < n; ++row) {
-    const small_angle_equation<R> equation = equations.small_angles(row);
-    for (std::size_t j = 0; j < 3; ++j) {
-      matrix3<R>& block = rows[row].at(equations.block_position(row, j));
-      block.setZero();
-      for (int k = 0; k < 3; ++k) {
-        block(k, k) = equation.weights[j];
-      }
-    }
-    x[row] = equation.right;
-  }
-  if (!matrix.factorise(equations.corner_columns())) {
-    x.assign(n, vector3<R>::Zero());
-    return x;
-  }
-  matrix.solve(x);
-  return x;
-}
-
-/// Size of a step of the unknowns from x relative to the values it changes: the maximum over all
-/// equations of the change divided by the largest term of the equation. So small equations of short
-/// intervals count as much as those of long ones.
-template <class R, class Equations>
-[[nodiscard]] R relative_step(const Equations& equations, const std::vector<vector3<R>>& x,
-                              const std::vector<vector3<R>>& step) {
-  using std::abs;
-  const std::size_t n = x.size();
-  std::vector<R> moved(n, R(0)), term(n);
-  R largest(0);
-  for (std::size_t row = 0; row < n; ++row) {
-    const small_angle_equation<R> equation = equations.small_angles(row);
-    term[row] = length(equation.right);
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::size_t k = equations.unknown(row, j);
-      const R weight = abs(equation.weights[j]);
-      const R change = weight * length(step[k]);
-      moved[row] += change;
-      term[row] = std::max(R(term[row] + change), R(weight * length(x[k])));
-    }
-    largest = std::max(largest, term[row]);
-  }
-  // Far from all rotations, terms decay below the smallest numbers: they are bounded from below.
-  const R epsilon = std::numeric_limits<R>::epsilon();
-  const R min_term = largest * (epsilon * epsilon) * (epsilon * epsilon);
-  R result(0);
-  for (std::size_t row = 0; row < n; ++row) {
-    const R ratio = moved[row] > 0 ? R(moved[row] / std::max(term[row], min_term)) : moved[row];
-    result = larger_or_nan(result, ratio);
-  }
-  return result;
-}
-
 /// Derivatives of a vector with respect to three vectors.
 template <class R>
 using gradient_by_three = std::array<matrix3<R>, 3>;
@@ -220,10 +160,57 @@ public:
   [[nodiscard]] corners corner_columns() const {
     return is_cyclic() ? corners{size() - 1, 0} : corners{2, size() - 3};
   }
-  [[nodiscard]] unknowns start() const { return small_angle_solution<R>(*this); }
 
+  /// Initial guess of Newton's method: the solution for small rotations; zero if their equations
+  /// are singular. For real T.
+  [[nodiscard]] unknowns start() const {
+    matrix equations;
+    auto& rows = equations.rows();
+    rows.resize(size());
+    unknowns x(size());
+    for (std::size_t row = 0; row < size(); ++row) {
+      const small_angle_equation<R> equation = small_angles(row);
+      for (std::size_t j = 0; j < 3; ++j) {
+        rows[row].at(block_position(row, j)) = equation.weights[j] * matrix3<R>::Identity();
+      }
+      x[row] = equation.right;
+    }
+    if (equations.factorise(corner_columns())) {
+      equations.solve(x);
+    } else {
+      x.assign(size(), vector3<R>::Zero());
+    }
+    return x;
+  }
+
+  /// Size of a step of the unknowns from x relative to the values it changes: the maximum over all
+  /// equations of the change divided by the largest term of the equation. So small equations of
+  /// short intervals count as much as those of long ones. For real T.
   [[nodiscard]] R relative_step(const unknowns& x, const unknowns& step) const {
-    return detail::relative_step<R>(*this, x, step);
+    using std::abs;
+    std::vector<R> moved(size(), R(0)), term(size());
+    R largest(0);
+    for (std::size_t row = 0; row < size(); ++row) {
+      const small_angle_equation<R> equation = small_angles(row);
+      term[row] = length(equation.right);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const std::size_t k = unknown(row, j);
+        const R weight = abs(equation.weights[j]);
+        const R change = weight * length(step[k]);
+        moved[row] += change;
+        term[row] = std::max(R(term[row] + change), R(weight * length(x[k])));
+      }
+      largest = std::max(largest, term[row]);
+    }
+    // Far from all rotations, terms decay below the smallest numbers: they are bounded from below.
+    const R epsilon = std::numeric_limits<R>::epsilon();
+    const R min_term = largest * (epsilon * epsilon) * (epsilon * epsilon);
+    R result(0);
+    for (std::size_t row = 0; row < size(); ++row) {
+      const R ratio = moved[row] > 0 ? R(moved[row] / std::max(term[row], min_term)) : moved[row];
+      result = larger_or_nan(result, ratio);
+    }
+    return result;
   }
   [[nodiscard]] const R& unevenness() const { return unevenness_; }
 
