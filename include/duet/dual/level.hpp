@@ -263,63 +263,32 @@ template <class A, class B, class X>
 
 namespace duet {
 // Comparisons use values only, as an `if` in the differentiated function should.
-template <class A, detail::MixedScalars<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator==(const A& a, const B& b) {
-  return detail::comparable<A, B>(a) == detail::comparable<A, B>(b);
-}
-template <class A, detail::MixedScalars<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator!=(const A& a, const B& b) {
-  return detail::comparable<A, B>(a) != detail::comparable<A, B>(b);
-}
-template <class A, detail::OrderedScalars<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<(const A& a, const B& b) {
-  return detail::comparable<A, B>(a) < detail::comparable<A, B>(b);
-}
-template <class A, detail::OrderedScalars<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator<=(const A& a, const B& b) {
-  return detail::comparable<A, B>(a) <= detail::comparable<A, B>(b);
-}
-template <class A, detail::OrderedScalars<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>(const A& a, const B& b) {
-  return detail::comparable<A, B>(a) > detail::comparable<A, B>(b);
-}
-template <class A, detail::OrderedScalars<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator>=(const A& a, const B& b) {
-  return detail::comparable<A, B>(a) >= detail::comparable<A, B>(b);
-}
+#define DUET_COMPARES(op, Numbers)                                                                 \
+  template <class A, detail::Numbers<A> B>                                                         \
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator op(const A& a, const B& b) {            \
+    return detail::comparable<A, B>(a) op detail::comparable<A, B>(b);                             \
+  }
+DUET_COMPARES(==, MixedScalars)
+DUET_COMPARES(!=, MixedScalars)
+DUET_COMPARES(<, OrderedScalars)
+DUET_COMPARES(<=, OrderedScalars)
+DUET_COMPARES(>, OrderedScalars)
+DUET_COMPARES(>=, OrderedScalars)
+#undef DUET_COMPARES
 
-template <class A, detail::DifferentNestings<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator+(const A& a, const B& b) {
-  using common = promote_t<A, B>;
-  return static_cast<common>(a) + static_cast<common>(b);
-}
-template <class A, detail::DifferentNestings<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator-(const A& a, const B& b) {
-  using common = promote_t<A, B>;
-  return static_cast<common>(a) - static_cast<common>(b);
-}
-template <class A, detail::DifferentNestings<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator*(const A& a, const B& b) {
-  using common = promote_t<A, B>;
-  return static_cast<common>(a) * static_cast<common>(b);
-}
-template <class A, detail::DifferentNestings<A> B>
-[[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator/(const A& a, const B& b) {
-  using common = promote_t<A, B>;
-  return static_cast<common>(a) / static_cast<common>(b);
-}
-
-template <class A, detail::DifferentSizes<A> B>
-auto operator+(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
-
-template <class A, detail::DifferentSizes<A> B>
-auto operator-(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
-
-template <class A, detail::DifferentSizes<A> B>
-auto operator*(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
-
-template <class A, detail::DifferentSizes<A> B>
-auto operator/(const A&, const B&) -> detail::different_numbers_of_partials_or_orders = delete;
+#define DUET_OPERATOR_OF_TWO_TYPES(op)                                                             \
+  template <class A, detail::DifferentNestings<A> B>                                               \
+  [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operator op(const A& a, const B& b) {            \
+    using common = promote_t<A, B>;                                                                \
+    return static_cast<common>(a) op static_cast<common>(b);                                       \
+  }                                                                                                \
+  template <class A, detail::DifferentSizes<A> B>                                                  \
+  auto operator op(const A&, const B&)->detail::different_numbers_of_partials_or_orders = delete;
+DUET_OPERATOR_OF_TWO_TYPES(+)
+DUET_OPERATOR_OF_TWO_TYPES(-)
+DUET_OPERATOR_OF_TWO_TYPES(*)
+DUET_OPERATOR_OF_TWO_TYPES(/)
+#undef DUET_OPERATOR_OF_TWO_TYPES
 
 } // namespace duet
 

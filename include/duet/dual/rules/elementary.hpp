@@ -97,6 +97,14 @@ template <class T>
 
 } // namespace duet::detail
 
+/// The value of a rule is that of the function of `<cmath>`, or of one found by its argument.
+#define DUET_VALUE_OF_RULE(function)                                                               \
+  template <class T>                                                                               \
+  T value(const T& x) const {                                                                      \
+    using std::function;                                                                           \
+    return function(x);                                                                            \
+  }
+
 namespace duet::rule {
 
 struct sqrt {
@@ -111,11 +119,7 @@ struct sqrt {
 };
 
 struct cbrt {
-  template <class T>
-  T value(const T& x) const {
-    using std::cbrt;
-    return cbrt(x);
-  }
+  DUET_VALUE_OF_RULE(cbrt)
   template <class T>
   T slope(const T&, const T& y) const {
     using std::pow; // in products of y one factor would be 0 and the other's derivative infinite
@@ -135,11 +139,7 @@ struct exp {
 };
 
 struct exp2 {
-  template <class T>
-  T value(const T& x) const {
-    using std::exp2;
-    return exp2(x);
-  }
+  DUET_VALUE_OF_RULE(exp2)
   template <class T>
   T slope(const T&, const T& y) const {
     return y * constant::ln2<real_type_t<T>>();
@@ -147,11 +147,7 @@ struct exp2 {
 };
 
 struct expm1 {
-  template <class T>
-  T value(const T& x) const {
-    using std::expm1;
-    return expm1(x);
-  }
+  DUET_VALUE_OF_RULE(expm1)
   template <class T>
   T slope(const T& x, const T&) const {
     using std::exp;
@@ -171,11 +167,7 @@ struct log {
 };
 
 struct log2 {
-  template <class T>
-  T value(const T& x) const {
-    using std::log2;
-    return log2(x);
-  }
+  DUET_VALUE_OF_RULE(log2)
   template <class T>
   T slope(const T& x, const T&) const {
     return 1 / (x * constant::ln2<real_type_t<T>>());
@@ -183,11 +175,7 @@ struct log2 {
 };
 
 struct log10 {
-  template <class T>
-  T value(const T& x) const {
-    using std::log10;
-    return log10(x);
-  }
+  DUET_VALUE_OF_RULE(log10)
   template <class T>
   T slope(const T& x, const T&) const {
     return detail::integer<T>(1) / (x * constant::ln10<detail::constant_t<T>>());
@@ -195,11 +183,7 @@ struct log10 {
 };
 
 struct log1p {
-  template <class T>
-  T value(const T& x) const {
-    using std::log1p;
-    return log1p(x);
-  }
+  DUET_VALUE_OF_RULE(log1p)
   template <class T>
   T slope(const T& x, const T&) const {
     return 1 / (1 + x);
@@ -207,27 +191,20 @@ struct log1p {
 };
 
 struct sin {
-  template <class T>
-  T value(const T& x) const {
-    using std::sin;
-    return sin(x);
-  }
+  DUET_VALUE_OF_RULE(sin)
 };
-
 struct cos {
-  template <class T>
-  T value(const T& x) const {
-    using std::cos;
-    return cos(x);
-  }
+  DUET_VALUE_OF_RULE(cos)
+};
+struct sinh {
+  DUET_VALUE_OF_RULE(sinh)
+};
+struct cosh {
+  DUET_VALUE_OF_RULE(cosh)
 };
 
 struct tan {
-  template <class T>
-  T value(const T& x) const {
-    using std::tan;
-    return tan(x);
-  }
+  DUET_VALUE_OF_RULE(tan)
   template <class T>
   T slope([[maybe_unused]] const T& x, [[maybe_unused]] const T& y) const {
     if constexpr (Real<real_type_t<T>>) {
@@ -239,11 +216,7 @@ struct tan {
 };
 
 struct asin {
-  template <class T>
-  T value(const T& x) const {
-    using std::asin;
-    return asin(x);
-  }
+  DUET_VALUE_OF_RULE(asin)
   template <class T>
   T slope(const T& x, const T&) const {
     return detail::integer<T>(1) / detail::root_of_one_minus_square(x);
@@ -251,11 +224,7 @@ struct asin {
 };
 
 struct acos {
-  template <class T>
-  T value(const T& x) const {
-    using std::acos;
-    return acos(x);
-  }
+  DUET_VALUE_OF_RULE(acos)
   template <class T>
   T slope(const T& x, const T&) const {
     return detail::integer<T>(-1) / detail::root_of_one_minus_square(x);
@@ -263,11 +232,7 @@ struct acos {
 };
 
 struct atan {
-  template <class T>
-  T value(const T& x) const {
-    using std::atan;
-    return atan(x);
-  }
+  DUET_VALUE_OF_RULE(atan)
   template <class T>
   T slope(const T& x, const T&) const {
     if constexpr (Real<real_type_t<T>>) {
@@ -285,9 +250,6 @@ struct atan {
     }
   }
 };
-
-struct sinh;
-struct cosh;
 
 } // namespace duet::rule
 
@@ -424,11 +386,7 @@ template <class T>
 namespace rule {
 
 struct erf {
-  template <class T>
-  T value(const T& x) const {
-    using std::erf;
-    return erf(x);
-  }
+  DUET_VALUE_OF_RULE(erf)
   template <class T>
   T slope(const T& x, const T&) const {
     using std::exp;
@@ -437,11 +395,7 @@ struct erf {
 };
 
 struct erfc {
-  template <class T>
-  T value(const T& x) const {
-    using std::erfc;
-    return erfc(x);
-  }
+  DUET_VALUE_OF_RULE(erfc)
   template <class T>
   T slope(const T& x, const T&) const {
     using std::exp;
@@ -450,11 +404,7 @@ struct erfc {
 };
 
 struct tgamma {
-  template <class T>
-  T value(const T& x) const {
-    using std::tgamma;
-    return tgamma(x);
-  }
+  DUET_VALUE_OF_RULE(tgamma)
   template <class T>
   T slope(const T& x, const T& y) const {
     return y * detail::digamma(x);
@@ -463,11 +413,7 @@ struct tgamma {
 
 /// log|Γ(x)|
 struct lgamma {
-  template <class T>
-  T value(const T& x) const {
-    using std::lgamma;
-    return lgamma(x);
-  }
+  DUET_VALUE_OF_RULE(lgamma)
   template <class T>
   T slope(const T& x, const T&) const {
     return detail::digamma(x);
@@ -479,28 +425,8 @@ struct lgamma {
 
 namespace duet::rule {
 
-struct sinh {
-  template <class T>
-  T value(const T& x) const {
-    using std::sinh;
-    return sinh(x);
-  }
-};
-
-struct cosh {
-  template <class T>
-  T value(const T& x) const {
-    using std::cosh;
-    return cosh(x);
-  }
-};
-
 struct tanh {
-  template <class T>
-  T value(const T& x) const {
-    using std::tanh;
-    return tanh(x);
-  }
+  DUET_VALUE_OF_RULE(tanh)
   template <class T>
   T slope(const T& x, [[maybe_unused]] const T& y) const {
     if constexpr (Real<real_type_t<T>>) {
@@ -521,11 +447,7 @@ struct tanh {
 };
 
 struct asinh {
-  template <class T>
-  T value(const T& x) const {
-    using std::asinh;
-    return asinh(x);
-  }
+  DUET_VALUE_OF_RULE(asinh)
   template <class T>
   T slope(const T& x, const T&) const {
     if constexpr (Real<real_type_t<T>>) {
@@ -538,11 +460,7 @@ struct asinh {
 };
 
 struct acosh {
-  template <class T>
-  T value(const T& x) const {
-    using std::acosh;
-    return acosh(x);
-  }
+  DUET_VALUE_OF_RULE(acosh)
   template <class T>
   T slope(const T& x, const T&) const {
     using std::sqrt;
@@ -566,11 +484,7 @@ struct acosh {
 };
 
 struct atanh {
-  template <class T>
-  T value(const T& x) const {
-    using std::atanh;
-    return atanh(x);
-  }
+  DUET_VALUE_OF_RULE(atanh)
   template <class T>
   T slope(const T& x, const T&) const {
     if constexpr (Real<real_type_t<T>>) {
@@ -582,3 +496,5 @@ struct atanh {
 };
 
 } // namespace duet::rule
+
+#undef DUET_VALUE_OF_RULE
