@@ -488,37 +488,33 @@ private:
       combinations =
           std::min(max_combinations + 1, combinations * std::max<std::size_t>(1, points.size()));
     }
+    // Adds a point of the special ones choose(argument, their number), random beyond the last.
+    const auto add = [&](auto&& choose) {
+      std::size_t index = 0;
+      result.push_back(joined([&](const auto& domain) {
+        const auto& points = special[index];
+        const std::size_t choice = choose(index++, points.size());
+        return choice < points.size() ? points[choice] : domain.random_point(random);
+      }));
+    };
     if (combinations <= max_combinations) {
       for (std::size_t c = 0; c < combinations; ++c) {
-        std::size_t rest = c;
-        std::size_t index = 0;
-        result.push_back(joined([&](const auto& domain) {
-          const auto& points = special[index++];
-          if (points.empty()) {
-            return domain.random_point(random);
-          }
-          const std::size_t choice = rest % points.size();
-          rest /= points.size();
-          return points[choice];
-        }));
+        add([rest = c](std::size_t, std::size_t count) mutable {
+          const std::size_t choice = count > 0 ? rest % count : 0;
+          rest /= std::max<std::size_t>(count, 1);
+          return choice;
+        });
       }
       return;
     }
     for (std::size_t c = 0; c < some_combinations; ++c) {
-      std::size_t index = 0;
-      result.push_back(joined([&](const auto& domain) {
-        const auto& points = special[index++];
-        return points.empty() ? domain.random_point(random)
-               : c == 0       ? points[0]
-                              : points[std::size_t(random.integer(0, int(points.size()) - 1))];
-      }));
+      add([&](std::size_t, std::size_t count) {
+        return c > 0 && count > 0 ? std::size_t(random.integer(0, int(count) - 1)) : 0;
+      });
     }
     for (std::size_t chosen = 0; chosen < special.size(); ++chosen) {
-      for (const coordinates& point : special[chosen]) {
-        std::size_t index = 0;
-        result.push_back(joined([&](const auto& domain) {
-          return index++ == chosen ? point : domain.random_point(random);
-        }));
+      for (std::size_t k = 0; k < special[chosen].size(); ++k) {
+        add([&](std::size_t index, std::size_t count) { return index == chosen ? k : count; });
       }
     }
   }
