@@ -230,8 +230,9 @@ class nonlinear_least_squares_problem {
   using matrix = Eigen::MatrixX<R>;
   using tag = tag_for<void, F>;
   using set = parameters<X>;
+  static constexpr int dimension = manifold<X>::dimension;
   static constexpr int partials =
-      set::dimension > 0 && set::dimension <= single_pass_limit ? set::dimension : chunk;
+      dimension > 0 && dimension <= single_pass_limit ? dimension : chunk;
   using variable = dual<double, partials, tag>;
   using options_type = nonlinear_least_squares_options;
   static constexpr int block_size = residual_blocks<std::decay_t<decltype(result_of_call(
@@ -239,7 +240,7 @@ class nonlinear_least_squares_problem {
 
 public:
   nonlinear_least_squares_problem(const F& f, const X& start, const options_type& options)
-      : f_(f), x_(start), options_(options), size_(set::size(start)),
+      : f_(f), x_(start), options_(options), size_(tangent_dimension(start)),
         lower_(bound("lower", options.lower, -std::numeric_limits<double>::infinity())),
         upper_(bound("upper", options.upper, std::numeric_limits<double>::infinity())),
         scale_(vector::Zero(size_)) {

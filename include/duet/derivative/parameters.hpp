@@ -25,10 +25,8 @@
 
 namespace duet::detail {
 
-/// Tangent coordinates of the parameters in an X, `dimension` of them, `Eigen::Dynamic` if known
-/// only at run time:
+/// Tangent coordinates of the parameters in an X, those of `manifold<X>`:
 ///
-/// - `size(x)`: their number
 /// - `at(x, first, coordinate)`: x where coordinate k has the value coordinate(value, first + k),
 ///   of any scalar; value is x's, for rotations and poses 0, which then move in body axes
 /// - `values(x, v, first)`: writes the values of scalars and components of vectors into v from
@@ -39,13 +37,11 @@ struct parameters;
 
 template <class X>
 concept ParameterSet = requires {
-  parameters<X>::dimension;
+  sizeof(parameters<X>);
 };
 
 template <std::same_as<double> X>
 struct parameters<X> {
-  static constexpr int dimension = 1;
-  static Eigen::Index size(const X&) { return 1; }
   static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
     return coordinate(x, first);
   }
@@ -56,8 +52,6 @@ struct parameters<X> {
 template <EigenMatrix X>
   requires std::same_as<typename X::Scalar, double>
 struct parameters<X> {
-  static constexpr int dimension = X::SizeAtCompileTime;
-  static Eigen::Index size(const X& x) { return x.size(); }
   static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
     using D = std::decay_t<decltype(coordinate(0., first))>;
     Eigen::Matrix<D, fixed_length<D>(X::RowsAtCompileTime), fixed_length<D>(X::ColsAtCompileTime)>
@@ -81,7 +75,6 @@ template <class X>
            requires { manifold<X>::takes_rates_of_any_scalar; })
 struct parameters<X> {
   static constexpr int dimension = manifold<X>::dimension;
-  static Eigen::Index size(const X&) { return dimension; }
   static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
     Eigen::Matrix<std::decay_t<decltype(coordinate(0., first))>, dimension, 1> delta;
     for (int k = 0; k < dimension; ++k) {
@@ -103,23 +96,16 @@ struct parameters<X> {
 template <class X>
 struct parameters_of_sequence {
   using element = parameters<typename X::value_type>;
-  static Eigen::Index size(const X& x) {
-    Eigen::Index sum = 0;
-    for (const auto& each : x) {
-      sum += element::size(each);
-    }
-    return sum;
-  }
   static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) {
     for (const auto& each : x) {
       element::values(each, v, first);
-      first += element::size(each);
+      first += tangent_dimension(each);
     }
   }
   static std::string name(const X& x, Eigen::Index k) {
     std::size_t i = 0;
-    for (; k >= element::size(x[i]); ++i) {
-      k -= element::size(x[i]);
+    for (; k >= tangent_dimension(x[i]); ++i) {
+      k -= tangent_dimension(x[i]);
     }
     return message("[", i, "]", element::name(x[i], k));
   }
@@ -127,13 +113,12 @@ struct parameters_of_sequence {
 
 template <ParameterSet X>
 struct parameters<std::vector<X>> : parameters_of_sequence<std::vector<X>> {
-  static constexpr int dimension = Eigen::Dynamic;
   static auto at(const std::vector<X>& x, Eigen::Index first, const auto& coordinate) {
     std::vector<decltype(parameters<X>::at(x[0], first, coordinate))> y;
     y.reserve(x.size());
     for (const X& each : x) {
       y.push_back(parameters<X>::at(each, first, coordinate));
-      first += parameters<X>::size(each);
+      first += tangent_dimension(each);
     }
     return y;
   }
@@ -141,11 +126,9 @@ struct parameters<std::vector<X>> : parameters_of_sequence<std::vector<X>> {
 
 template <ParameterSet X, std::size_t N>
 struct parameters<std::array<X, N>> : parameters_of_sequence<std::array<X, N>> {
-  static constexpr int dimension =
-      parameters<X>::dimension < 0 ? Eigen::Dynamic : int(N) * parameters<X>::dimension;
   static auto at(const std::array<X, N>& x, Eigen::Index first, const auto& coordinate) {
     const auto next = [&](const X& each) {
-      return parameters<X>::at(each, std::exchange(first, first + parameters<X>::size(each)),
+      return parameters<X>::at(each, std::exchange(first, first + tangent_dimension(each)),
                                coordinate);
     };
     return std::apply([&](const auto&... each) { return std::array{next(each)...}; }, x);
@@ -155,16 +138,11 @@ struct parameters<std::array<X, N>> : parameters_of_sequence<std::array<X, N>> {
 template <ParameterSet... X>
   requires(sizeof...(X) > 0)
 struct parameters<std::tuple<X...>> {
-  static constexpr int dimension =
-      ((parameters<X>::dimension < 0) || ...) ? Eigen::Dynamic : (parameters<X>::dimension + ...);
-  static Eigen::Index size(const std::tuple<X...>& x) {
-    return std::apply([](const X&... each) { return (parameters<X>::size(each) + ...); }, x);
-  }
   static auto at(const std::tuple<X...>& x, Eigen::Index first, const auto& coordinate) {
     return std::apply(
         [&](const X&... each) { // braces, so that elements are taken in order
           return std::tuple<decltype(parameters<X>::at(each, first, coordinate))...>{
-              parameters<X>::at(each, std::exchange(first, first + parameters<X>::size(each)),
+              parameters<X>::at(each, std::exchange(first, first + tangent_dimension(each)),
                                 coordinate)...};
         },
         x);
@@ -172,7 +150,7 @@ struct parameters<std::tuple<X...>> {
   static void values(const std::tuple<X...>& x, Eigen::VectorXd& v, Eigen::Index first) {
     std::apply(
         [&](const X&... each) {
-          (parameters<X>::values(each, v, std::exchange(first, first + parameters<X>::size(each))),
+          (parameters<X>::values(each, v, std::exchange(first, first + tangent_dimension(each))),
            ...);
         },
         x);
@@ -181,7 +159,7 @@ struct parameters<std::tuple<X...>> {
     std::string result;
     int argument = 0;
     const auto visit = [&]<class Each>(const Each& each) {
-      const Eigen::Index count = parameters<Each>::size(each);
+      const Eigen::Index count = tangent_dimension(each);
       if (0 <= k && k < count) {
         result = message("argument ", argument, parameters<Each>::name(each, k));
       }
