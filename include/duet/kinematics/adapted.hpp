@@ -85,6 +85,21 @@ template <class C, JointOf<C> Which>
   }
 }
 
+/// The chain or tree with the limits `limits_at(i)` of joint i, from `first` to `last` − 1.
+///
+/// \throws invalid_input for limits that allow no motion
+template <HasLimits C, class LimitsAt>
+[[nodiscard]] constexpr auto with_limits_at(const C& chain, int first, int last,
+                                            const char* function, const LimitsAt& limits_at) {
+  auto result = copy_of_chain(chain);
+  for (int i = first; i < last; ++i) {
+    const joint_limits<typename C::scalar_type> limits = limits_at(i);
+    require_limits(limits, std::size_t(i), function, joint_name(chain, i));
+    result.set_limits(i, limits);
+  }
+  return result;
+}
+
 } // namespace detail
 
 /// The chain with other limits of a joint, given by its number or, if the chain is from a file, by
@@ -104,11 +119,8 @@ template <class C, JointOf<C> Which>
 template <HasLimits C, detail::JointOf<C> Which>
 [[nodiscard]] constexpr auto with_limits(const C& chain, const Which& which,
                                          const joint_limits<typename C::scalar_type>& limits) {
-  auto result = detail::copy_of_chain(chain);
   const int i = detail::joint_number(chain, which, "with_limits");
-  detail::require_limits(limits, std::size_t(i), "with_limits", detail::joint_name(chain, i));
-  result.set_limits(i, limits);
-  return result;
+  return detail::with_limits_at(chain, i, i + 1, "with_limits", [&](int) { return limits; });
 }
 
 /// The chain or tree with other lower and upper limits of all moving joints or coordinates, in
@@ -128,14 +140,10 @@ template <HasLimits C, VectorLike Lower, VectorLike Upper>
                   "duet: with_limits: ", below::size(lower), " lower and ", above::size(upper),
                   " upper limits for ", chain.size(),
                   SerialChain<C> ? " moving joints" : " coordinates");
-  auto result = detail::copy_of_chain(chain);
-  for (int i = 0; i < chain.size(); ++i) {
-    const joint_limits<T> limits{T(below::get(lower, i)), T(above::get(upper, i)),
-                                 chain.limits(i).velocity};
-    detail::require_limits(limits, std::size_t(i), "with_limits", detail::joint_name(chain, i));
-    result.set_limits(i, limits);
-  }
-  return result;
+  return detail::with_limits_at(chain, 0, chain.size(), "with_limits", [&](int i) {
+    return joint_limits<T>{T(below::get(lower, i)), T(above::get(upper, i)),
+                           chain.limits(i).velocity};
+  });
 }
 
 /// The chain with its limits narrowed to configurations that differ from θ by at most `max_change`,
@@ -154,20 +162,15 @@ template <SerialChain C, VectorLike X, VectorLike MaxChange>
   detail::require(about::size(theta) == chain.size() && bound::size(max_change) == chain.size(),
                   "duet: with_limits_about: ", about::size(theta), " coordinates and ",
                   bound::size(max_change), " bounds for ", chain.size(), " moving joints");
-  auto result = detail::copy_of_chain(chain);
-  for (int i = 0; i < chain.size(); ++i) {
+  return detail::with_limits_at(chain, 0, chain.size(), "with_limits_about", [&](int i) {
     const auto& current = chain.limits(i);
     const T at(about::get(theta, i)), by(bound::get(max_change, i));
     const T lower = at - by, upper = at + by;
-    const joint_limits<T> limits{lower > current.lower ? lower : current.lower,
-                                 upper < current.upper ? upper : current.upper, current.velocity};
     detail::require(lower == lower && upper == upper, "duet: with_limits_about: joint ", i,
                     ": the interval ", at, " ± ", by, " is not a number");
-    detail::require_limits(limits, std::size_t(i), "with_limits_about",
-                           detail::joint_name(chain, i));
-    result.set_limits(i, limits);
-  }
-  return result;
+    return joint_limits<T>{lower > current.lower ? lower : current.lower,
+                           upper < current.upper ? upper : current.upper, current.velocity};
+  });
 }
 
 template <SerialChain C, detail::NameInVain<C> Which>

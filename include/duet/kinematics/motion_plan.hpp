@@ -203,7 +203,7 @@ template <class C, class X>
 [[nodiscard]] joint_vector<double, C::joints> to_chain_joints(const C& chain, const X& x) {
   joint_vector<double, C::joints> theta(chain.size());
   for (int i = 0; i < chain.size(); ++i) {
-    theta[i] = x[i];
+    theta[i] = vector_argument<X>::get(x, i);
   }
   return theta;
 }
@@ -214,11 +214,7 @@ template <class C, class X>
 template <class C, class Start>
 [[nodiscard]] joint_vector<double, C::joints> start_of(const C& chain, const Start& start) {
   require_size(chain, start);
-  joint_vector<double, C::joints> result(chain.size());
-  for (int i = 0; i < chain.size(); ++i) {
-    result[i] = vector_argument<Start>::get(start, i);
-  }
-  return result;
+  return to_chain_joints(chain, start);
 }
 
 /// \throws invalid_input for a start of another size, not finite or outside the limits
