@@ -563,6 +563,15 @@ DUET_ALWAYS_INLINE void write_block(const Block& block, const double* x, const Y
       block.ambient_jacobian(tangent, x);
 }
 
+/// Running sums of sizes: `first`, then with each size added.
+template <int... Sizes>
+[[nodiscard]] constexpr std::array<int, sizeof...(Sizes) + 1> offsets_of(int first) {
+  std::array<int, sizeof...(Sizes) + 1> result{first};
+  std::size_t i = 0;
+  ((result[i + 1] = result[i] + Sizes, ++i), ...);
+  return result;
+}
+
 /// Residuals as a function of the values of parameter blocks.
 template <int Residuals, class F, class... Blocks>
 class function_of_blocks final : public ceres::SizedCostFunction<Residuals, Blocks::size...> {
@@ -580,12 +589,7 @@ public:
   }
 
 private:
-  static constexpr std::array<int, sizeof...(Blocks) + 1> offsets = [] {
-    std::array<int, sizeof...(Blocks) + 1> result{};
-    std::size_t i = 0;
-    ((result[i + 1] = result[i] + Blocks::dimension, ++i), ...);
-    return result;
-  }();
+  static constexpr auto offsets = offsets_of<Blocks::dimension...>(0);
 
   template <std::size_t... I>
   bool evaluate(std::index_sequence<I...>, double const* const* parameters, double* residuals,
@@ -633,13 +637,7 @@ public:
 
 private:
   static constexpr std::array<int, sizeof...(Sizes)> sizes{Sizes...};
-  static constexpr std::array<int, sizeof...(Sizes)> offsets = [] {
-    std::array<int, sizeof...(Sizes)> result{};
-    for (std::size_t i = 1; i < sizes.size(); ++i) {
-      result[i] = result[i - 1] + sizes[i - 1];
-    }
-    return result;
-  }();
+  static constexpr auto offsets = offsets_of<Sizes...>(0);
 
   template <std::size_t... I, class Pointers, class T>
   bool call(std::index_sequence<I...>, const Pointers& parameters, T* residuals) const {

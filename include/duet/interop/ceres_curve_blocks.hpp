@@ -427,15 +427,14 @@ public:
   }
   template <int Rates, bool IsRotationOnly>
   [[nodiscard]] body_motion<double> motion(double u, const active& a) const {
-    const linear_motion<Rates> p(*basis_, u, a);
     return body_motion_of<Rates, IsRotationOnly>(
-        a.rotation.template motion<Rates>(*basis_, u), p, [](const auto& q) { return q; },
-        [](const vector3<double>& values, int) { return values; });
+        a.rotation.template motion<Rates>(*basis_, u), linear_motion<Rates>(u, a),
+        [](const auto& q) { return q; }, [](const vector3<double>& values, int) { return values; });
   }
   template <int Rates>
   [[nodiscard]] auto motion_jacobian(double u, const active& a) const {
     return std::pair(a.rotation.template motion_jacobian<Rates>(*basis_, u),
-                     linear_motion<Rates + 1>(*basis_, u, a));
+                     linear_motion<Rates + 1>(u, a));
   }
   template <int Rates, bool IsRotationOnly, class D, class Jacobian>
   [[nodiscard]] static body_motion<D> moving(const Jacobian& m) {
@@ -484,24 +483,10 @@ public:
 private:
   /// Position, its derivatives, and the weights of the control positions in them.
   template <int Derivatives>
-  struct linear_motion {
-    std::array<vector3<double>, std::size_t(Derivatives) + 1> derivatives;
-    std::array<std::array<double, std::size_t(Order)>, std::size_t(Derivatives) + 1> weights;
-
-    linear_motion(const basis_type& basis, double u, const active& a) {
-      const auto b = basis.template weights<Derivatives>(a.rotation.span(), u);
-      for (std::size_t d = 0; d <= std::size_t(Derivatives); ++d) {
-        derivatives[d] = d == 0 ? a.positions[0] : vector3<double>(vector3<double>::Zero());
-        for (std::size_t i = 0; i < std::size_t(Order); ++i) { // B_i = B̃_i − B̃_{i+1}
-          const double from = i > 0 ? b[d][i - 1] : (d == 0 ? 1. : 0.);
-          weights[d][i] = from - (i + 1 < std::size_t(Order) ? b[d][i] : 0.);
-          if (i > 0) {
-            derivatives[d] += from * (a.positions[i] - a.positions[i - 1]);
-          }
-        }
-      }
-    }
-  };
+  [[nodiscard]] auto linear_motion(double u, const active& a) const {
+    return weighted_positions<double, std::size_t(Derivatives) + 1, std::size_t(Order)>(
+        basis_->template weights<Derivatives>(a.rotation.span(), u), a.positions.data());
+  }
 
   template <int Rates, bool IsRotationOnly, class Motion, class Linear, class MovingValue,
             class Channels>

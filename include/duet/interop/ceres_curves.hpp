@@ -40,7 +40,8 @@ template <class Evaluator, int Rates, bool IsRotationOnly, int Residuals, class 
 class curve_cost final : public ceres::CostFunction {
   using tag = tag_for<void, F>;
   static constexpr int channels = channel_count<Rates, IsRotationOnly>;
-  using number = dual<double, channels + (Blocks::dimension + ... + 0), tag>;
+  static constexpr int number_of_partials = channels + (Blocks::dimension + ... + 0);
+  using number = dual<double, number_of_partials, tag>;
   using indices = std::index_sequence_for<Blocks...>;
 
 public:
@@ -66,12 +67,7 @@ public:
   }
 
 private:
-  static constexpr std::array<int, sizeof...(Blocks) + 1> offsets = [] {
-    std::array<int, sizeof...(Blocks) + 1> result{channels};
-    std::size_t i = 0;
-    ((result[i + 1] = result[i] + Blocks::dimension, ++i), ...);
-    return result;
-  }();
+  static constexpr auto offsets = offsets_of<Blocks::dimension...>(channels);
 
   template <std::size_t... I>
   bool evaluate(std::index_sequence<I...>, double const* const* x, double* residuals,
@@ -135,8 +131,6 @@ private:
       out = block.ambient_jacobian(tangent, x);
     }
   }
-
-  static constexpr int number_of_partials = channels + (Blocks::dimension + ... + 0);
 
   Evaluator evaluator_;
   measurement_time when_;

@@ -123,19 +123,25 @@ struct curve_jacobian {
   };
   by_parameter parameter_derivative; ///< with respect to u, for offsets in time
 
+  /// For those who extend duet: f(blocks, order) of the rates that were computed.
+  template <class F>
+  DUET_ALWAYS_INLINE void for_each_rate(const F& f) {
+    if constexpr (Rates >= 1) {
+      f(velocity, 1);
+    }
+    if constexpr (Rates >= 2) {
+      f(acceleration, 2);
+    }
+    if constexpr (Rates >= 3) {
+      f(jerk, 3);
+    }
+  }
   /// For those who extend duet: sets all rates, their blocks and derivatives to zero.
   void set_at_rest() {
     motion.velocity.setZero();
     motion.acceleration = motion.jerk = motion.velocity;
     parameter_derivative = {motion.velocity, motion.velocity, motion.velocity, motion.velocity};
-    const auto clear = [](auto& blocks) {
-      if constexpr (!std::is_same_v<std::decay_t<decltype(blocks)>, not_computed>) {
-        blocks.set_zero();
-      }
-    };
-    clear(velocity);
-    clear(acceleration);
-    clear(jerk);
+    for_each_rate([](auto& blocks, std::size_t) { blocks.set_zero(); });
   }
 };
 
@@ -256,15 +262,8 @@ template <class T, int Count, int Rates, class Frame>
 pointers_to_blocks(curve_jacobian<T, Count, Rates, Frame>& m) {
   block_pointers<Rates, T> blocks;
   blocks[0] = m.value.linear.data();
-  if constexpr (Rates >= 1) {
-    blocks[1] = m.velocity.linear.data();
-  }
-  if constexpr (Rates >= 2) {
-    blocks[2] = m.acceleration.linear.data();
-  }
-  if constexpr (Rates >= 3) {
-    blocks[3] = m.jerk.linear.data();
-  }
+  m.for_each_rate([&](auto& of_rate, std::size_t k)
+                      DUET_INLINE_LAMBDA { blocks[k] = of_rate.linear.data(); });
   return blocks;
 }
 
@@ -311,17 +310,10 @@ set_frame(curve_jacobian<T, Count, Rates, Frame>& m, perturbation side, const qu
       }
       const auto rotation_rows = adjoint_rows(rotation(value));
       rotate_to_spatial_axes<Rates>(angular, rotation_rows, angular_rates);
-      const auto store = [&](auto& of_rate, std::size_t k) {
+      m.for_each_rate([&](auto& of_rate, std::size_t k) {
         of_rate.angular[i] =
             is_right ? angular[k] : rows_product(angular[k], angular_part(of_control));
-      };
-      store(m.velocity, 1);
-      if constexpr (Rates >= 2) {
-        store(m.acceleration, 2);
-      }
-      if constexpr (Rates >= 3) {
-        store(m.jerk, 3);
-      }
+      });
       rotate_linear_rows<Rates>(d, rotation_rows, rates);
     } else if constexpr (!is_body) {
       rotate_to_spatial_axes<Rates>(d, adjoint, rates);

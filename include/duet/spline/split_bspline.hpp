@@ -23,6 +23,32 @@
 
 namespace duet {
 
+namespace detail {
+
+/// Derivatives of p = Σ B_i p_i, and those of the weights B_i = B̃_i − B̃_{i+1} in them.
+template <class R, std::size_t Count, std::size_t Order>
+struct weighted_positions {
+  std::array<vector3<R>, Count> derivatives;
+  std::array<std::array<R, Order>, Count> weights;
+
+  /// \param cumulative  element [d][i] is the d-th derivative of B̃_{i+1}
+  template <class Cumulative>
+  weighted_positions(const Cumulative& cumulative, const vector3<R>* positions) {
+    for (std::size_t d = 0; d < Count; ++d) {
+      derivatives[d] = d == 0 ? positions[0] : vector3<R>(vector3<R>::Zero());
+      for (std::size_t i = 0; i < Order; ++i) {
+        const R from = i > 0 ? cumulative[d][i - 1] : R(d == 0 ? 1 : 0);
+        weights[d][i] = from - (i + 1 < Order ? cumulative[d][i] : R(0));
+        if (i > 0) { // by steps, which loses no digits far from the origin
+          derivatives[d] += from * (positions[i] - positions[i - 1]);
+        }
+      }
+    }
+  }
+};
+
+} // namespace detail
+
 /// Motion of a split curve at a parameter, with its Jacobians.
 template <Real R, int Order, int Rates, class Frame>
 struct split_jacobian {
@@ -77,24 +103,13 @@ public:
     split_jacobian<R, Order, Rates, Frame> result;
     const std::size_t span = rotation_.basis().find_span(u, hint);
     result.rotation = rotation_.template motion_jacobian<Rates>(u, frame, side, hint);
-    const auto cumulative = rotation_.basis().template weights<3>(span, u);
-    std::array<vector3<R>, 4> derivatives;
-    for (std::size_t d = 0; d < 4; ++d) {
-      derivatives[d] = d == 0 ? positions_[result.rotation.first] : vector3<R>::Zero();
-      for (std::size_t i = 0; i < std::size_t(Order); ++i) { // B_i = B̃_i − B̃_{i+1}
-        const R from = i > 0 ? cumulative[d][i - 1] : R(d == 0 ? 1 : 0);
-        const R to = i + 1 < std::size_t(Order) ? cumulative[d][i] : R(0);
-        result.weights[d][i] = from - to;
-        if (i > 0) { // by steps, which loses no digits far from the origin
-          derivatives[d] += from * (positions_[result.rotation.first + i] -
-                                    positions_[result.rotation.first + i - 1]);
-        }
-      }
-    }
-    result.position = derivatives[0];
-    result.velocity = derivatives[1];
-    result.acceleration = derivatives[2];
-    result.jerk = derivatives[3];
+    const detail::weighted_positions<R, 4, std::size_t(Order)> p(
+        rotation_.basis().template weights<3>(span, u), &positions_[result.rotation.first]);
+    result.weights = p.weights;
+    result.position = p.derivatives[0];
+    result.velocity = p.derivatives[1];
+    result.acceleration = p.derivatives[2];
+    result.jerk = p.derivatives[3];
     return result;
   }
 
