@@ -475,41 +475,38 @@ public:
   [[nodiscard]] int TangentSize() const override { return Block::dimension; }
   /// x exp(δ/2); false if it is not finite.
   bool Plus(const double* x, const double* delta, double* sum) const override {
-    return detail::succeeds([&] {
-      block_.plus(x, delta, sum);
-      return is_finite(sum, Block::size);
-    });
+    return writes(sum, Block::size, [&] { block_.plus(x, delta, sum); });
   }
   /// Derivative of `Plus` with respect to δ at δ = 0, row by row.
   bool PlusJacobian(const double* x, double* jacobian) const override {
-    return detail::succeeds([&] {
+    return writes(jacobian, Block::size * Block::dimension, [&] {
       Eigen::Map<Eigen::Matrix<double, Block::size, Block::dimension, Eigen::RowMajor>> result(
           jacobian);
       result = block_.plus_jacobian(x);
-      return is_finite(jacobian, Block::size * Block::dimension);
     });
   }
   /// δ of y = x exp(δ/2); false if there is no such δ.
   bool Minus(const double* y, const double* x, double* delta) const override {
-    return detail::succeeds([&] {
-      block_.minus(y, x, delta);
-      return is_finite(delta, Block::dimension);
-    });
+    return writes(delta, Block::dimension, [&] { block_.minus(y, x, delta); });
   }
   /// Derivative of `Minus` with respect to y at y = x, row by row.
   bool MinusJacobian(const double* x, double* jacobian) const override {
-    return detail::succeeds([&] {
+    return writes(jacobian, Block::size * Block::dimension, [&] {
       using identity = Eigen::Matrix<double, Block::dimension, Block::dimension>;
       Eigen::Map<Eigen::Matrix<double, Block::dimension, Block::size, Eigen::RowMajor>> result(
           jacobian);
       result = block_.ambient_jacobian(identity(identity::Identity()), x);
-      return is_finite(jacobian, Block::size * Block::dimension);
     });
   }
 
 private:
-  static bool is_finite(const double* numbers, int size) {
-    return std::all_of(numbers, numbers + size, [](double x) { return std::isfinite(x); });
+  /// True if `body` does not throw and writes finite numbers.
+  template <class Body>
+  static bool writes(const double* numbers, int size, const Body& body) {
+    return detail::succeeds([&] {
+      body();
+      return std::all_of(numbers, numbers + size, [](double x) { return std::isfinite(x); });
+    });
   }
 
   Block block_;
