@@ -14,7 +14,6 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
 #include <vector>
 
 /// \file

@@ -3,7 +3,6 @@
 
 #include <duet/core/scalar_traits.hpp>
 
-#include <cmath>
 #include <concepts>
 #include <numbers>
 

@@ -8,9 +8,6 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <type_traits>
 
 /// \file

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <duet/core/batch/math.hpp>
-#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/select.hpp>

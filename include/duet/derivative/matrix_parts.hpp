@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 /// \file
 /// Matrices of scalars as real matrices, one of the values and one of every infinitesimal part: one

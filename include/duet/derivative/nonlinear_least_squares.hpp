@@ -5,7 +5,6 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/derivative/argument.hpp>
-#include <duet/derivative/frame.hpp>
 #include <duet/derivative/least_squares.hpp>
 #include <duet/derivative/levenberg_marquardt.hpp>
 #include <duet/derivative/manifold.hpp>

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <type_traits>
 
 /// \file
 /// Singular value decomposition, differentiated by its own equations.

@@ -3,14 +3,12 @@
 
 #include <duet/core/batch/batch.hpp>
 #include <duet/core/batch/math.hpp>
-#include <duet/core/config.hpp>
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual/math.hpp>
 #include <duet/dual/promotion.hpp>
 
 #include <array>
-#include <cstddef>
 #include <tuple>
 #include <type_traits>
 #include <utility>

@@ -7,11 +7,8 @@
 #include <duet/dual/partials.hpp>
 
 #include <algorithm>
-#include <array>
-#include <concepts>
 #include <cstddef>
 #include <string>
-#include <type_traits>
 
 /// \file
 /// Dual numbers whose number of partials is known at run time, without heap allocation.

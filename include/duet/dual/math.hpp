@@ -17,7 +17,6 @@
 #include <ostream>
 #include <sstream>
 #include <type_traits>
-#include <utility>
 
 /// \file
 /// Functions, limits and streams of `double` for dual and Taylor numbers.

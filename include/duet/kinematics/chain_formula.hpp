@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/dual/dual.hpp>
 #include <duet/dual/level.hpp>
@@ -13,7 +12,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>

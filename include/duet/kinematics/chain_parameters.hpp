@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/serial_chain.hpp>
@@ -11,8 +10,6 @@
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <span>
-#include <string>
 
 /// \file
 /// Chains from Denavit–Hartenberg parameters, in the standard and the modified convention, and from

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <duet/dual_quaternion/displacement.hpp>
-#include <duet/dual_quaternion/twist.hpp>
 #include <duet/kinematics/chain_walk.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/joint.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 
 #include <concepts>
-#include <cstddef>
 #include <span>
 
 /// \file

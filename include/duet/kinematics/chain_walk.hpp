@@ -23,8 +23,6 @@
 #include <limits>
 #include <string>
 #include <string_view>
-#include <type_traits>
-#include <utility>
 
 /// \file
 /// Joints as evaluation steps, their validation, and the traversal of a chain from its base to one

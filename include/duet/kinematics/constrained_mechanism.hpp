@@ -3,7 +3,6 @@
 
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/core/scalar_traits.hpp>
 #include <duet/core/structure.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/argument.hpp>
@@ -15,13 +14,9 @@
 #include <Eigen/Core>
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <utility>
-#include <vector>
 
 /// \file
 /// Mechanisms given by constraint equations: positions x(u) with the loop-closure constraints F(x,

@@ -8,7 +8,6 @@
 #include <Eigen/Core>
 
 #include <concepts>
-#include <type_traits>
 
 /// \file
 /// Derivatives of the Jacobian of a chain: its time derivative along a motion, and its derivatives

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/derivative/derivative.hpp>

@@ -7,7 +7,6 @@
 #include <duet/core/text/number_text.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/dual_quaternion/pose.hpp>
-#include <duet/dual_quaternion/twist.hpp>
 #include <duet/kinematics/serial_chain.hpp>
 #include <duet/quaternion/exponential.hpp>
 #include <duet/quaternion/rotation.hpp>

@@ -1,12 +1,10 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/text/file_error.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/kinematics/joint.hpp>
-#include <duet/kinematics/serial_chain.hpp>
 
 #include <array>
 #include <cstddef>

@@ -14,12 +14,10 @@
 #include <duet/spline/orientations.hpp>
 #include <duet/spline/rotation_vector_spline.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <limits>
-#include <type_traits>
 #include <utility>
 #include <vector>
 

@@ -9,7 +9,6 @@
 #include <duet/quaternion/three_vector.hpp>
 
 #include <concepts>
-#include <cstddef>
 
 /// \file
 /// 3 × 3 matrices by rows, each in the lanes of one vector: v̂ M is `cross(v, M)`, so that products

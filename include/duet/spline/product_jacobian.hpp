@@ -17,7 +17,6 @@
 #include <cmath>
 #include <cstddef>
 #include <type_traits>
-#include <utility>
 
 /// \file
 /// Jacobians of products of exponentials and of their rates with respect to the control points, in

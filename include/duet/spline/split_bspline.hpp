@@ -5,7 +5,6 @@
 #include <duet/core/scalar_traits.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/quaternion/quaternion.hpp>
-#include <duet/quaternion/rotation.hpp>
 #include <duet/spline/basis.hpp>
 #include <duet/spline/cumulative_bspline.hpp>
 #include <duet/spline/motion_jacobian.hpp>

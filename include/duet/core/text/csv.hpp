@@ -1,7 +1,6 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
-#include <duet/core/config.hpp>
 #include <duet/core/text/file_error.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
@@ -24,26 +23,26 @@
 
 namespace duet::detail {
 
-/// Opens a file for reading, byte by byte as it is.
+/// A file opened for reading, byte by byte as it is.
 ///
-/// \return the problem, empty if valid
-[[nodiscard]] inline std::string open_input(const std::string& path, std::ifstream& in) {
+/// \throws file_error if it cannot be read
+[[nodiscard]] inline std::ifstream opened_input(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) { // opens, and fails when it is read
-    return "is a folder, not a file";
+    raise(file_error(path, "is a folder, not a file"));
   }
-  in.open(path, std::ios::binary);
-  return in ? "" : "cannot be read";
+  std::ifstream in(path, std::ios::binary);
+  if (!in) {
+    raise(file_error(path, "cannot be read"));
+  }
+  return in;
 }
 
 /// Content of a file, byte by byte as it is.
 ///
 /// \throws file_error if it cannot be read or exceeds that many megabytes
 [[nodiscard]] inline std::string whole_content(const std::string& path, std::size_t megabytes) {
-  std::ifstream in;
-  if (const std::string error_message = open_input(path, in); !error_message.empty()) {
-    raise(file_error(path, error_message));
-  }
+  std::ifstream in = opened_input(path);
   std::string text;
   for (std::array<char, 65536> part{}; in.read(part.data(), part.size()), in.gcount() > 0;) {
     text.append(part.data(), std::size_t(in.gcount()));
@@ -74,10 +73,7 @@ void for_each_word(std::string_view text, const F& f) {
 /// \throws file_error if the file cannot be read or is not text
 template <class F>
 void for_each_line(const std::string& path, const F& f) {
-  std::ifstream in;
-  if (const std::string error_message = open_input(path, in); !error_message.empty()) {
-    raise(file_error(path, error_message));
-  }
+  std::ifstream in = opened_input(path);
   std::string buffer(std::size_t(1) << 14, '\0');
   std::string_view unread;
   for (std::size_t line = 1;; ++line) {
