@@ -409,23 +409,27 @@ public:
   }
 
   /// Rates w_0 … w_{Count−1} at an end, 0 the start, from x_1 … x_Count about it.
-  template <std::size_t Count>
+  template <std::size_t End, std::size_t Count>
   [[nodiscard]] std::array<vector3<T>, Count>
-  rates_at(std::size_t end, const std::array<vector3<T>, Count>& x) const {
-    return end == 0 ? half_body_rates(at_start(), zero(), x) : half_body_rates(at_end_, d_, x);
+  rates_at(const std::array<vector3<T>, Count>& x) const {
+    if constexpr (End == 0) {
+      return half_body_rates(at_start(), zero(), x);
+    } else {
+      return half_body_rates(at_end_, d_, x);
+    }
   }
   /// Taylor coefficients x_1 … x_Count about an end for the rates w_0 … w_{Count−1}: each x_{k+1}
   /// from w_k minus the contribution of the coefficients x_1 … x_k.
-  template <std::size_t Count>
+  template <std::size_t End, std::size_t Count>
   [[nodiscard]] std::array<vector3<T>, Count>
-  taylor_at(std::size_t end, const std::array<vector3<T>, Count>& w) const {
+  taylor_at(const std::array<vector3<T>, Count>& w) const {
     std::array<vector3<T>, Count> x;
     const auto next = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
       std::array<vector3<T>, K + 1> lower;
       std::copy_n(x.begin(), K, lower.begin());
       lower[K] = vector3<T>::Constant(T(real(0)));
-      const vector3<T> rest = w[K] - rates_at(end, lower)[K];
-      x[K] = (end == 0 ? rest : times_inverse(rest)) * (real(1) / real(K + 1));
+      const vector3<T> rest = w[K] - rates_at<End>(lower)[K];
+      x[K] = (End == 0 ? rest : times_inverse(rest)) * (real(1) / real(K + 1));
     };
     [&]<std::size_t... K>(std::index_sequence<K...>) {
       (next(std::integral_constant<std::size_t, K>{}), ...);
@@ -456,7 +460,7 @@ public:
       w[1][1] = components(times_jacobian_rate(y[1])) + real(2) * components(times_jacobian(y[2]));
     } else {
       w[0][2] = real(3) * components(x[3]) - cross(components(x[1]), components(x[2]));
-      w[1] = rates_at<3>(1, {y[1], y[2], y[3]});
+      w[1] = rates_at<1, 3>({y[1], y[2], y[3]});
     }
     return w;
   }
@@ -597,7 +601,7 @@ jacobian_of_segment(const std::array<quaternion<T>, 2>& ends, const real_type_t<
   std::array<vector3<T>, count> x_start, x_end;
   std::copy_n(piece.begin() + 1, count, x_start.begin());
   std::copy_n(at_end.begin() + 1, count, x_end.begin());
-  const auto start = plain.rates_at(0, x_start), end = plain.rates_at(1, x_end);
+  const auto start = plain.template rates_at<0>(x_start), end = plain.template rates_at<1>(x_end);
 
   std::array<vector3<D>, count> wide_start, wide_end;
   vector3<D> d;

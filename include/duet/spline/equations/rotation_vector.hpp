@@ -290,7 +290,7 @@ public:
   /// x_1 … x_4 and y_1 … y_4.
   using ends = std::array<coefficients, 2>;
   [[nodiscard]] ends taylor(const coefficients& at_start, const coefficients& at_end) const {
-    return {segment_.taylor_at(0, at_start), segment_.taylor_at(1, at_end)};
+    return {segment_.template taylor_at<0>(at_start), segment_.template taylor_at<1>(at_end)};
   }
 
   /// Derivatives with respect to all rates of a knot, w_0 … w_3.
@@ -332,16 +332,17 @@ public:
 
   /// Contributions of the rates at the start and at the end to the fifth rate w_4 at an end, where
   /// x_5 = (x_4 − x_4 of the other end)/(5h), with the sign of h towards the other.
-  [[nodiscard]] std::array<vector3<T>, 2> last_rate_at(std::size_t end, const ends& e) const {
-    const std::size_t other = 1 - end;
-    const R per_h = R(end == 0 ? -1 : 1) / h_;
+  template <std::size_t End>
+  [[nodiscard]] std::array<vector3<T>, 2> last_rate_at(const ends& e) const {
+    constexpr std::size_t other = 1 - End;
+    const R per_h = R(End == 0 ? -1 : 1) / h_;
     const auto in_body_axes = [&](const vector3<T>& x, const R& factor) {
       return components(
-          segment_.rates_at(end, std::array<vector3<T>, 1>{factor * components(x)})[0]);
+          segment_.template rates_at<End>(std::array<vector3<T>, 1>{factor * components(x)})[0]);
     };
     std::array<vector3<T>, 2> result;
-    result[end] = components(segment_.rates_at(end, with_zero(e[end]))[count]) +
-                  in_body_axes(e[end][3], per_h);
+    result[End] = components(segment_.template rates_at<End>(with_zero(e[End]))[count]) +
+                  in_body_axes(e[End][3], per_h);
     result[other] = in_body_axes(e[other][3], R(-per_h));
     return result;
   }
@@ -624,8 +625,8 @@ public:
         of_end =
             rates(x[knot])[derivative] - ends_.values[end][k] * T(this->unit_to(derivative + 1));
       } else {
-        const auto before = pieces_[knot - 1].last_rate_at(1, taylor(knot - 1, x));
-        const auto after = pieces_[knot].last_rate_at(0, taylor(knot, x));
+        const auto before = pieces_[knot - 1].template last_rate_at<1>(taylor(knot - 1, x));
+        const auto after = pieces_[knot].template last_rate_at<0>(taylor(knot, x));
         of_end = before[0] + before[1] - after[0] - after[1];
       }
       r.back().template segment<3>(end_row(end, k)) = (scale * components(of_end)).eigen();
