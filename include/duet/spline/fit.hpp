@@ -716,8 +716,9 @@ private:
       iterations_ += descend(round == 0 ? 1 : 4, false);
     }
     if (!(options_.outlier_threshold > 0)) {
+      std::vector<R> sizes = residuals();
       options_.outlier_threshold =
-          double(std::max(R(3 * median_of(residuals())), min_outlier_threshold));
+          double(std::max(R(3 * median_within(sizes)), min_outlier_threshold));
     }
     static_cast<void>(set_limits());
     for (R& limit : limits_) {

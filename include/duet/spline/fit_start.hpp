@@ -68,11 +68,6 @@ template <Real R>
   return *middle;
 }
 
-template <Real R>
-[[nodiscard]] R median_of(std::vector<R> x) {
-  return median_within(x);
-}
-
 /// Median of x around each sample, over 61 samples or more if there are as many: the samples on the
 /// same segment of the curve and their neighbours.
 ///

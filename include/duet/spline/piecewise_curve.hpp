@@ -115,24 +115,18 @@ private:
 
   template <int Rates, class S, class Hint>
   [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate(const S& parameter, Hint&& hint) const {
-    using P = std::conditional_t<Arithmetic<S>, R, S>;
-    P u(parameter);
-    if constexpr (Batched<P>) {
+    std::conditional_t<Arithmetic<S>, R, S> u(parameter);
+    if constexpr (Batched<decltype(u)>) {
       return evaluate_lanes<Rates>(u, hint);
     } else {
-      return evaluate_one<Rates>(u, hint);
+      std::size_t span = 0;
+      const bool is_at_rest = locate(u, span, hint);
+      auto m = curve().template on_span<Rates>(span, u);
+      if (Rates > 0 && is_at_rest) [[unlikely]] {
+        m.velocity = m.acceleration = m.jerk = {};
+      }
+      return m;
     }
-  }
-
-  template <int Rates, class P, class Hint>
-  [[nodiscard]] DUET_ALWAYS_INLINE auto evaluate_one(P u, Hint& hint) const {
-    std::size_t span = 0;
-    const bool is_at_rest = locate(u, span, hint);
-    auto m = curve().template on_span<Rates>(span, u);
-    if (Rates > 0 && is_at_rest) [[unlikely]] {
-      m.velocity = m.acceleration = m.jerk = {};
-    }
-    return m;
   }
 
   template <int Rates, class S, class Frame, class Hint>
