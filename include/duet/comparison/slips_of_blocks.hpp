@@ -550,20 +550,15 @@ protected:
 
   /// Vectors that may be rotation vectors: of rotations and vectors of three components.
   void try_exponential_jacobians() {
-    struct source {
-      std::string name;
-      const jacobian_part* part;
-      bool is_result;
-    };
-    std::vector<source> sources;
+    std::vector<motion> sources;
     for (const bool is_result : {false, true}) {
       for (const jacobian_part& p : is_result ? problem_.results : problem_.arguments) {
         if (p.is_motion() || (p.type == kind::vector && (p.dimension == 3 || p.dimension == 6))) {
-          sources.push_back({p.name, &p, is_result});
+          sources.push_back({p.name, &p, nullptr, is_result});
         }
       }
     }
-    for (const source& from : sources) {
+    for (const motion& from : sources) {
       for (const double sign : {1., -1.}) {
         for (const bool is_inverse : {false, true}) {
           for (const bool is_left : {false, true}) {
@@ -585,7 +580,7 @@ protected:
                         if ((is_left ? at.rows : at.columns) != 3) {
                           return {};
                         }
-                        const vector& state = from.is_result ? s.truth.value : s.state;
+                        const vector& state = state_of(s, from);
                         const Eigen::Vector3d phi =
                             (from.part->is_motion()
                                  ? Eigen::Vector3d(rotation_vector(rotation_at(*from.part, state)))
