@@ -652,25 +652,24 @@ public:
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const auto e = pieces_[i].taylor_gradients(taylor(i, x));
       const auto factors = pieces_[i].factors_of_ends(scale_of(i));
-      std::array<panel, 2> at{panel::Zero(n, n), panel::Zero(n, n)};
+      panel at_start = panel::Zero(n, n), at_end = at_start;
       for (std::size_t m = 0; m < count; ++m) {
         for (std::size_t k = 0; k < count; ++k) {
-          for (const std::size_t end : {0U, 1U}) {
-            add(at[end].template middleRows<3>(3 * Eigen::Index(m)), factors[end][m][k], e[end][k]);
-          }
+          add(at_start.template middleRows<3>(3 * Eigen::Index(m)), factors[0][m][k], e[0][k]);
+          add(at_end.template middleRows<3>(3 * Eigen::Index(m)), factors[1][m][k], e[1][k]);
         }
       }
       equations group{i, i * std::size_t(n), {}, {}};
       if (!ends_.is_cyclic || i + 2 < pieces_.size()) {
         group.coefficients.resize(n, 2 * n);
-        group.coefficients << at[0], at[1];
+        group.coefficients << at_start, at_end;
       } else if (i + 2 == pieces_.size()) {
-        group.coefficients = at[0];
-        group.of_last = at[1];
+        group.coefficients = at_start;
+        group.of_last = at_end;
       } else { // from the last knot to the first one
         group.first = 0;
-        group.coefficients = at[1];
-        group.of_last = at[0];
+        group.coefficients = at_end;
+        group.of_last = at_start;
       }
       groups.push_back(std::move(group));
     }
