@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
 #include <duet/core/constants.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>

@@ -71,7 +71,7 @@ protected:
     const jacobian_part* result;
   };
 
-  /// What the entries of a rectangle are by a hypothesis; empty if it does not apply.
+  /// Entries of a rectangle by a hypothesis; empty if it does not apply.
   using hypothesis = std::function<matrix(const jacobian_sample&, const scope&)>;
 
   static matrix of(const matrix& m, const scope& s) {

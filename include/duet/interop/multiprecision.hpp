@@ -1,6 +1,8 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/config.hpp>
+
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 /// \file

@@ -98,11 +98,11 @@ template <class T>
 } // namespace duet::detail
 
 /// The value of a rule is that of the function of `<cmath>`, or of one found by its argument.
-#define DUET_VALUE_OF_RULE(function)                                                               \
+#define DUET_VALUE_OF_RULE(name)                                                                   \
   template <class T>                                                                               \
   T value(const T& x) const {                                                                      \
-    using std::function;                                                                           \
-    return function(x);                                                                            \
+    using std::name;                                                                               \
+    return name(x);                                                                                \
   }
 
 namespace duet::rule {
