@@ -347,9 +347,9 @@ private:
   } furthest_; ///< furthest parameter reached, and the configurations from which
 };
 
-/// Moves the joints along a path as far as possible without self-motions.
+/// Planner along a path, first without stopping; if that ends early, with self-motions.
 template <int Capacity>
-class path_tracker {
+class path_planner {
 public:
   using vector = small_vector<Capacity>;
   /// Gradient of the secondary objective.
@@ -369,30 +369,61 @@ public:
     [[nodiscard]] const waypoint& back() const { return waypoints.back(); }
   };
 
-  /// \param path        pose of the tip as a function of the parameter
-  /// \param parameters  parameters that become waypoints, increasing; the first and the last are
-  /// the ends of the path
+  /// \param path   pose of the tip as a function of the parameter
+  /// \param stops  parameters that become waypoints, increasing; the first and the last are the
+  /// ends of the path
   /// \param objective_gradient  gradient of the objective, or nothing
-  path_tracker(const planning_model<Capacity>& model, const tip_path& path,
-               std::vector<double> parameters, const plan_options& how,
+  path_planner(const planning_model<Capacity>& model, const tip_path& path,
+               std::vector<double> stops, const plan_options& options,
                const gradient_function& objective_gradient)
-      : solver{model, model.tolerance(how.tolerance)}, target(path), stops(std::move(parameters)),
-        options(how), length(stops.back() - stops.front()),
-        remaining_iterations(how.max_iterations), deviation_(model.tolerance(how.deviation)),
-        objective_gradient_(objective_gradient) {}
+      : solver_{model, model.tolerance(options.tolerance)}, target_(path), stops_(std::move(stops)),
+        options_(options), length_(stops_.back() - stops_.front()),
+        remaining_iterations_(options.max_iterations),
+        deviation_(model.tolerance(options.deviation)), objective_gradient_(objective_gradient) {}
 
-  pose_solver<Capacity> solver;
-  const tip_path& target;
-  std::vector<double> stops;
-  plan_options options;
-  double length; ///< length of the path's parameter interval
-  int remaining_iterations;
+  [[nodiscard]] partial_plan plan(const vector& start) {
+    partial_plan best = continued(stay(start));
+    // Search from the last waypoint; if that fails, from the start.
+    for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
+      if (is_at_end(best) || options_.search_step == 0) {
+        break;
+      }
+      best = with_search(best, first);
+    }
+    return best;
+  }
 
   /// Partial plan that consists of the start alone.
   [[nodiscard]] partial_plan stay(const vector& start) const {
-    return partial_plan({solver.model.at(start), stops.front()});
+    return partial_plan({solver_.model.at(start), stops_.front()});
   }
-  [[nodiscard]] bool is_at_end(const partial_plan& x) const { return x.back().u == stops.back(); }
+  [[nodiscard]] int iterations() const { return options_.max_iterations - remaining_iterations_; }
+
+  /// Termination reason: the cause of failure of the first step that fails, of steps that grow.
+  [[nodiscard]] stop_reason reason(const partial_plan& x) const {
+    if (is_at_end(x) || remaining_iterations_ <= 0) {
+      return is_at_end(x) ? stop_reason::reached : stop_reason::iteration_limit;
+    }
+    const waypoint& current = x.back();
+    for (double step = options_.smallest_step; step < 1; step *= 2) {
+      const double u = std::min(current.u + step * length_, stops_.back());
+      const auto result = solver_.approach(current.state, target_(u), vector::Zero());
+      if (result.is_within(solver_.tolerance)) {
+        continue;
+      }
+      const bool is_near_singularity = result.smallest_singular_value < 10 * damping_threshold;
+      return result.is_blocked || result.margin_violation > solver_.tolerance.translation
+                 ? stop_reason::obstacle
+             : (result.is_bounded || is_near_singularity) && is_stopped_by_limits(x, u)
+                 ? stop_reason::joint_limit
+             : is_near_singularity ? stop_reason::singular
+                                   : stop_reason::no_progress;
+    }
+    return stop_reason::no_progress;
+  }
+
+private:
+  [[nodiscard]] bool is_at_end(const partial_plan& x) const { return x.back().u == stops_.back(); }
 
   /// Partial plan continued as far as possible without self-motions.
   [[nodiscard]] partial_plan continued(partial_plan best) {
@@ -415,9 +446,9 @@ public:
                                            double part = .5) const {
     const vector between = (1 - part) * a.state.theta + part * b.state.theta;
     const pose_error off =
-        pose_error_between(solver.model.at(between).tip, target((1 - part) * a.u + part * b.u));
+        pose_error_between(solver_.model.at(between).tip, target_((1 - part) * a.u + part * b.u));
     return std::max(deviation_.ratio(off),
-                    solver.model.margin_violation(between) / deviation_.translation);
+                    solver_.model.margin_violation(between) / deviation_.translation);
   }
 
   /// Partial plan up to where it last came near a singularity, if it did.
@@ -435,12 +466,12 @@ public:
 
   /// Partial plan continued without damping.
   [[nodiscard]] partial_plan undamped(partial_plan x) {
-    const pose_solver<Capacity> damped = solver;
-    solver.without_damping();
-    x.step = options.smallest_step;
+    const pose_solver<Capacity> damped = solver_;
+    solver_.without_damping();
+    x.step = options_.smallest_step;
     advance(x);
-    solver.damped_below = damped.damped_below;
-    solver.tolerance = damped.tolerance;
+    solver_.damped_below = damped.damped_below;
+    solver_.tolerance = damped.tolerance;
     return x;
   }
 
@@ -470,20 +501,20 @@ public:
       } else if (task.lowers_objective) {
         desired_step = descent_step(theta, (next_progress - progress) * part);
       }
-      auto result = solver.approach(current.state, target(u), desired_step);
-      remaining_iterations -= result.iterations;
+      auto result = solver_.approach(current.state, target_(u), desired_step);
+      remaining_iterations_ -= result.iterations;
       if (task.lowers_objective && result.smallest_singular_value < damping_threshold) {
         // The objective may move the joints to where the path has no continuation.
-        result = solver.approach(current.state, target(u), vector::Zero());
-        remaining_iterations -= result.iterations;
+        result = solver_.approach(current.state, target_(u), vector::Zero());
+        remaining_iterations_ -= result.iterations;
       }
       double change = .25;
-      if (result.is_within(solver.tolerance)) {
+      if (result.is_within(solver_.tolerance)) {
         const waypoint on{result.state, u, result.residual, result.smallest_singular_value};
         const double error_ratio = error_ratio_between(current, on);
         // The deviation between waypoints grows with the square of the step.
         change = std::clamp(.85 / std::sqrt(std::max(error_ratio, 1e-12)), .2, 2.0);
-        if (x.step < options.smallest_step &&
+        if (x.step < options_.smallest_step &&
             (result.state.theta - theta).norm() < min_reorientation) {
           change = .25; // the pose is within tolerance of both parameters: no progress
         } else if (error_ratio <= .95 || // halfway the deviation is not quite largest
@@ -495,21 +526,20 @@ public:
           x.waypoints.push_back(on);
         }
       }
-      x.step = std::min(options.largest_step, x.step * change);
-      if (progress < 1 && (remaining_iterations <= 0 ||
-                           (x.step < options.smallest_step && !is_reorienting(x.back(), x.step)))) {
+      x.step = std::min(options_.largest_step, x.step * change);
+      if (progress < 1 && (remaining_iterations_ <= 0 || (x.step < options_.smallest_step &&
+                                                          !is_reorienting(x.back(), x.step)))) {
         return false;
       }
     }
     return true;
   }
 
-private:
   /// Continues as far as possible without stopping.
   void advance(partial_plan& x) {
-    for (const double stop : stops) {
+    for (const double stop : stops_) {
       if (stop > x.back().u &&
-          !track(x, stop, (stop - x.back().u) / length, {.lowers_objective = true})) {
+          !track(x, stop, (stop - x.back().u) / length_, {.lowers_objective = true})) {
         return;
       }
     }
@@ -517,109 +547,42 @@ private:
 
   /// Descent step of the objectives.
   [[nodiscard]] vector descent_step(const vector& theta, double step) const {
-    const vector centre =
-        joint_centring_step(theta, solver.model.lower, solver.model.upper, options.centring * step);
+    const vector centre = joint_centring_step(theta, solver_.model.lower, solver_.model.upper,
+                                              options_.centring * step);
     return objective_gradient_ ? vector(centre - step * objective_gradient_(theta)) : centre;
   }
 
   /// True if the joints move far in a short step along the path.
   [[nodiscard]] bool is_reorienting(const waypoint& at, double step) const {
     constexpr double min_step = 1e-12;
-    return solver.damped_below == undamped_threshold_near_singularity && step > min_step &&
-           solver.joint_distance_to(
-               at.state, target(std::min(at.u + step * length, stops.back()))) > min_reorientation;
+    return solver_.damped_below == undamped_threshold_near_singularity && step > min_step &&
+           solver_.joint_distance_to(at.state,
+                                     target_(std::min(at.u + step * length_, stops_.back()))) >
+               min_reorientation;
   }
 
-  static constexpr double min_reorientation = 1e-3;
-  pose_tolerance deviation_;
-  const gradient_function& objective_gradient_;
-};
-
-/// Planner along a path, first without stopping; if that ends early, with self-motions.
-template <int Capacity>
-class path_planner {
-public:
-  using tracker = path_tracker<Capacity>;
-  using vector = typename tracker::vector;
-  using waypoint = typename tracker::waypoint;
-  using partial_plan = typename tracker::partial_plan;
-
-  /// Arguments as in `path_tracker`.
-  path_planner(const planning_model<Capacity>& model, const tip_path& target,
-               std::vector<double> stops, const plan_options& options,
-               const typename tracker::gradient_function& objective_gradient)
-      : steps_(model, target, std::move(stops), options, objective_gradient) {}
-
-  [[nodiscard]] partial_plan plan(const vector& start) {
-    partial_plan best = steps_.continued(stay(start));
-    // Search from the last waypoint; if that fails, from the start.
-    for (std::size_t first : {best.waypoints.size() - 1, std::size_t(0)}) {
-      if (steps_.is_at_end(best) || steps_.options.search_step == 0) {
-        break;
-      }
-      best = with_search(best, first);
-    }
-    return best;
-  }
-
-  /// Partial plan that consists of the start alone.
-  [[nodiscard]] partial_plan stay(const vector& start) const { return steps_.stay(start); }
-  [[nodiscard]] int iterations() const {
-    return steps_.options.max_iterations - steps_.remaining_iterations;
-  }
-
-  /// Termination reason: the cause of failure of the first step that fails, of steps that grow.
-  [[nodiscard]] stop_reason reason(const partial_plan& x) const {
-    if (steps_.is_at_end(x) || steps_.remaining_iterations <= 0) {
-      return steps_.is_at_end(x) ? stop_reason::reached : stop_reason::iteration_limit;
-    }
-    const waypoint& current = x.back();
-    for (double step = steps_.options.smallest_step; step < 1; step *= 2) {
-      const double u = std::min(current.u + step * steps_.length, steps_.stops.back());
-      const auto result = steps_.solver.approach(current.state, steps_.target(u), vector::Zero());
-      if (result.is_within(steps_.solver.tolerance)) {
-        continue;
-      }
-      const bool is_near_singularity = result.smallest_singular_value < 10 * damping_threshold;
-      return result.is_blocked || result.margin_violation > steps_.solver.tolerance.translation
-                 ? stop_reason::obstacle
-             : (result.is_bounded || is_near_singularity) && is_stopped_by_limits(x, u)
-                 ? stop_reason::joint_limit
-             : is_near_singularity ? stop_reason::singular
-                                   : stop_reason::no_progress;
-    }
-    return stop_reason::no_progress;
-  }
-
-private:
   /// True if joint limits end the plan: without limits it continues beyond the parameter u, from
   /// its end or from before the singularity there, if necessary by a self-motion; or, if the arm is
   /// not redundant, its continuation through the singularity leaves the limits.
   [[nodiscard]] bool is_stopped_by_limits(const partial_plan& x, double u) const {
-    constexpr int max_iterations = 100000;
-    tracker free = steps_;
-    free.remaining_iterations = max_iterations;
-    free.solver.without_limits();
-    const double beyond = std::min(u + 4 * (u - x.back().u), steps_.stops.back());
-    free.stops = {steps_.stops.front(), beyond};
+    path_planner free = *this;
+    free.remaining_iterations_ = 100000;
+    free.solver_.without_limits();
+    const double beyond = std::min(u + 4 * (u - x.back().u), stops_.back());
+    free.stops_ = {stops_.front(), beyond};
     partial_plan end = free.undamped(partial_plan(x.back()));
     if (!free.is_at_end(end) && x.back().smallest_singular_value < damping_threshold) {
-      end = free.undamped(steps_.before_singularity(x));
+      end = free.undamped(before_singularity(x));
     }
-    return free.is_at_end(end) || continues_after_self_motion(free, end.back(), beyond) ||
-           (steps_.solver.model.size <= 6 &&
-            !steps_.solver.is_within_limits(end.back().state.theta));
-  }
-  [[nodiscard]] static bool continues_after_self_motion(tracker free, const waypoint& from,
-                                                        double to) {
-    free.solver.without_damping();
-    self_motion_search search(free.solver, free.target, free.options.self_motion_step,
-                              damping_threshold, to - from.u, free.remaining_iterations);
-    return free.options.search_step > 0 &&
-           search.run(from.state, {from.u, to}).front().back().u == to;
-  }
-  [[nodiscard]] static bool is_singular(const waypoint& x) {
-    return smallest_singular_value_of(x.state.jacobian) < damping_threshold;
+    const waypoint& from = end.back();
+    const auto continues_after_self_motion = [&] {
+      free.solver_.without_damping();
+      self_motion_search search(free.solver_, target_, options_.self_motion_step, damping_threshold,
+                                beyond - from.u, free.remaining_iterations_);
+      return search.run(from.state, {from.u, beyond}).front().back().u == beyond;
+    };
+    return free.is_at_end(end) || (options_.search_step > 0 && continues_after_self_motion()) ||
+           (solver_.model.size <= 6 && !solver_.is_within_limits(from.state.theta));
   }
 
   /// Better plan with self-motions from a waypoint of `before`, or `before` itself.
@@ -628,7 +591,9 @@ private:
     begin.waypoints.assign(before.waypoints.begin(),
                            before.waypoints.begin() + std::ptrdiff_t(first) + 1);
     partial_plan best = before;
-    const double full_step = steps_.options.search_step, enough = end_resolution();
+    // Parameter distance from its end to which a continuation is followed.
+    const double enough = 100 * options_.smallest_step * length_;
+    const double full_step = options_.search_step;
     // A continuation near a singularity may cross it where the tip cannot follow; the second search
     // therefore avoids such crossings. Or it passes so near that joints get to the other side; the
     // further searches therefore use shorter steps.
@@ -636,14 +601,14 @@ private:
          {std::pair(damping_threshold, full_step), std::pair(singularity_threshold, full_step),
           std::pair(damping_threshold, full_step / 4),
           std::pair(damping_threshold, full_step / 16)}) {
-      self_motion_search search(steps_.solver, steps_.target, steps_.options.self_motion_step,
-                                singular, enough, steps_.remaining_iterations);
+      self_motion_search search(solver_, target_, options_.self_motion_step, singular, enough,
+                                remaining_iterations_);
       const auto continuations =
           search.run(begin.back().state, search_parameters(begin.back(), step));
-      steps_.remaining_iterations = search.remaining_iterations();
+      remaining_iterations_ = search.remaining_iterations();
       for (const auto& continuation : continuations) {
-        if (!steps_.is_at_end(best)) {
-          steps_.keep_furthest(best, along(begin, continuation));
+        if (!is_at_end(best)) {
+          keep_furthest(best, along(begin, continuation));
         }
       }
       if (best.back().u + enough >= continuations.front().back().u) {
@@ -652,10 +617,6 @@ private:
     }
     return best;
   }
-  /// Parameter distance from its end to which a continuation is followed.
-  [[nodiscard]] double end_resolution() const {
-    return 100 * steps_.options.smallest_step * steps_.length;
-  }
 
   /// Plan along a continuation from the search, and beyond.
   [[nodiscard]] partial_plan
@@ -663,10 +624,10 @@ private:
     for (std::size_t i = 1; i < continuation.size(); ++i) {
       const std::size_t count = x.waypoints.size();
       const auto track_to = [&](bool is_back) {
-        x.step = steps_.options.search_step;
+        x.step = options_.search_step;
         return is_back ? track_backwards(x, continuation[i])
-                       : steps_.track(x, continuation[i].u, steps_.options.search_step,
-                                      {&continuation[i].state.theta});
+                       : track(x, continuation[i].u, options_.search_step,
+                               {&continuation[i].state.theta});
       };
       if (!track_to(continuation[i].escapes_singularity)) {
         x.waypoints.erase(x.waypoints.begin() + std::ptrdiff_t(count), x.waypoints.end());
@@ -675,22 +636,22 @@ private:
         }
       }
     }
-    return steps_.continued(std::move(x));
+    return continued(std::move(x));
   }
 
   /// Parameters of the search from a waypoint on, a step apart: nearer to the waypoint if it is
   /// singular, as escapes may be short.
   [[nodiscard]] std::vector<double> search_parameters(const waypoint& from, double step) const {
     std::vector<double> result = {from.u};
-    if (is_singular(from)) {
+    if (smallest_singular_value_of(from.state.jacobian) < damping_threshold) {
       for (const double part : {1. / 256, 1. / 16}) {
-        result.push_back(std::min(from.u + part * step * steps_.length, steps_.stops.back()));
+        result.push_back(std::min(from.u + part * step * length_, stops_.back()));
       }
     }
-    for (const double stop : steps_.stops) {
+    for (const double stop : stops_) {
       const double begin = result.back();
       if (stop > begin) {
-        const int count = int(std::ceil((stop - begin) / (step * steps_.length)));
+        const int count = int(std::ceil((stop - begin) / (step * length_)));
         for (int i = 1; i < count; ++i) {
           result.push_back(begin + (stop - begin) * i / count);
         }
@@ -704,21 +665,20 @@ private:
   /// tracked and reversed, and a self-motion leads to the end of that path.
   [[nodiscard]] bool track_backwards(partial_plan& x, const search_node<Capacity>& to) {
     partial_plan back({to.state, to.u, {}, smallest_singular_value_of(to.state.jacobian)});
-    back.step = steps_.options.search_step;
+    back.step = options_.search_step;
     const double u = x.back().u;
-    if (!steps_.track(back, u, steps_.options.search_step, {})) {
+    if (!track(back, u, options_.search_step, {})) {
       return false;
     }
-    for (int round = 0; round < 5 && steps_.error_ratio_between(x.back(), back.back()) > 1;
-         ++round) {
+    for (int round = 0; round < 5 && error_ratio_between(x.back(), back.back()) > 1; ++round) {
       move_to(x, back.back().state.theta);
       move_to(back, x.back().state.theta);
     }
-    if (steps_.error_ratio_between(x.back(), back.back()) > 1) {
+    if (error_ratio_between(x.back(), back.back()) > 1) {
       return false;
     }
     x.waypoints.insert(x.waypoints.end(), back.waypoints.rbegin(), back.waypoints.rend());
-    x.step = steps_.options.search_step;
+    x.step = options_.search_step;
     return true;
   }
 
@@ -727,14 +687,23 @@ private:
     for (double before = std::numeric_limits<double>::infinity();;) {
       const double remaining = (aim - x.back().state.theta).norm();
       if (remaining < 1e-9 || !(remaining < .9 * before) ||
-          !steps_.track(x, x.back().u, steps_.options.search_step, {&aim})) {
+          !track(x, x.back().u, options_.search_step, {&aim})) {
         return;
       }
       before = remaining;
     }
   }
 
-  tracker steps_;
+  static constexpr double min_reorientation = 1e-3;
+
+  pose_solver<Capacity> solver_;
+  const tip_path& target_;
+  std::vector<double> stops_;
+  plan_options options_;
+  double length_; ///< length of the path's parameter interval
+  int remaining_iterations_;
+  pose_tolerance deviation_;
+  const gradient_function& objective_gradient_;
 };
 
 void require_options(const plan_options& o, const char* caller) {
