@@ -240,274 +240,15 @@ private:
   seven_coordinates unit_; ///< 1 for angles, the arm's size for lengths
 };
 
-/// Predictor–corrector continuation of the self-motion curves of one arm and goal: steps along the
-/// Jacobian's null space, or along the projection of the previous step onto it where it has more
-/// dimensions, and projections back onto the set.
-class curve_tracer {
-public:
-  /// Continuation on a self-motion set.
-  ///
-  /// \param step  maximum distance between consecutive points
-  curve_tracer(const self_motion_set& set, double step) : set_(set), step_(step) {}
-
-  /// Curve through one of its points: closed, or followed to both ends.
-  ///
-  /// \param leaving  direction of the curve at that point
-  /// \param kernel   dimension of the Jacobian's null space on the curve
-  [[nodiscard]] traced_curve trace(const seven_coordinates& start, const seven_coordinates& leaving,
-                                   int kernel) const {
-    traced_curve result{{start}, false, 1, kernel};
-    const auto first = direction(set_.kernel(start), leaving);
-    if (!first || follow(result, *first)) {
-      return result;
-    }
-    std::reverse(result.points.begin(), result.points.end());
-    follow(result, -*first);
-    return result;
-  }
-
-  /// True if a point of the set is on a curve.
-  ///
-  /// \param kernel  dimension of the Jacobian's null space at x
-  [[nodiscard]] bool is_on(const traced_curve& curve, const seven_coordinates& x,
-                           int kernel) const {
-    const double same = curve.kernel == 1 && kernel == 1 ? self_motion_tolerance::same
-                                                         : self_motion_tolerance::same_rough;
-    const std::size_t n = curve.points.size(), segments = curve.is_closed ? n : n - 1;
-    for (std::size_t k = 0; k < segments; ++k) {
-      const seven_coordinates& a = curve.points[k];
-      const seven_coordinates to_x = set_.difference(x, a),
-                              chord = set_.difference(curve.points[(k + 1) % n], a);
-      if (to_x.squaredNorm() > 4 * chord.squaredNorm()) {
-        continue;
-      }
-      // If x is on the curve, it is the point of the curve that is nearest to x,
-      // found along the chord.
-      double fraction = std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.);
-      for (int round = 0; round < 8 && fraction > -.5 && fraction < 1.5; ++round) {
-        const auto between = set_.projected(set_.moved(a, fraction * chord), step_);
-        if (!between) {
-          break;
-        }
-        const seven_coordinates residual = set_.difference(x, *between);
-        if (residual.norm() < same) {
-          return true;
-        }
-        fraction += residual.dot(chord) / chord.squaredNorm();
-      }
-    }
-    return set_.difference(x, curve.points.front()).norm() < same;
-  }
-
-private:
-  struct continuation_step {
-    seven_coordinates x, ahead; ///< new point, direction of the curve there
-    double bend, length;        ///< deflection and length of the step
-    bool is_crossing;           ///< true if the null space has more dimensions than on the curve
-  };
-
-  /// Unit vector of a null space that is nearest to the direction of the previous step; empty if
-  /// that is nearly orthogonal to it.
-  [[nodiscard]] static std::optional<seven_coordinates>
-  direction(const self_motion_set::null_space& basis, const seven_coordinates& before) {
-    const seven_coordinates along = basis * (basis.transpose() * before);
-    const double size = along.norm();
-    return size > .1 ? std::optional<seven_coordinates>(along / size) : std::nullopt;
-  }
-
-  /// Step along the curve; empty if the curve does not continue in about the same direction.
-  [[nodiscard]] std::optional<continuation_step> take_step(const seven_coordinates& x,
-                                                           const seven_coordinates& along,
-                                                           double step, int kernel) const {
-    const auto next = set_.projected(set_.moved(x, step * along), step_);
-    if (!next) {
-      return {};
-    }
-    const seven_coordinates displacement = set_.difference(*next, x);
-    const auto basis = set_.kernel(*next);
-    const auto ahead = direction(basis, basis.cols() == 1 ? along : displacement.normalized());
-    if (basis.cols() < kernel || !ahead || displacement.norm() > step_) {
-      return {};
-    }
-    const double bend = (*ahead - along).norm();
-    return bend < .3 ? std::optional<continuation_step>(
-                           {*next, *ahead, bend, displacement.norm(), basis.cols() > kernel})
-                     : std::nullopt;
-  }
-
-  /// Step past points where curves cross, if they are not too close to each other.
-  [[nodiscard]] std::optional<continuation_step> step_past_crossing(const seven_coordinates& x,
-                                                                    const seven_coordinates& along,
-                                                                    double step, int kernel) const {
-    auto result = take_step(x, along, step, kernel);
-    for (const double fraction : {.62, .81, .38}) {
-      if (!result || !result->is_crossing) {
-        break;
-      }
-      const auto other = take_step(x, along, fraction * step, kernel);
-      result = other && !other->is_crossing ? other : result;
-    }
-    return result;
-  }
-
-  /// Adds points until the curve returns to its first one.
-  ///
-  /// \return true if it does
-  bool follow(traced_curve& curve, seven_coordinates along) const {
-    constexpr double min_step = 1e-5, max_crossing = .6;
-    const int max_points = int(400 / step_);
-    const seven_coordinates start = curve.points.front(), leaving = along;
-    double step = step_ / 2, crossing = 0;
-    for (int k = 0; k < max_points && step > min_step; ++k) {
-      const seven_coordinates last = curve.points.back();
-      const auto next = step_past_crossing(last, along, step, curve.kernel);
-      if (!next) {
-        step *= .6; // not a half: structured curves cross at such fractions
-        continue;
-      }
-      crossing = next->is_crossing ? crossing + next->length : 0;
-      if (crossing > max_crossing) {
-        return false; // it has reached a component of more dimensions
-      }
-      const seven_coordinates back = set_.difference(start, last);
-      const double remaining = back.dot(along);
-      const bool is_back = curve.points.size() > 3 && remaining > 0 && remaining <= 1.5 * step &&
-                           back.norm() < std::min(2 * remaining, step_) && along.dot(leaving) > .5;
-      if (is_back) {
-        curve.is_closed = true;
-        return true;
-      }
-      curve.points.push_back(next->x);
-      along = next->ahead;
-      step = std::min(step_ / 2, next->bend < .1 ? 2 * step : step);
-    }
-    return false;
-  }
-
-  const self_motion_set& set_;
-  double step_;
-};
-
-/// Walks on components of two and more dimensions of the self-motion set of one arm and goal.
-class surface_sampler {
-public:
-  explicit surface_sampler(const self_motion_set& set) : set_(set) {}
-
-  /// Up to 64 points of the component that contains x, as far from each other as they can be found.
-  [[nodiscard]] traced_curve sample(const seven_coordinates& x, int dimension, int kernel,
-                                    splitmix64& random) const {
-    constexpr std::size_t count = 64;
-    constexpr int tries = 32;
-    traced_curve result{{x}, false, dimension, kernel};
-    auto& points = result.points;
-    for (double separation = 2; separation > .05 && points.size() < count; separation *= .7) {
-      for (int failed = 0; failed < tries && points.size() < count; ++failed) {
-        const auto& from = points[std::size_t(random() * double(points.size()))];
-        const auto end = wander(from, std::numbers::pi * random(), random);
-        const auto is_near = [&](const auto& p) {
-          return set_.difference(end, p).norm() < separation;
-        };
-        if (std::none_of(points.begin(), points.end(), is_near)) {
-          points.push_back(end);
-          failed = 0;
-        }
-      }
-    }
-    return result;
-  }
-
-  /// True if a walk on the component leads from x to one of the sample's points.
-  [[nodiscard]] bool is_on(const traced_curve& component, const seven_coordinates& x,
-                           splitmix64& random) const {
-    constexpr int detours = 4;
-    bool result = leads_to_sample(component, x);
-    for (int k = 0; k < detours && !result; ++k) {
-      result = leads_to_sample(component, wander(x, std::numbers::pi * random(), random));
-    }
-    return result;
-  }
-
-private:
-  static constexpr double stride = .2;
-
-  /// True if a walk leads to one of the nearest points of a sample.
-  [[nodiscard]] bool leads_to_sample(const traced_curve& component,
-                                     const seven_coordinates& x) const {
-    constexpr std::size_t max_count = 8;
-    std::vector<seven_coordinates> nearest = component.points;
-    std::sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) {
-      return set_.difference(a, x).norm() < set_.difference(b, x).norm();
-    });
-    nearest.resize(std::min(max_count, nearest.size()));
-    return std::any_of(nearest.begin(), nearest.end(),
-                       [&](const auto& s) { return is_straight(x, s); }) ||
-           std::any_of(nearest.begin(), nearest.end(), [&](const auto& s) { return leads(x, s); });
-  }
-
-  /// True if the straight line between two points is on the set.
-  [[nodiscard]] bool is_straight(const seven_coordinates& x, const seven_coordinates& end) const {
-    constexpr std::array parts{.07, .19, .31, .5, .62, .74, .83, .93};
-    constexpr double close = 1e-7;
-    const seven_coordinates direction = set_.difference(end, x);
-    return std::all_of(parts.begin(), parts.end(), [&](double part) {
-      return set_.error(set_.moved(x, part * direction)) < close;
-    });
-  }
-
-  /// Step on the component in a direction; empty if no step stays on it.
-  [[nodiscard]] std::optional<seven_coordinates>
-  step(const seven_coordinates& x, const seven_coordinates& direction, double max_length) const {
-    const auto basis = set_.kernel(x);
-    const seven_coordinates along = basis * (basis.transpose() * direction);
-    const double size = along.norm();
-    if (!(size > .1 * direction.norm())) {
-      return {};
-    }
-    return set_.projected(set_.moved(x, std::min(1., max_length / size) * along), 2 * stride);
-  }
-
-  /// True if a walk towards `end` reaches it.
-  [[nodiscard]] bool leads(seven_coordinates x, const seven_coordinates& end) const {
-    constexpr int steps = 100;
-    for (int k = 0; k < steps; ++k) {
-      const seven_coordinates direction = set_.difference(end, x);
-      const double remaining = direction.norm();
-      if (remaining < self_motion_tolerance::same_rough) {
-        return true;
-      }
-      const auto next = step(x, direction, stride);
-      if (!next || !(set_.difference(end, *next).norm() < .95 * remaining)) {
-        return false;
-      }
-      x = *next;
-    }
-    return false;
-  }
-
-  /// End of a walk of a given length in a random direction.
-  [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length,
-                                         splitmix64& random) const {
-    seven_coordinates direction = self_motion_set::any_direction(set_.kernel(x), random);
-    for (; length > 0; length -= stride) {
-      const auto next = step(x, direction, std::min(length, stride));
-      const seven_coordinates moved = next ? set_.difference(*next, x) : seven_coordinates::Zero();
-      if (!(moved.norm() > 0)) {
-        break;
-      }
-      x = *next;
-      direction = moved.normalized();
-    }
-    return x;
-  }
-
-  const self_motion_set& set_;
-};
-
 /// Collects the components of the self-motion set of one redundant arm at one goal.
+///
+/// Curves are followed by predictor–corrector continuation: steps along the Jacobian's null space,
+/// or along the projection of the previous step onto it where it has more dimensions, and
+/// projections back onto the set. On components of two and more dimensions walks lead to samples.
 class component_search {
 public:
   component_search(const self_motion_set& set, double resolution)
-      : set_(set), tracer_(set, resolution), sampler_(set), resolution_(resolution) {}
+      : set_(set), resolution_(resolution) {}
 
   [[nodiscard]] std::vector<traced_curve> operator()() {
     add_slices();
@@ -558,8 +299,8 @@ private:
 
   [[nodiscard]] bool is_known(const seven_coordinates& x, int kernel) {
     return std::any_of(components_.begin(), components_.end(), [&](const traced_curve& component) {
-      return component.dimension > 1 ? kernel > 1 && sampler_.is_on(component, x, random_)
-                                     : tracer_.is_on(component, x, kernel);
+      return component.dimension > 1 ? kernel > 1 && is_on_surface(component, x)
+                                     : is_on_curve(component, x, kernel);
     });
   }
 
@@ -568,8 +309,8 @@ private:
       return;
     }
     if (kernel == 1) {
-      components_.push_back(tracer_.trace(x, set_.kernel(x).col(0), 1));
-    } else if (set_.dimension(x, step, random_) == 0) {
+      components_.push_back(trace(x, set_.kernel(x).col(0), 1));
+    } else if (set_.dimension(x, start_step, random_) == 0) {
       components_.push_back({{x}, false, 0, kernel});
     } else {
       add_near(x);
@@ -585,7 +326,7 @@ private:
     const auto basis = set_.kernel(singular);
     std::vector<neighbour> neighbours;
     for (int k = 0; k < 4 * basis.cols(); ++k) {
-      const auto x = set_.neighbour(singular, step, basis, random_);
+      const auto x = set_.neighbour(singular, start_step, basis, random_);
       if (x && set_.difference(*x, singular).norm() > small_step) {
         neighbours.push_back({*x, int(set_.kernel(*x).cols())});
       }
@@ -599,19 +340,258 @@ private:
       const int dimension = std::min(set_.dimension(x, small_step, random_),
                                      set_.dimension(x, small_step / 8, random_));
       if (dimension > 1) {
-        components_.push_back(sampler_.sample(x, dimension, kernel, random_));
+        components_.push_back(sample(x, dimension, kernel));
       } else if (dimension == 1) {
         const seven_coordinates along = set_.difference(x, singular).normalized();
-        components_.push_back(tracer_.trace(x, along, kernel));
+        components_.push_back(trace(x, along, kernel));
       }
     }
   }
 
-  static constexpr double step = .05, small_step = .005; ///< steps from a singular point to others
+  // Curves.
+
+  /// Curve through one of its points: closed, or followed to both ends.
+  ///
+  /// \param leaving  direction of the curve at that point
+  /// \param kernel   dimension of the Jacobian's null space on the curve
+  [[nodiscard]] traced_curve trace(const seven_coordinates& start, const seven_coordinates& leaving,
+                                   int kernel) const {
+    traced_curve result{{start}, false, 1, kernel};
+    const auto first = direction(set_.kernel(start), leaving);
+    if (!first || follow(result, *first)) {
+      return result;
+    }
+    std::reverse(result.points.begin(), result.points.end());
+    follow(result, -*first);
+    return result;
+  }
+
+  /// True if a point of the set is on a curve.
+  ///
+  /// \param kernel  dimension of the Jacobian's null space at x
+  [[nodiscard]] bool is_on_curve(const traced_curve& curve, const seven_coordinates& x,
+                                 int kernel) const {
+    const double same = curve.kernel == 1 && kernel == 1 ? self_motion_tolerance::same
+                                                         : self_motion_tolerance::same_rough;
+    const std::size_t n = curve.points.size(), segments = curve.is_closed ? n : n - 1;
+    for (std::size_t k = 0; k < segments; ++k) {
+      const seven_coordinates& a = curve.points[k];
+      const seven_coordinates to_x = set_.difference(x, a),
+                              chord = set_.difference(curve.points[(k + 1) % n], a);
+      if (to_x.squaredNorm() > 4 * chord.squaredNorm()) {
+        continue;
+      }
+      // If x is on the curve, it is the point of the curve that is nearest to x,
+      // found along the chord.
+      double fraction = std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.);
+      for (int round = 0; round < 8 && fraction > -.5 && fraction < 1.5; ++round) {
+        const auto between = set_.projected(set_.moved(a, fraction * chord), resolution_);
+        if (!between) {
+          break;
+        }
+        const seven_coordinates residual = set_.difference(x, *between);
+        if (residual.norm() < same) {
+          return true;
+        }
+        fraction += residual.dot(chord) / chord.squaredNorm();
+      }
+    }
+    return set_.difference(x, curve.points.front()).norm() < same;
+  }
+
+  struct continuation_step {
+    seven_coordinates x, ahead; ///< new point, direction of the curve there
+    double bend, length;        ///< deflection and length of the step
+    bool is_crossing;           ///< true if the null space has more dimensions than on the curve
+  };
+
+  /// Unit vector of a null space that is nearest to the direction of the previous step; empty if
+  /// that is nearly orthogonal to it.
+  [[nodiscard]] static std::optional<seven_coordinates>
+  direction(const self_motion_set::null_space& basis, const seven_coordinates& before) {
+    const seven_coordinates along = basis * (basis.transpose() * before);
+    const double size = along.norm();
+    return size > .1 ? std::optional<seven_coordinates>(along / size) : std::nullopt;
+  }
+
+  /// Step along the curve; empty if the curve does not continue in about the same direction.
+  [[nodiscard]] std::optional<continuation_step> take_step(const seven_coordinates& x,
+                                                           const seven_coordinates& along,
+                                                           double step, int kernel) const {
+    const auto next = set_.projected(set_.moved(x, step * along), resolution_);
+    if (!next) {
+      return {};
+    }
+    const seven_coordinates displacement = set_.difference(*next, x);
+    const auto basis = set_.kernel(*next);
+    const auto ahead = direction(basis, basis.cols() == 1 ? along : displacement.normalized());
+    if (basis.cols() < kernel || !ahead || displacement.norm() > resolution_) {
+      return {};
+    }
+    const double bend = (*ahead - along).norm();
+    return bend < .3 ? std::optional<continuation_step>(
+                           {*next, *ahead, bend, displacement.norm(), basis.cols() > kernel})
+                     : std::nullopt;
+  }
+
+  /// Step past points where curves cross, if they are not too close to each other.
+  [[nodiscard]] std::optional<continuation_step> step_past_crossing(const seven_coordinates& x,
+                                                                    const seven_coordinates& along,
+                                                                    double step, int kernel) const {
+    auto result = take_step(x, along, step, kernel);
+    for (const double fraction : {.62, .81, .38}) {
+      if (!result || !result->is_crossing) {
+        break;
+      }
+      const auto other = take_step(x, along, fraction * step, kernel);
+      result = other && !other->is_crossing ? other : result;
+    }
+    return result;
+  }
+
+  /// Adds points until the curve returns to its first one.
+  ///
+  /// \return true if it does
+  bool follow(traced_curve& curve, seven_coordinates along) const {
+    constexpr double min_step = 1e-5, max_crossing = .6;
+    const int max_points = int(400 / resolution_);
+    const seven_coordinates start = curve.points.front(), leaving = along;
+    double step = resolution_ / 2, crossing = 0;
+    for (int k = 0; k < max_points && step > min_step; ++k) {
+      const seven_coordinates last = curve.points.back();
+      const auto next = step_past_crossing(last, along, step, curve.kernel);
+      if (!next) {
+        step *= .6; // not a half: structured curves cross at such fractions
+        continue;
+      }
+      crossing = next->is_crossing ? crossing + next->length : 0;
+      if (crossing > max_crossing) {
+        return false; // it has reached a component of more dimensions
+      }
+      const seven_coordinates back = set_.difference(start, last);
+      const double remaining = back.dot(along);
+      const bool is_back = curve.points.size() > 3 && remaining > 0 && remaining <= 1.5 * step &&
+                           back.norm() < std::min(2 * remaining, resolution_) &&
+                           along.dot(leaving) > .5;
+      if (is_back) {
+        curve.is_closed = true;
+        return true;
+      }
+      curve.points.push_back(next->x);
+      along = next->ahead;
+      step = std::min(resolution_ / 2, next->bend < .1 ? 2 * step : step);
+    }
+    return false;
+  }
+
+  // Components of two and more dimensions.
+
+  /// Up to 64 points of the component that contains x, as far from each other as they can be found.
+  [[nodiscard]] traced_curve sample(const seven_coordinates& x, int dimension, int kernel) {
+    constexpr std::size_t count = 64;
+    constexpr int tries = 32;
+    traced_curve result{{x}, false, dimension, kernel};
+    auto& points = result.points;
+    for (double separation = 2; separation > .05 && points.size() < count; separation *= .7) {
+      for (int failed = 0; failed < tries && points.size() < count; ++failed) {
+        const auto& from = points[std::size_t(random_() * double(points.size()))];
+        const auto end = wander(from, std::numbers::pi * random_());
+        const auto is_near = [&](const auto& p) {
+          return set_.difference(end, p).norm() < separation;
+        };
+        if (std::none_of(points.begin(), points.end(), is_near)) {
+          points.push_back(end);
+          failed = 0;
+        }
+      }
+    }
+    return result;
+  }
+
+  /// True if a walk on the component leads from x to one of the sample's points.
+  [[nodiscard]] bool is_on_surface(const traced_curve& component, const seven_coordinates& x) {
+    constexpr int detours = 4;
+    bool result = leads_to_sample(component, x);
+    for (int k = 0; k < detours && !result; ++k) {
+      result = leads_to_sample(component, wander(x, std::numbers::pi * random_()));
+    }
+    return result;
+  }
+
+  /// True if a walk leads to one of the nearest points of a sample.
+  [[nodiscard]] bool leads_to_sample(const traced_curve& component,
+                                     const seven_coordinates& x) const {
+    constexpr std::size_t max_count = 8;
+    std::vector<seven_coordinates> nearest = component.points;
+    std::sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) {
+      return set_.difference(a, x).norm() < set_.difference(b, x).norm();
+    });
+    nearest.resize(std::min(max_count, nearest.size()));
+    return std::any_of(nearest.begin(), nearest.end(),
+                       [&](const auto& s) { return is_straight(x, s); }) ||
+           std::any_of(nearest.begin(), nearest.end(), [&](const auto& s) { return leads(x, s); });
+  }
+
+  /// True if the straight line between two points is on the set.
+  [[nodiscard]] bool is_straight(const seven_coordinates& x, const seven_coordinates& end) const {
+    constexpr std::array parts{.07, .19, .31, .5, .62, .74, .83, .93};
+    constexpr double close = 1e-7;
+    const seven_coordinates direction = set_.difference(end, x);
+    return std::all_of(parts.begin(), parts.end(), [&](double part) {
+      return set_.error(set_.moved(x, part * direction)) < close;
+    });
+  }
+
+  /// Step on the component in a direction; empty if no step stays on it.
+  [[nodiscard]] std::optional<seven_coordinates>
+  walked(const seven_coordinates& x, const seven_coordinates& direction, double max_length) const {
+    const auto basis = set_.kernel(x);
+    const seven_coordinates along = basis * (basis.transpose() * direction);
+    const double size = along.norm();
+    if (!(size > .1 * direction.norm())) {
+      return {};
+    }
+    return set_.projected(set_.moved(x, std::min(1., max_length / size) * along), 2 * stride);
+  }
+
+  /// True if a walk towards `end` reaches it.
+  [[nodiscard]] bool leads(seven_coordinates x, const seven_coordinates& end) const {
+    constexpr int steps = 100;
+    for (int k = 0; k < steps; ++k) {
+      const seven_coordinates direction = set_.difference(end, x);
+      const double remaining = direction.norm();
+      if (remaining < self_motion_tolerance::same_rough) {
+        return true;
+      }
+      const auto next = walked(x, direction, stride);
+      if (!next || !(set_.difference(end, *next).norm() < .95 * remaining)) {
+        return false;
+      }
+      x = *next;
+    }
+    return false;
+  }
+
+  /// End of a walk of a given length in a random direction.
+  [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length) {
+    seven_coordinates direction = self_motion_set::any_direction(set_.kernel(x), random_);
+    for (; length > 0; length -= stride) {
+      const auto next = walked(x, direction, std::min(length, stride));
+      const seven_coordinates moved = next ? set_.difference(*next, x) : seven_coordinates::Zero();
+      if (!(moved.norm() > 0)) {
+        break;
+      }
+      x = *next;
+      direction = moved.normalized();
+    }
+    return x;
+  }
+
+  static constexpr double start_step = .05,
+                          small_step = .005; ///< steps from a singular point to others
+  static constexpr double stride = .2;       ///< length of a step of a walk
 
   const self_motion_set& set_;
-  curve_tracer tracer_;
-  surface_sampler sampler_;
   double resolution_;
   splitmix64 random_{1};
   bool is_degenerate_ = false; ///< true if the tip pose is known to be singular
