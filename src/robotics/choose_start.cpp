@@ -153,9 +153,9 @@ class start_search {
 
 public:
   start_search(const chain_view& chain, const path_function& path, const std::vector<double>& stops,
-               const start_options& options, const objective_view& objective, const scene* around)
-      : chain_(chain), path_(path), stops_(stops), options_(options), objective_(objective),
-        around_(around), solutions_(chain, around, options.plan.tolerance) {}
+               const start_options& options, const solution_preferences& preferences)
+      : chain_(chain), path_(path), stops_(stops), options_(options), preferences_(preferences),
+        solutions_(chain, preferences.around, options.plan.tolerance) {}
 
   [[nodiscard]] choice choose() const {
     choice result;
@@ -190,7 +190,7 @@ public:
 private:
   [[nodiscard]] motion_plan follow_from(const joints& start, const plan_options& how) const {
     require_start(chain_, start, "follow_path");
-    return follow(chain_, start, path_, stops_, how, objective_, around_);
+    return follow(chain_, start, path_, stops_, how, preferences_);
   }
 
   /// Keeps the better plan; true if it is the last one needed.
@@ -247,7 +247,7 @@ private:
   }
 
   [[nodiscard]] double cost(const joints& theta) const {
-    return objective_ ? objective_(theta) : distance_from_centre(theta);
+    return preferences_.objective ? preferences_.objective(theta) : distance_from_centre(theta);
   }
 
   /// Sum of squared distances of joints from the centre of their limits, relative to the range; of
@@ -354,8 +354,7 @@ private:
   const path_function& path_;
   const std::vector<double>& stops_;
   const start_options& options_;
-  const objective_view& objective_;
-  const scene* around_;
+  const solution_preferences& preferences_;
   pose_solutions solutions_;
 };
 
@@ -365,12 +364,12 @@ DUET_ABI_BEGIN
 
 start_search_result find_start(const chain_view& chain, const path_function& path,
                                const std::vector<double>& stops, const start_options& options,
-                               const objective_view& objective, const scene* around) {
+                               const solution_preferences& preferences) {
   require_options(options);
-  if (around != nullptr) {
-    require_scene(chain, *around);
+  if (preferences.around != nullptr) {
+    require_scene(chain, *preferences.around);
   }
-  return start_search(chain, path, stops, options, objective, around).choose();
+  return start_search(chain, path, stops, options, preferences).choose();
 }
 
 DUET_ABI_END

@@ -743,8 +743,10 @@ template <int Capacity>
 [[nodiscard]] motion_plan
 planned(const planning_model<Capacity>& model, const Eigen::VectorXd& start,
         const path_function& target, const std::vector<double>& stops, const plan_options& options,
-        const objective_view& objective, const scene* around, bool may_be_out_of_reach) {
+        const solution_preferences& preferences, bool may_be_out_of_reach) {
   using vector = small_vector<Capacity>;
+  const objective_view& objective = preferences.objective;
+  const scene* const around = preferences.around;
   const vector theta = model.joints(start);
   const tip_path scaled_path = [&](double u) { return model.scaled_pose(target(u)); };
   const auto start_error =
@@ -817,19 +819,17 @@ DUET_ABI_BEGIN
 
 motion_plan follow(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
                    const path_function& target, const std::vector<double>& stops,
-                   const plan_options& options, const objective_view& objective,
-                   const scene* around) {
+                   const plan_options& options, const solution_preferences& preferences) {
   require_options(options, "follow_path");
   return with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
-    return planned(planning_model<Capacity>(chain, around), start, target, stops, options,
-                   objective, around, false);
+    return planned(planning_model<Capacity>(chain, preferences.around), start, target, stops,
+                   options, preferences, false);
   });
 }
 
 motion_plan follow_poses(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
                          std::span<const dual_quaternion<double>> poses,
-                         const plan_options& options, const objective_view& objective,
-                         const scene* around) {
+                         const plan_options& options, const solution_preferences& preferences) {
   require(!poses.empty(), "duet: follow_path: the list of poses is empty");
   std::vector<dual_quaternion<double>> all;
   std::vector<double> stops;
@@ -842,18 +842,18 @@ motion_plan follow_poses(const chain_view& chain, const Eigen::Ref<const Eigen::
     const std::size_t i = std::min(std::size_t(u), all.size() - 1);
     return sclerp(all[i], all[std::min(i + 1, all.size() - 1)], u - double(i));
   };
-  return follow(chain, start, target, stops, options, objective, around);
+  return follow(chain, start, target, stops, options, preferences);
 }
 
 motion_plan plan_screw_motion(const chain_view& chain,
                               const Eigen::Ref<const Eigen::VectorXd>& start,
                               const dual_quaternion<double>& goal, const plan_options& options,
-                              const objective_view& objective, const scene* around) {
+                              const solution_preferences& preferences) {
   require_options(options, "plan_screw_motion");
   return with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
-    const planning_model<Capacity> model(chain, around);
+    const planning_model<Capacity> model(chain, preferences.around);
     const auto first = model.unscaled_pose(model.at(model.joints(start)).tip);
-    return planned(model, start, screw_path(first, goal), {0, 1}, options, objective, around, true);
+    return planned(model, start, screw_path(first, goal), {0, 1}, options, preferences, true);
   });
 }
 

@@ -69,7 +69,7 @@ DUET_ABI_BEGIN
 /// \param stops  parameters that become waypoints, increasing; the first and the last are the ends
 start_search_result find_start(const chain_view& chain, const path_function& path,
                                const std::vector<double>& stops, const start_options& options,
-                               const objective_view& objective, const scene* around);
+                               const solution_preferences& preferences);
 
 DUET_ABI_END
 } // namespace detail
@@ -101,11 +101,8 @@ find_start_configuration(const C& chain, const Path& path, double first, double 
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: find_start_configuration: the parameter of the path goes from ", first,
                   " to ", last, " (expected an increasing, finite interval)");
-  static_assert(detail::planning_types<Objective, Scene>::are_good);
-  detail::require_objective(objective, chain.size());
   return detail::find_start(chain, detail::checked(path), {first, last}, options,
-                            detail::objective_view::of<C::joints>(objective),
-                            detail::scene_of(around));
+                            detail::preferences_of(chain, objective, around));
 }
 
 /// Start configuration from which the tip of a chain follows a spline of poses over its whole
@@ -116,12 +113,10 @@ template <SerialChain C, PosePath Spline, class Objective = no_objective, class 
                                                            const start_options& options = {},
                                                            const Objective& objective = {},
                                                            const Scene& around = {}) {
-  static_assert(detail::planning_types<Objective, Scene>::are_good);
-  detail::require_objective(objective, chain.size());
   const auto& breaks = spline.breaks();
-  return detail::find_start(
-      chain, detail::checked(spline), std::vector<double>(breaks.begin(), breaks.end()), options,
-      detail::objective_view::of<C::joints>(objective), detail::scene_of(around));
+  return detail::find_start(chain, detail::checked(spline),
+                            std::vector<double>(breaks.begin(), breaks.end()), options,
+                            detail::preferences_of(chain, objective, around));
 }
 
 template <SerialChain C, VectorLike Start, PosePath Path, class... More>

@@ -41,14 +41,12 @@ using path_function = std::function<dual_quaternion<double>(double)>;
 /// \param stops  parameters that become waypoints, increasing; the first and the last are the ends
 motion_plan follow(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
                    const path_function& target, const std::vector<double>& stops,
-                   const plan_options& options, const objective_view& objective,
-                   const scene* around);
+                   const plan_options& options, const solution_preferences& preferences);
 
 /// Joint path along screw motions from pose to pose, pose i at the parameter i.
 motion_plan follow_poses(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
                          std::span<const dual_quaternion<double>> poses,
-                         const plan_options& options, const objective_view& objective,
-                         const scene* around);
+                         const plan_options& options, const solution_preferences& preferences);
 
 template <PosePath Path>
 [[nodiscard]] auto checked(const Path& path) {
@@ -91,15 +89,12 @@ template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_o
   static_assert(detail::Becomes<std::invoke_result_t<const Path&, double>, dual_quaternion<double>>,
                 "duet: follow_path: the path must return a dual_quaternion<double>: pose(q, t), or "
                 "from_eigen(...) of an Eigen::Isometry3d");
-  static_assert(detail::planning_types<Objective, Scene>::are_good);
   detail::require_start(chain, start, "follow_path");
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: follow_path: the parameter of the path goes from ", first, " to ", last,
                   " (expected an increasing, finite interval)");
-  detail::require_objective(objective, chain.size());
   return detail::follow(chain, detail::start_of(chain, start), detail::checked(path), {first, last},
-                        options, detail::objective_view::of<C::joints>(objective),
-                        detail::scene_of(around));
+                        options, detail::preferences_of(chain, objective, around));
 }
 
 /// Plans joint motion that moves the tip along a spline of poses, over its whole domain.
@@ -109,13 +104,11 @@ template <SerialChain C, VectorLike Start, PosePath Spline, class Objective = no
 [[nodiscard]] motion_plan follow_path(const C& chain, const Start& start, const Spline& spline,
                                       const plan_options& options = {},
                                       const Objective& objective = {}, const Scene& around = {}) {
-  static_assert(detail::planning_types<Objective, Scene>::are_good);
   detail::require_start(chain, start, "follow_path");
-  detail::require_objective(objective, chain.size());
   const auto& breaks = spline.breaks();
   return detail::follow(chain, detail::start_of(chain, start), detail::checked(spline),
                         std::vector<double>(breaks.begin(), breaks.end()), options,
-                        detail::objective_view::of<C::joints>(objective), detail::scene_of(around));
+                        detail::preferences_of(chain, objective, around));
 }
 
 /// Plans joint motion that moves the tip along screw motions from pose to pose (N19), pose i at the
@@ -125,12 +118,9 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
                                       std::span<const dual_quaternion<double>> poses,
                                       const plan_options& options = {},
                                       const Objective& objective = {}, const Scene& around = {}) {
-  static_assert(detail::planning_types<Objective, Scene>::are_good);
   detail::require_start(chain, start, "follow_path");
-  detail::require_objective(objective, chain.size());
   return detail::follow_poses(chain, detail::start_of(chain, start), poses, options,
-                              detail::objective_view::of<C::joints>(objective),
-                              detail::scene_of(around));
+                              detail::preferences_of(chain, objective, around));
 }
 
 } // namespace duet

@@ -68,14 +68,6 @@ DUET_ABI_END
 namespace detail {
 DUET_ABI_BEGIN
 
-/// Preferences among the solutions of a goal: an objective, and clearance of obstacles.
-struct solution_preferences {
-  objective_view objective;
-  const scene* around = nullptr; ///< null without obstacles
-
-  [[nodiscard]] bool is_empty() const { return !objective && around == nullptr; }
-};
-
 /// Solutions, out[i] for goals[i]; messages name the goals by number, if `is_one` the goal.
 void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
                  const Eigen::Ref<const Eigen::VectorXd>& start,
@@ -83,18 +75,19 @@ void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
                  const inverse_kinematics_options& options, const execution& how,
                  const solution_preferences& preferences, bool is_one);
 
-/// \throws invalid_input for a preferred posture of another size
-template <class C, class Objective, class Scene>
-[[nodiscard]] solution_preferences preferences_of(const C& chain, const Objective& objective,
-                                                  const Scene& around) {
+template <class C, class Start, class Objective, class Scene>
+void solve_many(const C& chain, std::span<const goal_view> goals, const Start& start,
+                std::span<inverse_kinematics_result> out, const inverse_kinematics_options& options,
+                const execution& how, const Objective& objective, const Scene& around,
+                bool is_one = false) {
   static_assert(planning_types<Objective, Scene>::are_good);
   static_assert(
       std::same_as<Objective, no_objective> ||
           requires(const joint_vector<double, C::joints>& x) { double(objective(x)); },
       "duet: inverse_kinematics: the objective is not a function of the joint coordinates "
       "that returns a number");
-  require_objective(objective, chain.size());
-  return {objective_view::of<C::joints>(objective), scene_of(around)};
+  const auto preferences = preferences_of(chain, objective, around);
+  solve_goals(chain, goals, start_of(chain, start), out, options, how, preferences, is_one);
 }
 
 template <class C, class Start, class Objective, class Scene>
@@ -103,19 +96,13 @@ template <class C, class Start, class Objective, class Scene>
                                                   const inverse_kinematics_options& options,
                                                   const Objective& objective, const Scene& around) {
   inverse_kinematics_result result;
-  const auto preferences = preferences_of(chain, objective, around);
-  solve_goals(chain, {&goal, 1}, start_of(chain, start), {&result, 1}, options, one_core,
-              preferences, true);
+  solve_many(chain, {&goal, 1}, start, {&result, 1}, options, one_core, objective, around, true);
   return result;
 }
 
-template <class C, class Goals, class Start, class Objective, class Scene>
-void solve_many(const C& chain, const Goals& goals, const Start& start,
-                std::span<inverse_kinematics_result> out, const inverse_kinematics_options& options,
-                const execution& how, const Objective& objective, const Scene& around) {
-  const std::vector<goal_view> views(std::ranges::begin(goals), std::ranges::end(goals));
-  const auto preferences = preferences_of(chain, objective, around);
-  solve_goals(chain, views, start_of(chain, start), out, options, how, preferences, false);
+template <class Goals>
+[[nodiscard]] std::vector<goal_view> views_of(const Goals& goals) {
+  return {std::ranges::begin(goals), std::ranges::end(goals)};
 }
 
 DUET_ABI_END
@@ -198,7 +185,7 @@ void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
                         std::span<inverse_kinematics_result> out,
                         const inverse_kinematics_options& options = {}, execution how = one_core,
                         const Objective& objective = {}, const Scene& around = {}) {
-  detail::solve_many(chain, goals, start, out, options, how, objective, around);
+  detail::solve_many(chain, detail::views_of(goals), start, out, options, how, objective, around);
 }
 
 /// Inverse kinematics of many poses: out[i] = inverse_kinematics(chain, goals[i], start, options,
@@ -211,7 +198,7 @@ void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>>
                         const Start& start, std::span<inverse_kinematics_result> out,
                         const inverse_kinematics_options& options = {}, execution how = one_core,
                         const Objective& objective = {}, const Scene& around = {}) {
-  detail::solve_many(chain, goals, start, out, options, how, objective, around);
+  detail::solve_many(chain, detail::views_of(goals), start, out, options, how, objective, around);
 }
 
 DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result)

@@ -143,6 +143,23 @@ private:
 [[nodiscard]] inline const scene* scene_of(const scene& around) { return &around; }
 [[nodiscard]] inline const scene* scene_of(const no_scene&) { return nullptr; }
 
+/// Preferences among solutions: an objective, and clearance of obstacles.
+struct solution_preferences {
+  objective_view objective;
+  const scene* around = nullptr; ///< null without obstacles
+
+  [[nodiscard]] bool is_empty() const { return !objective && around == nullptr; }
+};
+
+/// \throws invalid_input for a preferred posture of another size
+template <class C, class Objective, class Scene>
+[[nodiscard]] solution_preferences preferences_of(const C& chain, const Objective& objective,
+                                                  const Scene& around) {
+  static_assert(planning_types<Objective, Scene>::are_good);
+  require_objective(objective, chain.size());
+  return {objective_view::of<C::joints>(objective), scene_of(around)};
+}
+
 DUET_ABI_END
 } // namespace detail
 } // namespace duet

@@ -18,7 +18,7 @@ DUET_ABI_BEGIN
 motion_plan plan_screw_motion(const chain_view& chain,
                               const Eigen::Ref<const Eigen::VectorXd>& start,
                               const dual_quaternion<double>& goal, const plan_options& options,
-                              const objective_view& objective, const scene* around);
+                              const solution_preferences& preferences);
 
 DUET_ABI_END
 } // namespace detail
@@ -41,13 +41,10 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
 plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<double>& goal,
                   const plan_options& options = {}, const Objective& objective = {},
                   const Scene& around = {}) {
-  static_assert(detail::planning_types<Objective, Scene>::are_good);
   detail::require_start(chain, start, "plan_screw_motion");
   detail::require_pose(goal, "plan_screw_motion", "the goal");
-  detail::require_objective(objective, chain.size());
   return detail::plan_screw_motion(chain, detail::start_of(chain, start), goal, options,
-                                   detail::objective_view::of<C::joints>(objective),
-                                   detail::scene_of(around));
+                                   detail::preferences_of(chain, objective, around));
 }
 
 DUET_ASKS_FOR_ONE_CONFIGURATION(plan_screw_motion, motion_plan)
