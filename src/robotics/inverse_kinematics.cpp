@@ -115,229 +115,6 @@ struct scaled_goal {
   }
 };
 
-/// Common part of all searches for configurations of a chain.
-template <int Capacity>
-class inverse_kinematics_search {
-  using vector = small_vector<Capacity>;
-
-public:
-  struct attempt {
-    vector joints;
-    pose_error residual;
-    double error; ///< |e|²
-    int iterations = 0;
-    int restarts = 0;
-    stop_reason reason = stop_reason::no_progress;
-  };
-
-  inverse_kinematics_search(const planning_model<Capacity>& model, const vector& start,
-                            const inverse_kinematics_options& options)
-      : model_(model), options_(options), tolerance_(model.tolerance(options.tolerance)),
-        period_(vector::Zero()), beyond_(vector::Zero()), spread_(vector::Zero()), start_(start) {
-    require_options(options);
-    for (int i = 0; i < model.size; ++i) {
-      require(start[i] - start[i] == 0, "duet: inverse_kinematics: joint ", i, " of the start is ",
-              model.unit[i] * start[i], " (expected a finite number)");
-      const bool is_rotational = model.is_rotational[std::size_t(i)];
-      constexpr double full_turn = 2 * std::numbers::pi;
-      const bool has_full_turn = is_rotational && !model.is_translational[std::size_t(i)] &&
-                                 model.upper[i] - model.lower[i] >= full_turn;
-      period_[i] = has_full_turn ? full_turn : 0;
-      beyond_[i] = has_full_turn ? std::numeric_limits<double>::infinity() : 0;
-      spread_[i] = is_rotational ? std::numbers::pi : 1;
-    }
-    start_ = within_limits(start_);
-  }
-
-  [[nodiscard]] attempt operator()(const scaled_goal& goal) const {
-    const bool is_out_of_reach = goal.is_beyond(model_.reach, tolerance_);
-    const auto search = [&](const vector& from) {
-      return is_out_of_reach && goal.target ? nearest(from, goal) : approach(from, goal);
-    };
-    attempt best = search(start_);
-    int iterations = best.iterations, restarts = 0;
-    splitmix64 random(options_.seed);
-    while (best.reason != stop_reason::reached && restarts < options_.max_restarts) {
-      const attempt next = search(configuration(random));
-      iterations += next.iterations;
-      ++restarts;
-      if (is_less(next.error, best.error)) {
-        best = next;
-      }
-    }
-    if (is_out_of_reach && best.reason != stop_reason::reached) {
-      best.reason = stop_reason::out_of_reach;
-    } else if (best.reason == stop_reason::no_progress) {
-      best.reason = reason_without_progress(best.joints, goal);
-    }
-    best.iterations = iterations;
-    best.restarts = restarts;
-    return best;
-  }
-
-  /// Damped least squares from one initial guess, without random restarts.
-  [[nodiscard]] attempt approach(vector theta, const scaled_goal& goal) const {
-    attempt best{theta, {}, std::numeric_limits<double>::infinity()};
-    double before = best.error;
-    int since = 0; // iterations since the error last fell by a tenth
-    for (int iteration = 0;; ++iteration) {
-      const equations current = equations_at(theta, goal);
-      const double error = current.e.squaredNorm();
-      const bool is_reached = tolerance_.ratio(current.residual) <= 1;
-      if (iteration == 0 || error < best.error || is_reached) {
-        best = {theta, current.residual, error};
-      }
-      if (error < .9 * before) {
-        before = error;
-        since = 0;
-      }
-      best.iterations = iteration;
-      if (is_reached || since == 4 || iteration == options_.max_iterations) {
-        best.reason = is_reached   ? stop_reason::reached
-                      : since == 4 ? stop_reason::no_progress
-                                   : stop_reason::iteration_limit;
-        return best;
-      }
-      ++since;
-      theta = within_limits(theta + step(current, damping(current)).step);
-    }
-  }
-
-  /// Reason why the search cannot continue from a configuration.
-  [[nodiscard]] stop_reason reason_without_progress(const vector& theta,
-                                                    const scaled_goal& goal) const {
-    const equations current = equations_at(theta, goal);
-    if (step(current, damping(current)).is_bounded) {
-      return stop_reason::joint_limit;
-    }
-    gram_matrix gram = gram_of(current.at.jacobian);
-    int count = 6;
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      if (current.is_free[std::size_t(i)]) {
-        gram(i, i) = 1;
-        --count;
-      }
-    }
-    const bool is_singular =
-        model_.size >= count && damped_gram(gram).smallest() < 10 * damping_threshold;
-    return is_singular ? stop_reason::singular : stop_reason::no_progress;
-  }
-
-  /// Random configuration, uniform within the limits; without them, about the start.
-  [[nodiscard]] vector configuration(splitmix64& random) const {
-    vector theta = vector::Zero();
-    for (Eigen::Index i = 0; i < model_.size; ++i) {
-      double lower = model_.lower[i], upper = model_.upper[i];
-      if (!(upper - lower < std::numeric_limits<double>::infinity())) {
-        lower = std::max(lower, start_[i] - spread_[i]);
-        upper = std::min(upper, start_[i] + spread_[i]);
-      }
-      theta[i] = lower + (upper - lower) * random();
-    }
-    return theta;
-  }
-
-  [[nodiscard]] const vector& start() const { return start_; }
-  /// Changes of the coordinates that leave the pose unchanged: 0 or a full turn.
-  [[nodiscard]] const vector& period() const { return period_; }
-
-private:
-  using equations = goal_equations<Capacity>;
-  [[nodiscard]] equations equations_at(const vector& theta, const scaled_goal& goal) const {
-    equations result{model_.at(theta)};
-    goal.set_equations(result);
-    return result;
-  }
-
-  /// Levenberg–Marquardt (damped least squares) step.
-  [[nodiscard]] bounded_step_result<Capacity> step(const equations& x, double lambda) const {
-    return bounded_step(x.at.jacobian, x.e, model_.lower - x.at.theta - beyond_,
-                        model_.upper - x.at.theta + beyond_, {0, lambda});
-  }
-  /// Damping, which grows with the error.
-  [[nodiscard]] static double damping(const equations& x) {
-    return std::min(.02 * x.e.squaredNorm(), .08) + 1e-9;
-  }
-
-  /// Nearest pose from a start on: minimum of the squared distance of the origins plus |ω|², by
-  /// Newton's method with a damping that lets no step increase it. Joints at limits that block them
-  /// are fixed there.
-  [[nodiscard]] attempt nearest(const vector& start, const scaled_goal& goal) const {
-    point current = point_at(start, goal);
-    double lambda = 0;
-    int iterations = 0;
-    for (bool is_lower = true; is_lower && iterations < options_.max_iterations &&
-                               current.max_gradient > 1e-12 * (1 + current.error);
-         ++iterations) {
-      is_lower = false;
-      for (; !is_lower && lambda < 1e6 * (1 + current.error); lambda = std::max(4 * lambda, 1e-3)) {
-        const auto step =
-            newton_step(current.to_second_order, current.is_fixed, model_.size, lambda);
-        if (!step) {
-          continue;
-        }
-        const point next = point_at(within_limits(current.theta + *step), goal);
-        // Near the minimum round-off hides a decrease of the error, but not of its gradient.
-        const bool is_even = next.error <= current.error * (1 + 1e-14);
-        is_lower = next.error < current.error * (1 - 1e-14) ||
-                   (is_even && next.max_gradient < current.max_gradient);
-        if (is_lower) {
-          current = next;
-        }
-      }
-      lambda = lambda < 1e-2 ? 0 : lambda / 16;
-    }
-    return {
-        current.theta, current.residual, current.error, iterations, 0, stop_reason::out_of_reach};
-  }
-
-  struct point {
-    vector theta;
-    pose_error residual;
-    double error; ///< squared distance of the origins plus |ω|²
-    squared_error<Capacity> to_second_order;
-    std::array<bool, std::size_t(Capacity)> is_fixed{}; ///< true if fixed at a limit that blocks it
-    double max_gradient = 0; ///< largest entry of the gradient of joints that are not fixed
-  };
-  [[nodiscard]] point point_at(const vector& theta, const scaled_goal& goal) const {
-    const equations x = equations_at(theta, goal);
-    small_twist e = x.e;
-    e.head<3>() = (goal.target->translation - x.at.tip.translation).eigen();
-    point result{theta, x.residual, e.squaredNorm(), squared_error_of(x.at.jacobian, e)};
-    for (Eigen::Index i = 0; i < Capacity; ++i) {
-      const double gradient = result.to_second_order.gradient[i];
-      const bool is_at_limit = period_[i] == 0 && (gradient > 0 ? theta[i] <= model_.lower[i]
-                                                                : theta[i] >= model_.upper[i]);
-      bool& is_fixed = result.is_fixed[std::size_t(i)];
-      is_fixed = i >= model_.size || is_at_limit;
-      result.max_gradient = std::max(result.max_gradient, is_fixed ? 0 : std::abs(gradient));
-    }
-    return result;
-  }
-
-  /// Revolute joints whose range contains a full turn are wrapped into it, others stop at limits.
-  [[nodiscard]] vector within_limits(vector theta) const {
-    for (Eigen::Index i = 0; i < model_.size; ++i) {
-      const double lower = model_.lower[i], upper = model_.upper[i];
-      if (period_[i] > 0 && theta[i] > upper) {
-        theta[i] -= period_[i] * std::ceil((theta[i] - upper) / period_[i]);
-      } else if (period_[i] > 0 && theta[i] < lower) {
-        theta[i] += period_[i] * std::ceil((lower - theta[i]) / period_[i]);
-      }
-      theta[i] = std::clamp(theta[i], lower, upper);
-    }
-    return theta;
-  }
-
-  const planning_model<Capacity>& model_;
-  inverse_kinematics_options options_;
-  pose_tolerance tolerance_;
-  vector period_;
-  vector beyond_; ///< admissible excess of steps beyond limits: infinite if joints are wrapped
-  vector spread_; ///< distance from the start of random coordinates that have no limits
-  vector start_;
-};
-
 /// Equality and inequality constraints of a step.
 struct step_conditions {
   std::vector<inequality<Eigen::VectorXd>> equations;    ///< normal·x = bound
@@ -568,16 +345,31 @@ private:
 /// Search for solutions from the start and from random configurations, of which each is refined by
 /// `solution_refinement` if there are preferences.
 template <int Capacity>
-class solution_search {
+class inverse_kinematics_search {
   using vector = small_vector<Capacity>;
-  using attempt = typename inverse_kinematics_search<Capacity>::attempt;
+  using equations = goal_equations<Capacity>;
 
 public:
-  solution_search(const planning_model<Capacity>& model, const vector& start,
-                  const inverse_kinematics_options& options,
-                  const solution_preferences& preferences)
+  inverse_kinematics_search(const planning_model<Capacity>& model, const vector& start,
+                            const inverse_kinematics_options& options,
+                            const solution_preferences& preferences)
       : model_(model), options_(options), preferences_(preferences),
-        tolerance_(model.tolerance(options.tolerance)), search_(model, start, options) {}
+        tolerance_(model.tolerance(options.tolerance)), period_(vector::Zero()),
+        beyond_(vector::Zero()), spread_(vector::Zero()), start_(start) {
+    require_options(options);
+    for (int i = 0; i < model.size; ++i) {
+      require(start[i] - start[i] == 0, "duet: inverse_kinematics: joint ", i, " of the start is ",
+              model.unit[i] * start[i], " (expected a finite number)");
+      const bool is_rotational = model.is_rotational[std::size_t(i)];
+      constexpr double full_turn = 2 * std::numbers::pi;
+      const bool has_full_turn = is_rotational && !model.is_translational[std::size_t(i)] &&
+                                 model.upper[i] - model.lower[i] >= full_turn;
+      period_[i] = has_full_turn ? full_turn : 0;
+      beyond_[i] = has_full_turn ? std::numeric_limits<double>::infinity() : 0;
+      spread_[i] = is_rotational ? std::numbers::pi : 1;
+    }
+    start_ = within_limits(start_);
+  }
 
   /// \param name  callable that returns the name of the goal for messages
   /// \throws invalid_input if the goal or the objective is nan at every configuration evaluated
@@ -592,7 +384,7 @@ public:
       }
     }
     const bool is_choosy = !preferences_.is_empty() && !goal.is_beyond(model_.reach, tolerance_);
-    const attempt x = is_choosy ? preferred(goal, known) : search_(goal);
+    const attempt x = is_choosy ? preferred(goal, known) : nearest_attempt(goal);
     if (is_choosy || of.pose == nullptr) {
       require_numbers(x, name);
     }
@@ -601,10 +393,108 @@ public:
   }
 
 private:
+  struct attempt {
+    vector joints;
+    pose_error residual;
+    double error; ///< |e|²
+    int iterations = 0;
+    int restarts = 0;
+    stop_reason reason = stop_reason::no_progress;
+  };
+
+  /// The attempt that comes nearest to a goal, without preferences.
+  [[nodiscard]] attempt nearest_attempt(const scaled_goal& goal) const {
+    const bool is_out_of_reach = goal.is_beyond(model_.reach, tolerance_);
+    const auto search = [&](const vector& from) {
+      return is_out_of_reach && goal.target ? nearest(from, goal) : approach(from, goal);
+    };
+    attempt best = search(start_);
+    int iterations = best.iterations, restarts = 0;
+    splitmix64 random(options_.seed);
+    while (best.reason != stop_reason::reached && restarts < options_.max_restarts) {
+      const attempt next = search(configuration(random));
+      iterations += next.iterations;
+      ++restarts;
+      if (is_less(next.error, best.error)) {
+        best = next;
+      }
+    }
+    if (is_out_of_reach && best.reason != stop_reason::reached) {
+      best.reason = stop_reason::out_of_reach;
+    } else if (best.reason == stop_reason::no_progress) {
+      best.reason = reason_without_progress(best.joints, goal);
+    }
+    best.iterations = iterations;
+    best.restarts = restarts;
+    return best;
+  }
+
+  /// Damped least squares from one initial guess, without random restarts.
+  [[nodiscard]] attempt approach(vector theta, const scaled_goal& goal) const {
+    attempt best{theta, {}, std::numeric_limits<double>::infinity()};
+    double before = best.error;
+    int since = 0; // iterations since the error last fell by a tenth
+    for (int iteration = 0;; ++iteration) {
+      const equations current = equations_at(theta, goal);
+      const double error = current.e.squaredNorm();
+      const bool is_reached = tolerance_.ratio(current.residual) <= 1;
+      if (iteration == 0 || error < best.error || is_reached) {
+        best = {theta, current.residual, error};
+      }
+      if (error < .9 * before) {
+        before = error;
+        since = 0;
+      }
+      best.iterations = iteration;
+      if (is_reached || since == 4 || iteration == options_.max_iterations) {
+        best.reason = is_reached   ? stop_reason::reached
+                      : since == 4 ? stop_reason::no_progress
+                                   : stop_reason::iteration_limit;
+        return best;
+      }
+      ++since;
+      theta = within_limits(theta + step(current, damping(current)).step);
+    }
+  }
+
+  /// Reason why the search cannot continue from a configuration.
+  [[nodiscard]] stop_reason reason_without_progress(const vector& theta,
+                                                    const scaled_goal& goal) const {
+    const equations current = equations_at(theta, goal);
+    if (step(current, damping(current)).is_bounded) {
+      return stop_reason::joint_limit;
+    }
+    gram_matrix gram = gram_of(current.at.jacobian);
+    int count = 6;
+    for (Eigen::Index i = 0; i < 6; ++i) {
+      if (current.is_free[std::size_t(i)]) {
+        gram(i, i) = 1;
+        --count;
+      }
+    }
+    const bool is_singular =
+        model_.size >= count && damped_gram(gram).smallest() < 10 * damping_threshold;
+    return is_singular ? stop_reason::singular : stop_reason::no_progress;
+  }
+
+  /// Random configuration, uniform within the limits; without them, about the start.
+  [[nodiscard]] vector configuration(splitmix64& random) const {
+    vector theta = vector::Zero();
+    for (Eigen::Index i = 0; i < model_.size; ++i) {
+      double lower = model_.lower[i], upper = model_.upper[i];
+      if (!(upper - lower < std::numeric_limits<double>::infinity())) {
+        lower = std::max(lower, start_[i] - spread_[i]);
+        upper = std::min(upper, start_[i] + spread_[i]);
+      }
+      theta[i] = lower + (upper - lower) * random();
+    }
+    return theta;
+  }
+
   [[nodiscard]] attempt preferred(const scaled_goal& goal, const solution_list& known) const {
     const objective_view& objective = preferences_.objective;
     const solution_refinement<Capacity> refine(model_, goal, objective, tolerance_);
-    attempt best{search_.start(), {}, std::numeric_limits<double>::infinity()};
+    attempt best{start_, {}, std::numeric_limits<double>::infinity()};
     double min_value = std::numeric_limits<double>::infinity(); // of the objective
     int iterations = 0, candidates = 0, restarts = 0;
     const auto consider = [&](vector theta) {
@@ -635,8 +525,7 @@ private:
     }
     splitmix64 random(options_.seed);
     for (;; ++restarts) {
-      attempt next =
-          search_.approach(restarts == 0 ? search_.start() : search_.configuration(random), goal);
+      attempt next = approach(restarts == 0 ? start_ : configuration(random), goal);
       iterations += next.iterations;
       if (next.reason == stop_reason::reached) {
         candidates += consider(next.joints);
@@ -652,7 +541,7 @@ private:
       }
     }
     if (best.reason == stop_reason::no_progress) {
-      best.reason = search_.reason_without_progress(best.joints, goal);
+      best.reason = reason_without_progress(best.joints, goal);
     }
     best.iterations = iterations;
     best.restarts = restarts;
@@ -676,7 +565,7 @@ private:
       return result;
     };
     for (int i = 0; i < model_.size; ++i) {
-      const double period = search_.period()[i];
+      const double period = period_[i];
       bool is_lower = period > 0;
       while (is_lower) { // by 1, 2, 4 … full turns, and back
         is_lower = false;
@@ -707,11 +596,100 @@ private:
     }
   }
 
+  [[nodiscard]] equations equations_at(const vector& theta, const scaled_goal& goal) const {
+    equations result{model_.at(theta)};
+    goal.set_equations(result);
+    return result;
+  }
+
+  /// Levenberg–Marquardt (damped least squares) step.
+  [[nodiscard]] bounded_step_result<Capacity> step(const equations& x, double lambda) const {
+    return bounded_step(x.at.jacobian, x.e, model_.lower - x.at.theta - beyond_,
+                        model_.upper - x.at.theta + beyond_, {0, lambda});
+  }
+  /// Damping, which grows with the error.
+  [[nodiscard]] static double damping(const equations& x) {
+    return std::min(.02 * x.e.squaredNorm(), .08) + 1e-9;
+  }
+
+  /// Nearest pose from a start on: minimum of the squared distance of the origins plus |ω|², by
+  /// Newton's method with a damping that lets no step increase it. Joints at limits that block them
+  /// are fixed there.
+  [[nodiscard]] attempt nearest(const vector& start, const scaled_goal& goal) const {
+    point current = point_at(start, goal);
+    double lambda = 0;
+    int iterations = 0;
+    for (bool is_lower = true; is_lower && iterations < options_.max_iterations &&
+                               current.max_gradient > 1e-12 * (1 + current.error);
+         ++iterations) {
+      is_lower = false;
+      for (; !is_lower && lambda < 1e6 * (1 + current.error); lambda = std::max(4 * lambda, 1e-3)) {
+        const auto step =
+            newton_step(current.to_second_order, current.is_fixed, model_.size, lambda);
+        if (!step) {
+          continue;
+        }
+        const point next = point_at(within_limits(current.theta + *step), goal);
+        // Near the minimum round-off hides a decrease of the error, but not of its gradient.
+        const bool is_even = next.error <= current.error * (1 + 1e-14);
+        is_lower = next.error < current.error * (1 - 1e-14) ||
+                   (is_even && next.max_gradient < current.max_gradient);
+        if (is_lower) {
+          current = next;
+        }
+      }
+      lambda = lambda < 1e-2 ? 0 : lambda / 16;
+    }
+    return {
+        current.theta, current.residual, current.error, iterations, 0, stop_reason::out_of_reach};
+  }
+
+  struct point {
+    vector theta;
+    pose_error residual;
+    double error; ///< squared distance of the origins plus |ω|²
+    squared_error<Capacity> to_second_order;
+    std::array<bool, std::size_t(Capacity)> is_fixed{}; ///< true if fixed at a limit that blocks it
+    double max_gradient = 0; ///< largest entry of the gradient of joints that are not fixed
+  };
+  [[nodiscard]] point point_at(const vector& theta, const scaled_goal& goal) const {
+    const equations x = equations_at(theta, goal);
+    small_twist e = x.e;
+    e.head<3>() = (goal.target->translation - x.at.tip.translation).eigen();
+    point result{theta, x.residual, e.squaredNorm(), squared_error_of(x.at.jacobian, e)};
+    for (Eigen::Index i = 0; i < Capacity; ++i) {
+      const double gradient = result.to_second_order.gradient[i];
+      const bool is_at_limit = period_[i] == 0 && (gradient > 0 ? theta[i] <= model_.lower[i]
+                                                                : theta[i] >= model_.upper[i]);
+      bool& is_fixed = result.is_fixed[std::size_t(i)];
+      is_fixed = i >= model_.size || is_at_limit;
+      result.max_gradient = std::max(result.max_gradient, is_fixed ? 0 : std::abs(gradient));
+    }
+    return result;
+  }
+
+  /// Revolute joints whose range contains a full turn are wrapped into it, others stop at limits.
+  [[nodiscard]] vector within_limits(vector theta) const {
+    for (Eigen::Index i = 0; i < model_.size; ++i) {
+      const double lower = model_.lower[i], upper = model_.upper[i];
+      if (period_[i] > 0 && theta[i] > upper) {
+        theta[i] -= period_[i] * std::ceil((theta[i] - upper) / period_[i]);
+      } else if (period_[i] > 0 && theta[i] < lower) {
+        theta[i] += period_[i] * std::ceil((lower - theta[i]) / period_[i]);
+      }
+      theta[i] = std::clamp(theta[i], lower, upper);
+    }
+    return theta;
+  }
+
   const planning_model<Capacity>& model_;
   const inverse_kinematics_options& options_;
   const solution_preferences& preferences_;
   pose_tolerance tolerance_;
-  inverse_kinematics_search<Capacity> search_;
+  vector period_; ///< changes of the coordinates that leave the pose unchanged: 0 or a full turn
+  vector beyond_; ///< admissible excess of steps beyond limits: infinite if joints are wrapped
+  vector spread_; ///< distance from the start of random coordinates that have no limits
+  vector start_;
 };
 
 } // namespace
@@ -727,7 +705,8 @@ void solve_goals(const chain_view& chain, std::span<const goal_view> goals,
           " goals, but room for ", out.size(), " results");
   with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
     const planning_model<Capacity> model(chain, preferences.around);
-    const solution_search<Capacity> search(model, model.joints(start), options, preferences);
+    const inverse_kinematics_search<Capacity> search(model, model.joints(start), options,
+                                                     preferences);
     const auto name_of = [&](std::size_t i, const char* one = "the goal") {
       return is_one ? one : "goal " + std::to_string(i);
     };
