@@ -19,22 +19,34 @@ namespace {
 using detail::components, detail::require;
 
 /// \throws invalid_input for a vector that is not a unit vector
-void require_unit(const vector3<double>& n, const char* function, const char* name) {
+void require_unit(const vector3<double>& n, const std::string& function, const std::string& name) {
   require(std::abs(n.squaredNorm() - 1) <= 1e-6, "duet: ", function, ": the ", name, " (", n[0],
           ", ", n[1], ", ", n[2], ") is not a unit vector");
 }
 
-/// Rotation that takes one unit vector to another: a half turn about their bisector.
-[[nodiscard]] quaternion<double> rotation_taking(const vector3<double>& from,
-                                                 const vector3<double>& to) {
+/// A vector that is orthogonal to a unit vector.
+[[nodiscard]] vector3<double> orthogonal_to(const vector3<double>& n) {
+  int smallest = 0;
+  n.cwiseAbs().minCoeff(&smallest);
+  return n.cross(vector3<double>::Unit(smallest));
+}
+
+/// Goal at a position, with a rotation that takes one unit vector to another: a half turn about
+/// their bisector.
+[[nodiscard]] task_space_region pointing_at(const char* function, const vector3<double>& position,
+                                            const vector3<double>& from, const vector3<double>& to,
+                                            double tilt) {
+  require_unit(from, function, "axis");
+  require_unit(to, function, "direction");
   vector3<double> bisector = from + to;
   if (!(bisector.norm() > 1e-8)) { // opposite vectors: any orthogonal one
-    int smallest = 0;
-    from.cwiseAbs().minCoeff(&smallest);
-    bisector = from.cross(vector3<double>::Unit(smallest));
+    bisector = orthogonal_to(from);
   }
   bisector.normalize();
-  return {0, bisector[0], bisector[1], bisector[2]};
+  auto result = free_axis_goal(
+      pose(quaternion<double>(0, bisector[0], bisector[1], bisector[2]), position), from);
+  result.max_tilt = tilt;
+  return result;
 }
 
 /// Sets a row of `twist_constraint`: lower ≤ n·ω ≤ upper.
@@ -48,10 +60,7 @@ void constrain_rotation(twist_constraint& constraint, Eigen::Index row, const ve
 /// Constrains the rotation that takes an axis a of the tip to b, exactly or to within `max_tilt`.
 void constrain_axis(twist_constraint& constraint, const vector3<double>& a,
                     const vector3<double>& b, double tilt) {
-  int smallest = 0;
-  a.cwiseAbs().minCoeff(&smallest);
-  const vector3<double> across = a.cross(b), any = a.cross(vector3<double>::Unit(smallest));
-  const vector3<double> t = any / any.norm();
+  const vector3<double> across = a.cross(b), any = orthogonal_to(a), t = any / any.norm();
   const double sine = across.norm(), angle = std::atan2(sine, a.dot(b));
   const vector3<double> u = sine > 0 ? vector3<double>(across / sine) : t;
   if (tilt > 0) {
@@ -99,24 +108,16 @@ task_space_region free_axis_goal(const dual_quaternion<double>& a, const vector3
 task_space_region pointing_goal(const vector3<double>& axis, const vector3<double>& direction,
                                 double tilt) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  require_unit(axis, "pointing_goal", "axis");
-  require_unit(direction, "pointing_goal", "direction");
-  auto result = free_axis_goal(
-      pose(rotation_taking(axis, direction), vector3<double>(vector3<double>::Zero())), axis);
+  auto result = pointing_at("pointing_goal", {0, 0, 0}, axis, direction, tilt);
   result.lower = {-infinity, -infinity, -infinity};
   result.upper = {infinity, infinity, infinity};
-  result.max_tilt = tilt;
   return result;
 }
 
 task_space_region position_and_pointing_goal(const vector3<double>& position,
                                              const vector3<double>& axis,
                                              const vector3<double>& direction, double tilt) {
-  require_unit(axis, "position_and_pointing_goal", "axis");
-  require_unit(direction, "position_and_pointing_goal", "direction");
-  auto result = free_axis_goal(pose(rotation_taking(axis, direction), position), axis);
-  result.max_tilt = tilt;
-  return result;
+  return pointing_at("position_and_pointing_goal", position, axis, direction, tilt);
 }
 
 twist_constraint task_space_region::constraint(const dual_quaternion<double>& tip) const {
@@ -174,9 +175,7 @@ void require_goal(const task_space_region& r, const std::string& name) {
             r.lower[i], " to ", r.upper[i], " along axis ", i,
             " of its frame (expected lower <= upper)");
   }
-  const auto n = components(r.axis);
-  require(std::abs(dot(n, n) - 1) <= 1e-6, "duet: inverse_kinematics: the axis of ", name, " (",
-          n.x, ", ", n.y, ", ", n.z, ") is not a unit vector");
+  require_unit(components(r.axis), "inverse_kinematics", "axis of " + name);
   require(r.max_tilt >= 0, "duet: inverse_kinematics: max_tilt of ", name, " is ", r.max_tilt,
           " (expected a non-negative number)");
   require(r.rotation_upper - r.rotation_lower >= 0,
