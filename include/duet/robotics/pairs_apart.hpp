@@ -37,17 +37,15 @@ public:
         parent[number(each.child)] = number(each.parent);
         is_fixed[number(each.child)] = each.motion.kind == joint_kind::fixed;
       }
+      const auto fixed_to = [&](std::size_t link) {
+        while (is_fixed[link]) {
+          link = parent[link];
+        }
+        return link;
+      };
       for (std::size_t i = 0; i < parent.size(); ++i) {
-        std::size_t on = i;
-        while (is_fixed[on]) {
-          on = parent[on];
-        }
-        body_.push_back(on);
-        on = parent[on];
-        while (is_fixed[on]) {
-          on = parent[on];
-        }
-        below_.push_back(on);
+        body_.push_back(fixed_to(i));
+        below_.push_back(fixed_to(parent[body_.back()]));
       }
     }
   }
