@@ -156,6 +156,11 @@ Eigen::Matrix3d path_velocity_powers(std::size_t k, std::size_t intervals) {
   return result;
 }
 
+/// Linear forms of the three B-spline coefficients of the squared path velocity that are active in
+/// a segment, as columns.
+template <int Count>
+using linear_forms = Eigen::Matrix<double, 3, Count>;
+
 /// Bernstein coefficients of p u² for cubic polynomials u and p given by theirs; those of p are
 /// linear forms.
 linear_forms<10> times_square(const linear_forms<4>& p, const Eigen::Array4d& u) {
@@ -173,84 +178,112 @@ linear_forms<10> times_square(const linear_forms<4>& p, const Eigen::Array4d& u)
   return result;
 }
 
-} // namespace
+/// Constraints |x c| ≤ limit of one joint, relative to its limits: accelerations, and jerks divided
+/// by τ̇, by their four Bernstein coefficients in a segment. `beyond` c bounds the error of the
+/// middle two; the outer ones are values at the ends.
+struct joint_bounds {
+  linear_forms<4> acceleration, jerk;
+  Eigen::Vector3d beyond_acceleration, beyond_jerk;
+};
 
-path_velocity_constraints::path_velocity_constraints(const std::vector<joint_cubic>& curve,
-                                                     const std::vector<reference_piece>& path,
-                                                     std::size_t intervals,
-                                                     const Eigen::VectorXd& velocity,
-                                                     const Eigen::VectorXd& acceleration,
-                                                     const Eigen::VectorXd& jerk) {
-  pieces.reserve(path.size());
-  joints.reserve(path.size() * std::size_t(velocity.size()));
-  for (const auto& [edge, interval, f, l, begin, a, b, c] : path) {
-    // With x = s − start: q' = p_0 + p_1 x + p_2 x² / 2, q'' = p_1 + p_2 x, q''' = p_2.
-    const joint_cubic& q = curve[edge];
-    Eigen::Matrix<double, Eigen::Dynamic, 3> p(velocity.size(), 3);
-    p << q.first(begin), q.second(begin), 6 * q.c3;
-    const auto offset = polynomial({0, a * l, b * l * l, c * l * l * l}),
-               slope = polynomial({a, 2 * b * l, 3 * c * l * l}),
-               bend = polynomial({2 * b, 6 * c * l}),
-               half_square = piece_polynomial(.5 * product(offset, offset));
-    // Factors of p_0, p_1 and p_2; those of accelerations and jerks for each coefficient.
-    Eigen::Matrix<double, 4, 3> rates;
-    Eigen::Vector3d rate_errors;
-    std::array<linear_forms<4>, 3> changes, jerks;
-    Eigen::Matrix3d change_errors, jerk_errors;
-    const auto set_rate = [&](int k, const piece_polynomial& of) {
-      const cubic_approximation cubic(of);
-      rates.col(k) = cubic.at;
-      rate_errors[k] = cubic.error;
-    };
-    set_rate(0, slope);
-    set_rate(1, product(offset, slope));
-    set_rate(2, product(half_square, slope));
-    piece_bounds bounds{interval, l};
-    const Eigen::Matrix3d powers = path_velocity_powers(interval, intervals);
-    for (int i = 0; i < 3; ++i) {
-      const double curvature = powers(i, 2), rise = powers(i, 1) + 2 * f * curvature,
-                   start = powers(i, 0) + f * (powers(i, 1) + f * curvature);
-      bounds.squared_velocity.row(i) << start, start + rise * l / 3,
-          start + l * (2 * rise + l * curvature) / 3, start + l * (rise + l * curvature);
-      const auto squared_velocity = polynomial({start, rise * l, curvature * l * l}),
-                 half_rise = polynomial({rise / 2, curvature * l}),
-                 square = product(product(slope, slope), squared_velocity);
-      const piece_polynomial change = product(bend, squared_velocity) + product(slope, half_rise),
-                             both = 3 * product(slope, change),
-                             third = 6 * c * squared_velocity + 3 * product(bend, half_rise) +
-                                     curvature * slope;
-      const auto set = [i](auto& forms, auto& errors, std::size_t k, const piece_polynomial& of) {
+/// Bernstein coefficients in a segment of the squared path velocity, and of the square of the
+/// largest joint velocity relative to its limit.
+struct piece_bounds {
+  std::size_t first; ///< index of the coefficient that c[0] is
+  double length;     ///< length of the segment in τ
+  linear_forms<4> squared_velocity = linear_forms<4>::Zero();
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero(); ///< squared path velocity in the middle
+  linear_forms<10> square_rate = linear_forms<10>::Zero();
+};
+
+/// Constraints on a squared path velocity b = τ̇² that is a quadratic B-spline of τ
+/// with positive coefficients, one more than nodes of τ; the outer ones are its values at
+/// the ends. Joint velocities are q' s' √b with s' = ds/dτ; accelerations and jerks /
+/// √b are linear in it:
+///
+///     q̈     = q'' s'² b + q' change,               change = s̈ = s'' b + s' b' / 2
+///     q⃛ / τ̇ = q''' s'³ b + 3 q'' s' change + q' third,
+///     third  = s''' b + 3/2 s'' b' + s' b'' / 2
+struct path_velocity_constraints {
+  std::vector<piece_bounds> pieces;
+  std::vector<joint_bounds> joints; ///< constraints of each segment, one per joint
+
+  /// Collects the constraints of all segments of a path.
+  ///
+  /// \param intervals  number of intervals of τ
+  path_velocity_constraints(const std::vector<joint_cubic>& curve,
+                            const std::vector<reference_piece>& path, std::size_t intervals,
+                            const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration,
+                            const Eigen::VectorXd& jerk) {
+    pieces.reserve(path.size());
+    joints.reserve(path.size() * std::size_t(velocity.size()));
+    for (const auto& [edge, interval, f, l, begin, a, b, c] : path) {
+      // With x = s − start: q' = p_0 + p_1 x + p_2 x² / 2, q'' = p_1 + p_2 x, q''' = p_2.
+      const joint_cubic& q = curve[edge];
+      Eigen::Matrix<double, Eigen::Dynamic, 3> p(velocity.size(), 3);
+      p << q.first(begin), q.second(begin), 6 * q.c3;
+      const auto offset = polynomial({0, a * l, b * l * l, c * l * l * l}),
+                 slope = polynomial({a, 2 * b * l, 3 * c * l * l}),
+                 bend = polynomial({2 * b, 6 * c * l}),
+                 half_square = piece_polynomial(.5 * product(offset, offset));
+      // Factors of p_0, p_1 and p_2; those of accelerations and jerks for each coefficient.
+      Eigen::Matrix<double, 4, 3> rates;
+      Eigen::Vector3d rate_errors;
+      std::array<linear_forms<4>, 3> changes, jerks;
+      Eigen::Matrix3d change_errors, jerk_errors;
+      const auto set_rate = [&](int k, const piece_polynomial& of) {
         const cubic_approximation cubic(of);
-        forms[k].row(i) = cubic.at.transpose();
-        errors(i, Eigen::Index(k)) = cubic.error;
+        rates.col(k) = cubic.at;
+        rate_errors[k] = cubic.error;
       };
-      set(changes, change_errors, 0, change);
-      set(changes, change_errors, 1, square + product(offset, change));
-      set(changes, change_errors, 2, product(offset, square) + product(half_square, change));
-      set(jerks, jerk_errors, 0, third);
-      set(jerks, jerk_errors, 1, both + product(offset, third));
-      set(jerks, jerk_errors, 2,
-          product(slope, square) + product(offset, both) + product(half_square, third));
+      set_rate(0, slope);
+      set_rate(1, product(offset, slope));
+      set_rate(2, product(half_square, slope));
+      piece_bounds bounds{interval, l};
+      const Eigen::Matrix3d powers = path_velocity_powers(interval, intervals);
+      for (int i = 0; i < 3; ++i) {
+        const double curvature = powers(i, 2), rise = powers(i, 1) + 2 * f * curvature,
+                     start = powers(i, 0) + f * (powers(i, 1) + f * curvature);
+        bounds.squared_velocity.row(i) << start, start + rise * l / 3,
+            start + l * (2 * rise + l * curvature) / 3, start + l * (rise + l * curvature);
+        const auto squared_velocity = polynomial({start, rise * l, curvature * l * l}),
+                   half_rise = polynomial({rise / 2, curvature * l}),
+                   square = product(product(slope, slope), squared_velocity);
+        const piece_polynomial change = product(bend, squared_velocity) + product(slope, half_rise),
+                               both = 3 * product(slope, change),
+                               third = 6 * c * squared_velocity + 3 * product(bend, half_rise) +
+                                       curvature * slope;
+        const auto set = [i](auto& forms, auto& errors, std::size_t k, const piece_polynomial& of) {
+          const cubic_approximation cubic(of);
+          forms[k].row(i) = cubic.at.transpose();
+          errors(i, Eigen::Index(k)) = cubic.error;
+        };
+        set(changes, change_errors, 0, change);
+        set(changes, change_errors, 1, square + product(offset, change));
+        set(changes, change_errors, 2, product(offset, square) + product(half_square, change));
+        set(jerks, jerk_errors, 0, third);
+        set(jerks, jerk_errors, 1, both + product(offset, third));
+        set(jerks, jerk_errors, 2,
+            product(slope, square) + product(offset, both) + product(half_square, third));
+      }
+      Eigen::Array4d largest_rate = Eigen::Array4d::Zero();
+      for (Eigen::Index j = 0; j < velocity.size(); ++j) {
+        const Eigen::Vector3d factors = p.row(j), sizes = factors.cwiseAbs();
+        Eigen::Array4d rate = (rates * factors).cwiseAbs();
+        rate.segment<2>(1) += sizes.dot(rate_errors);
+        largest_rate = largest_rate.max(rate / velocity[j]);
+        const auto sum = [&](const std::array<linear_forms<4>, 3>& of) {
+          return factors[0] * of[0] + factors[1] * of[1] + factors[2] * of[2];
+        };
+        joints.push_back({sum(changes) / acceleration[j], sum(jerks) / jerk[j],
+                          change_errors * sizes / acceleration[j], jerk_errors * sizes / jerk[j]});
+      }
+      bounds.square_rate = times_square(bounds.squared_velocity, largest_rate);
+      bounds.middle = bounds.squared_velocity * Eigen::Vector4d(1, 3, 3, 1) / 8;
+      pieces.push_back(bounds);
     }
-    Eigen::Array4d largest_rate = Eigen::Array4d::Zero();
-    for (Eigen::Index j = 0; j < velocity.size(); ++j) {
-      const Eigen::Vector3d factors = p.row(j), sizes = factors.cwiseAbs();
-      Eigen::Array4d rate = (rates * factors).cwiseAbs();
-      rate.segment<2>(1) += sizes.dot(rate_errors);
-      largest_rate = largest_rate.max(rate / velocity[j]);
-      const auto sum = [&](const std::array<linear_forms<4>, 3>& of) {
-        return factors[0] * of[0] + factors[1] * of[1] + factors[2] * of[2];
-      };
-      joints.push_back({sum(changes) / acceleration[j], sum(jerks) / jerk[j],
-                        change_errors * sizes / acceleration[j], jerk_errors * sizes / jerk[j]});
-    }
-    bounds.square_rate = times_square(bounds.squared_velocity, largest_rate);
-    bounds.middle = bounds.squared_velocity * Eigen::Vector4d(1, 3, 3, 1) / 8;
-    pieces.push_back(bounds);
   }
-}
-
-namespace {
+};
 
 /// Constraint |x| + beyond ≤ limit on a squared path velocity, with the derivatives of all three
 /// with respect to its coefficients from `first` on. `order` n: limit of the n-th time derivative,

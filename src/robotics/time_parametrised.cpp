@@ -225,20 +225,42 @@ std::vector<Eigen::VectorXd> slopes_within_ranges(const time_parametrisation_inp
   return slopes;
 }
 
-feasible_path_velocities::feasible_path_velocities(std::span<const speed_bound> bounds, double x,
-                                                   double from, double to)
-    : lower{from, 0, from}, upper{to, 0, to} {
-  for (const auto& [slope, reach] : bounds) {
-    const double middle = -slope * x;
-    if (middle + reach < upper.value) {
-      upper = {reach, -slope, middle + reach};
-    }
-    if (middle - reach > lower.value) {
-      lower = {-reach, -slope, middle - reach};
+namespace {
+
+/// Constraint |y + slope x| ≤ reach on the squared path velocities x = ṡ² at the start of a segment
+/// and y at its end.
+struct speed_bound {
+  double slope, reach;
+};
+
+/// Interval of the y between `lower` and `upper` that satisfy all constraints for a given x, from
+/// the value of one line at x to that of another.
+struct feasible_path_velocities {
+  struct line {
+    double at_zero, slope, value;
+  };
+  line lower, upper;
+
+  feasible_path_velocities(std::span<const speed_bound> bounds, double x, double from, double to)
+      : lower{from, 0, from}, upper{to, 0, to} {
+    for (const auto& [slope, reach] : bounds) {
+      const double middle = -slope * x;
+      if (middle + reach < upper.value) {
+        upper = {reach, -slope, middle + reach};
+      }
+      if (middle - reach > lower.value) {
+        lower = {-reach, -slope, middle - reach};
+      }
     }
   }
-}
-double nearest_speed(std::span<const speed_bound> bounds, double x, double lower, double upper) {
+};
+
+/// Nearest value to x for which some y between `lower` and `upper` satisfies all constraints;
+/// NaN if no such y exists. The length of the interval of such y is a concave function of x.
+/// Newton's method approaches its nearer zero from outside without passing it, from one pair of
+/// active lines to the next.
+[[nodiscard]] double nearest_speed(std::span<const speed_bound> bounds, double x, double lower,
+                                   double upper) {
   for (double direction = 0;;) {
     const feasible_path_velocities y(bounds, x, lower, upper);
     if (y.lower.value <= y.upper.value) {
@@ -257,8 +279,6 @@ double nearest_speed(std::span<const speed_bound> bounds, double x, double lower
     x = next;
   }
 }
-
-namespace {
 
 /// Constraints on ṡ² at the starts and ends of the segments of a path, between which it is linear
 /// in s.

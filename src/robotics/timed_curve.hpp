@@ -8,7 +8,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 #include <vector>
 
 /// \file
@@ -74,30 +73,6 @@ validated_input(const std::vector<Eigen::VectorXd>& waypoints, const Eigen::Vect
 slopes_within_ranges(const time_parametrisation_input& problem,
                      std::vector<Eigen::VectorXd> slopes);
 
-/// Constraint |y + slope x| ≤ reach on the squared path velocities x = ṡ² at the start of a segment
-/// and y at its end.
-struct speed_bound {
-  double slope, reach;
-};
-
-/// Interval of the y between `lower` and `upper` that satisfy all constraints for a given x, from
-/// the value of one line at x to that of another.
-struct feasible_path_velocities {
-  struct line {
-    double at_zero, slope, value;
-  };
-  line lower, upper;
-
-  feasible_path_velocities(std::span<const speed_bound> bounds, double x, double from, double to);
-};
-
-/// Nearest value to x for which some y between `lower` and `upper` satisfies all constraints;
-/// NaN if no such y exists. The length of the interval of such y is a concave function of x.
-/// Newton's method approaches its nearer zero from outside without passing it, from one pair of
-/// active lines to the next.
-[[nodiscard]] double nearest_speed(std::span<const speed_bound> bounds, double x, double lower,
-                                   double upper);
-
 /// Segment of a path on one edge of a curve and in one interval [k, k + 1] of τ: its start on the
 /// edge, and s relative to that start, a t + b t² + c t³ with t = τ − k − from, 0 ≤ t ≤ length.
 struct reference_piece {
@@ -132,50 +107,6 @@ public:
 
 private:
   std::vector<double> c_;
-};
-
-/// Linear forms of the three B-spline coefficients of the squared path velocity that are active in
-/// a segment, as columns.
-template <int Count>
-using linear_forms = Eigen::Matrix<double, 3, Count>;
-
-/// Constraints |x c| ≤ limit of one joint, relative to its limits: accelerations, and jerks divided
-/// by τ̇, by their four Bernstein coefficients in a segment. `beyond` c bounds the error of the
-/// middle two; the outer ones are values at the ends.
-struct joint_bounds {
-  linear_forms<4> acceleration, jerk;
-  Eigen::Vector3d beyond_acceleration, beyond_jerk;
-};
-
-/// Bernstein coefficients in a segment of the squared path velocity, and of the square of the
-/// largest joint velocity relative to its limit.
-struct piece_bounds {
-  std::size_t first; ///< index of the coefficient that c[0] is
-  double length;     ///< length of the segment in τ
-  linear_forms<4> squared_velocity = linear_forms<4>::Zero();
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero(); ///< squared path velocity in the middle
-  linear_forms<10> square_rate = linear_forms<10>::Zero();
-};
-
-/// Constraints on a squared path velocity b = τ̇² that is a quadratic B-spline of τ
-/// with positive coefficients, one more than nodes of τ; the outer ones are its values at
-/// the ends. Joint velocities are q' s' √b with s' = ds/dτ; accelerations and jerks /
-/// √b are linear in it:
-///
-///     q̈     = q'' s'² b + q' change,               change = s̈ = s'' b + s' b' / 2
-///     q⃛ / τ̇ = q''' s'³ b + 3 q'' s' change + q' third,
-///     third  = s''' b + 3/2 s'' b' + s' b'' / 2
-struct path_velocity_constraints {
-  std::vector<piece_bounds> pieces;
-  std::vector<joint_bounds> joints; ///< constraints of each segment, one per joint
-
-  /// Collects the constraints of all segments of a path.
-  ///
-  /// \param intervals  number of intervals of τ
-  path_velocity_constraints(const std::vector<joint_cubic>& curve,
-                            const std::vector<reference_piece>& path, std::size_t intervals,
-                            const Eigen::VectorXd& velocity, const Eigen::VectorXd& acceleration,
-                            const Eigen::VectorXd& jerk);
 };
 
 /// Timed segments of a path in order, and their total duration.
