@@ -38,6 +38,14 @@ struct curve_point {
   [[nodiscard]] double s_rate() const { return tangent[tangent.size() - 1]; }
 };
 
+/// A branch point of a curve.
+struct branch_point_data {
+  Eigen::VectorXd x; ///< coordinates as in `curve_point`
+  /// Unit tangents: straight on, those of other branches in pairs of opposites, back.
+  std::vector<Eigen::VectorXd> tangents;
+  std::vector<curve_point> points; ///< a point of the curve along each tangent
+};
+
 /// The configurations q(s) of a mechanism whose driven coordinates are on the straight line u₀ + s
 /// w, |w| = 1 in units of the coordinates, as a curve in (q_dependent, s), which is smooth where s
 /// reverses: the kernel of A = (∂F/∂q_dependent, ∂F/∂u w) is its tangent.
@@ -143,6 +151,45 @@ public:
     return of_.residuals(coordinates(x));
   }
 
+  /// The branch point ahead of a point of the curve, to round-off; empty if no branch point is
+  /// near, or if branches touch there, so that second derivatives do not separate them.
+  ///
+  /// \param step  half of the last rejected step; a branch point is near if it is small
+  [[nodiscard]] std::optional<branch_point_data> branch_point_ahead(const curve_point& from,
+                                                                    double step) const {
+    const auto x = step < 1e-3 ? singular_point(from, 4 * step) : std::nullopt;
+    if (!x || from.tangent.dot(*x - from.x) <= 0) {
+      return std::nullopt;
+    }
+    const std::vector<Eigen::VectorXd> lines = tangents(*x);
+    const Eigen::VectorXd incoming = (from.x - *x).normalized();
+    const auto nearest = std::max_element(lines.begin(), lines.end(), [&](auto& p, auto& q) {
+      return std::abs(p.dot(incoming)) < std::abs(q.dot(incoming));
+    });
+    if (nearest == lines.end() || std::abs(nearest->dot(incoming)) < .95) {
+      return std::nullopt;
+    }
+    const Eigen::VectorXd back = nearest->dot(incoming) < 0 ? -*nearest : *nearest;
+    std::vector<Eigen::VectorXd> directions = {-back};
+    for (auto line = lines.begin(); line != lines.end(); ++line) {
+      if (line != nearest) {
+        directions.insert(directions.end(), {*line, -*line});
+      }
+    }
+    directions.push_back(back);
+    branch_point_data result{*x, {}, {}};
+    for (const Eigen::VectorXd& direction : directions) {
+      if (const auto point = point_along(*x, direction)) {
+        result.tangents.push_back(direction);
+        result.points.push_back(*point);
+      } else if (&direction == &directions.front() || &direction == &directions.back()) {
+        return std::nullopt;
+      }
+    }
+    return result;
+  }
+
+private:
   /// The matrix A at x.
   [[nodiscard]] Eigen::MatrixXd matrix(const Eigen::VectorXd& x) const {
     const Eigen::MatrixXd j = unit_jacobian(of_, coordinates(x));
@@ -153,7 +200,7 @@ public:
 
   /// The quadratic forms wᵀ ∂²F(K v, K v) in v, for each column w.
   [[nodiscard]] std::vector<Eigen::MatrixXd>
-  forms(const Eigen::VectorXd& x, const Eigen::MatrixXd& w, const Eigen::MatrixXd& k) const {
+  forms_at(const Eigen::VectorXd& x, const Eigen::MatrixXd& w, const Eigen::MatrixXd& k) const {
     Eigen::MatrixXd unit_rates(of_.size(), k.cols());
     for (Eigen::Index i = 0; i < k.cols(); ++i) {
       unit_rates.col(i) = rates(k.col(i)).cwiseQuotient(of_.units());
@@ -161,7 +208,6 @@ public:
     return quadratic_forms(of_, coordinates(x), w, unit_rates);
   }
 
-private:
   [[nodiscard]] std::optional<curve_point> reached(const curve_point& from, double step) const {
     const auto to = nearest_point(from.x + step * from.tangent, from.tangent, step / 4);
     if (!to || to->tangent.dot(from.tangent) < .95) {
@@ -220,75 +266,6 @@ private:
     return false;
   }
 
-  const closed_chain_mechanism& of_;
-  Eigen::VectorXd q0_;
-  std::vector<int> drives_, dependent_;
-  Eigen::VectorXd direction_;
-};
-
-/// Names of the coordinates that move most, among those whose rates are not zero.
-[[nodiscard]] std::string moving_coordinates(const closed_chain_mechanism& of,
-                                             const Eigen::VectorXd& rates) {
-  const Eigen::VectorXd sizes = rates.cwiseQuotient(of.units()).cwiseAbs();
-  std::string result;
-  for (int i = 0; i < of.size(); ++i) {
-    if (sizes[i] > 1e-4 * sizes.maxCoeff()) {
-      result += (result.empty() ? "" : ", ") + of.tree().coordinate_names()[std::size_t(i)];
-    }
-  }
-  return printable(result);
-}
-
-/// A branch point of a curve.
-struct branch_point_data {
-  Eigen::VectorXd x; ///< coordinates as in `curve_point`
-  /// Unit tangents: straight on, those of other branches in pairs of opposites, back.
-  std::vector<Eigen::VectorXd> tangents;
-  std::vector<curve_point> points; ///< a point of the curve along each tangent
-};
-
-class branch_finder {
-public:
-  explicit branch_finder(const solution_curve& curve) : curve_(curve) {}
-
-  /// The branch point ahead of a point of the curve, to round-off; empty if no branch point is
-  /// near, or if branches touch there, so that second derivatives do not separate them.
-  ///
-  /// \param step  half of the last rejected step; a branch point is near if it is small
-  [[nodiscard]] std::optional<branch_point_data> ahead(const curve_point& from, double step) const {
-    const auto x = step < 1e-3 ? singular_point(from, 4 * step) : std::nullopt;
-    if (!x || from.tangent.dot(*x - from.x) <= 0) {
-      return std::nullopt;
-    }
-    const std::vector<Eigen::VectorXd> lines = tangents(*x);
-    const Eigen::VectorXd incoming = (from.x - *x).normalized();
-    const auto nearest = std::max_element(lines.begin(), lines.end(), [&](auto& p, auto& q) {
-      return std::abs(p.dot(incoming)) < std::abs(q.dot(incoming));
-    });
-    if (nearest == lines.end() || std::abs(nearest->dot(incoming)) < .95) {
-      return std::nullopt;
-    }
-    const Eigen::VectorXd back = nearest->dot(incoming) < 0 ? -*nearest : *nearest;
-    std::vector<Eigen::VectorXd> directions = {-back};
-    for (auto line = lines.begin(); line != lines.end(); ++line) {
-      if (line != nearest) {
-        directions.insert(directions.end(), {*line, -*line});
-      }
-    }
-    directions.push_back(back);
-    branch_point_data result{*x, {}, {}};
-    for (const Eigen::VectorXd& direction : directions) {
-      if (const auto point = point_along(*x, direction)) {
-        result.tangents.push_back(direction);
-        result.points.push_back(*point);
-      } else if (&direction == &directions.front() || &direction == &directions.back()) {
-        return std::nullopt;
-      }
-    }
-    return result;
-  }
-
-private:
   /// Point where A loses rank and F vanishes, by the Gauss–Newton method for x and W with
   ///
   ///   UᵀF = 0,   AᵀU W = 0,   W₀ᵀW = 1,
@@ -316,11 +293,11 @@ private:
     Eigen::VectorXd x = from.x;
     Eigen::MatrixXd w = w0;
     for (int i = 0; i < 12; ++i) {
-      const Eigen::MatrixXd a = u.transpose().lazyProduct(curve_.matrix(x));
-      const auto forms = curve_.forms(x, u.lazyProduct(w), Eigen::MatrixXd::Identity(n, n));
+      const Eigen::MatrixXd a = u.transpose().lazyProduct(matrix(x));
+      const auto forms = forms_at(x, u.lazyProduct(w), Eigen::MatrixXd::Identity(n, n));
       Eigen::VectorXd f(r + n * lost + lost * lost);
       Eigen::MatrixXd j = Eigen::MatrixXd::Zero(f.size(), all);
-      f.head(r) = u.transpose() * curve_.residuals(x);
+      f.head(r) = u.transpose() * residuals(x);
       j.topLeftCorner(r, n) = a;
       for (Eigen::Index k = 0; k < lost; ++k) {
         const Eigen::Index column = n + r * k, row = r + n * k, last = r + n * lost + lost * k;
@@ -343,7 +320,7 @@ private:
         return std::nullopt;
       }
       if (step.norm() < 1e-13) {
-        const bool closes = curve_.residuals(x).norm() <= 1e-12 * std::max(1.0, x.norm());
+        const bool closes = residuals(x).norm() <= 1e-12 * std::max(1.0, x.norm());
         return closes ? std::optional(x) : std::nullopt;
       }
     }
@@ -354,9 +331,9 @@ private:
   /// all w orthogonal to its image. For a kernel of dimension two these are the zeros of a form in
   /// the plane, otherwise they are searched for from random starts.
   [[nodiscard]] std::vector<Eigen::VectorXd> tangents(const Eigen::VectorXd& x) const {
-    const rank_revealing_svd a(curve_.matrix(x));
+    const rank_revealing_svd a(matrix(x));
     const Eigen::MatrixXd kernel = a.kernel();
-    const std::vector<Eigen::MatrixXd> forms = curve_.forms(x, a.cokernel(), kernel);
+    const std::vector<Eigen::MatrixXd> forms = forms_at(x, a.cokernel(), kernel);
     std::vector<Eigen::VectorXd> zeros;
     if (kernel.cols() == 2) {
       for (const double angle : zeros_in_plane(forms)) {
@@ -376,10 +353,10 @@ private:
     std::vector<Eigen::VectorXd> result;
     for (const Eigen::VectorXd& v : zeros) {
       const Eigen::VectorXd line = kernel * v;
-      result.push_back(first_that_moves(curve_.rates(line)) < 0 ? -line : line);
+      result.push_back(first_that_moves(rates(line)) < 0 ? -line : line);
     }
     std::sort(result.begin(), result.end(), [&](const auto& p, const auto& q) {
-      return first_that_moves(curve_.rates(p) - curve_.rates(q)) > 0;
+      return first_that_moves(rates(p) - rates(q)) > 0;
     });
     return result;
   }
@@ -423,7 +400,7 @@ private:
   [[nodiscard]] std::optional<curve_point> point_along(const Eigen::VectorXd& x,
                                                        const Eigen::VectorXd& tangent) const {
     for (double step = 1e-3; step > 1e-5; step /= 2) {
-      const auto point = curve_.nearest_point(x + step * tangent, tangent, step / 4);
+      const auto point = nearest_point(x + step * tangent, tangent, step / 4);
       if (point && point->tangent.dot(tangent) > .99) {
         return point;
       }
@@ -431,42 +408,24 @@ private:
     return std::nullopt;
   }
 
-  const solution_curve& curve_;
+  const closed_chain_mechanism& of_;
+  Eigen::VectorXd q0_;
+  std::vector<int> drives_, dependent_;
+  Eigen::VectorXd direction_;
 };
 
-/// Start of a curve with its rates, to detect that the curve returns.
-class closure_test {
-public:
-  closure_test(const closed_chain_mechanism& of, const solution_curve& curve,
-               const curve_point& start)
-      : units_(of.units()), angles_(periodic_coordinates(of).angles),
-        q_(curve.coordinates(start.x)), rates_(curve.rates(start.tangent).cwiseQuotient(units_)) {}
-
-  /// True if the start is between both points.
-  [[nodiscard]] bool is_between(const Eigen::VectorXd& from, const Eigen::VectorXd& to) const {
-    const Eigen::VectorXd displacement = (to - from).cwiseQuotient(units_);
-    const Eigen::VectorXd before = difference(from), after = before + displacement;
-    const double step = displacement.norm();
-    return before.norm() < 2 * step && after.norm() < 2 * step && before.dot(rates_) < 0 &&
-           after.dot(rates_) >= 0;
-  }
-
-private:
-  /// Difference of q from the start, except for full turns.
-  [[nodiscard]] Eigen::VectorXd difference(const Eigen::VectorXd& q) const {
-    Eigen::VectorXd result = (q - q_).cwiseQuotient(units_);
-    for (Eigen::Index i = 0; i < q.size(); ++i) {
-      if (angles_[std::size_t(i)]) {
-        result[i] = std::remainder(result[i], 2 * std::numbers::pi);
-      }
+/// Names of the coordinates that move most, among those whose rates are not zero.
+[[nodiscard]] std::string moving_coordinates(const closed_chain_mechanism& of,
+                                             const Eigen::VectorXd& rates) {
+  const Eigen::VectorXd sizes = rates.cwiseQuotient(of.units()).cwiseAbs();
+  std::string result;
+  for (int i = 0; i < of.size(); ++i) {
+    if (sizes[i] > 1e-4 * sizes.maxCoeff()) {
+      result += (result.empty() ? "" : ", ") + of.tree().coordinate_names()[std::size_t(i)];
     }
-    return result;
   }
-
-  Eigen::VectorXd units_;
-  std::vector<bool> angles_;
-  Eigen::VectorXd q_, rates_;
-};
+  return printable(result);
+}
 
 /// Traces a motion along one of its driven coordinates.
 class tracer {
@@ -474,7 +433,8 @@ public:
   tracer(const driven_motion& motion, int drive, const trace_options& options)
       : of_(motion.mechanism()), options_(options),
         curve_(of_, motion.start(), motion.drives(),
-               Eigen::VectorXd::Unit(Eigen::Index(motion.drives().size()), drive)) {}
+               Eigen::VectorXd::Unit(Eigen::Index(motion.drives().size()), drive)),
+        angles_(periodic_coordinates(of_).angles) {}
 
   [[nodiscard]] motion_trace run() {
     result_.positions = follow(1);
@@ -490,8 +450,7 @@ public:
 private:
   [[nodiscard]] std::vector<Eigen::VectorXd> follow(double direction) {
     std::vector<Eigen::VectorXd> positions;
-    curve_point current = *curve_.start(direction);
-    closure_test closure(of_, curve_, current);
+    curve_point current = *curve_.start(direction), start = current;
     double done = 0;
     for (double step = options_.largest_step; step > 1e-7 && done < options_.max_length;) {
       auto next = curve_.advance(current, step);
@@ -509,8 +468,8 @@ private:
       }
       const Eigen::VectorXd to = curve_.coordinates(next->x);
       if (changes_branch) {
-        closure = closure_test(of_, curve_, *next);
-      } else if (done > 0 && closure.is_between(curve_.coordinates(current.x), to)) {
+        start = *next;
+      } else if (done > 0 && is_between(start, curve_.coordinates(current.x), to)) {
         result_.is_closed = true;
         return positions;
       }
@@ -521,6 +480,22 @@ private:
     }
     result_.stopped_early |= done < options_.max_length;
     return positions;
+  }
+
+  /// True if a point of the curve is between two configurations, except for full turns.
+  [[nodiscard]] bool is_between(const curve_point& start, const Eigen::VectorXd& from,
+                                const Eigen::VectorXd& to) const {
+    const Eigen::VectorXd rates = curve_.rates(start.tangent).cwiseQuotient(of_.units()),
+                          displacement = (to - from).cwiseQuotient(of_.units());
+    Eigen::VectorXd before = (from - curve_.coordinates(start.x)).cwiseQuotient(of_.units());
+    for (Eigen::Index i = 0; i < before.size(); ++i) {
+      before[i] =
+          angles_[std::size_t(i)] ? std::remainder(before[i], 2 * std::numbers::pi) : before[i];
+    }
+    const Eigen::VectorXd after = before + displacement;
+    const double step = displacement.norm();
+    return before.norm() < 2 * step && after.norm() < 2 * step && before.dot(rates) < 0 &&
+           after.dot(rates) >= 0;
   }
 
   void add_dead_points(const curve_point& from, const curve_point& to, double step) {
@@ -545,7 +520,7 @@ private:
 
   /// A point behind a branch point, if steps became so small that one may be near.
   [[nodiscard]] std::optional<curve_point> past_branch_point(const curve_point& from, double step) {
-    const auto crossing = branch_finder(curve_).ahead(from, step);
+    const auto crossing = curve_.branch_point_ahead(from, step);
     if (!crossing) {
       return std::nullopt;
     }
@@ -572,6 +547,7 @@ private:
   const closed_chain_mechanism& of_;
   trace_options options_;
   solution_curve curve_;
+  std::vector<bool> angles_; ///< as in `periodic_coordinates`
   motion_trace result_;
 };
 
@@ -683,7 +659,7 @@ Eigen::VectorXd driven_motion::followed(const Eigen::VectorXd& target) const {
     const auto next = curve.advance(current, step);
     if (!next) {
       step /= 2;
-      if (const auto met = detail::branch_finder(curve).ahead(current, step)) {
+      if (const auto met = curve.branch_point_ahead(current, step)) {
         const Eigen::VectorXd& along = met->tangents[0];
         const double s = met->x[met->x.size() - 1], rate = along[along.size() - 1];
         current = met->points[0];
