@@ -66,24 +66,90 @@ constexpr std::array<urdf_element_kind, 20> urdf_element_kinds{
      {"mimic", {"joint", "multiplier", "offset"}},
      {"safety_controller", {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"}}}};
 
-/// A description whose elements and attributes have been checked against the format. Elements are
-/// named in messages with the joint or link that contains them, their `owner`.
-class urdf_document {
-protected:
-  /// \throws file_error for another root than `<robot>`, and for unknown attributes
-  urdf_document(std::string path, xml_element robot)
-      : path_(std::move(path)), robot_(std::move(robot)) {
+/// Links and joints of a description, whose elements and attributes have been checked against the
+/// format: all, or those from one link to another. Elements are named in messages with the joint or
+/// link that contains them, their `owner`.
+class urdf_reader {
+public:
+  /// \throws file_error for another root than `<robot>`, and for errors anywhere in the
+  /// description, except for numbers
+  explicit urdf_reader(const std::string& path) : path_(path), robot_(read_xml(path)) {
     if (robot_.name != "robot") {
       raise(file_error(path_, robot_.line, "the root is <" + robot_.name + "> (expected <robot>)"));
     }
     check(robot_);
+    for (const xml_element& each : robot_.children) {
+      if (each.name == "link") {
+        names_.links.push_back(add_name(each, links_));
+      } else if (each.name == "joint") {
+        add_joint(each);
+      }
+    }
   }
-  urdf_document(const urdf_document&) = delete;
-  urdf_document& operator=(const urdf_document&) = delete;
+
+  urdf_reader(const urdf_reader&) = delete;
+  urdf_reader& operator=(const urdf_reader&) = delete;
+
+  [[nodiscard]] const urdf_summary& names() const { return names_; }
+
+  /// The chain from the link `base` to the link `tip`.
+  [[nodiscard]] urdf_contents chain(const std::string& base, const std::string& tip,
+                                    std::size_t max_joints) const {
+    for (const std::string& link : {base, tip}) {
+      if (!links_.contains(link)) {
+        fail(no_link(link));
+      }
+    }
+    const auto pass = [&](std::size_t i) {
+      const xml_element& parent = child(*elements_[i], "parent");
+      if (const std::string& link = attribute(parent, "link"); !links_.contains(link)) {
+        fail(parent, no_link(link));
+      }
+    };
+    const auto fail_on_path = [&](const auto&... what) { fail(what...); };
+    const link_path path = find_link_path(names_.joints, base, tip, pass, fail_on_path);
+    urdf_contents result = link_path_contents(path, base, [&](std::size_t i) {
+      const tree_joint joint = read_joint(*elements_[i]);
+      if (const std::string reason = not_in_a_chain(joint); !reason.empty()) {
+        fail(i, reason);
+      }
+      return joint;
+    });
+    if (const std::size_t count = result.joint_names.size(); count > max_joints) {
+      fail(std::to_string(count) + " moving joints from \"" + base + "\" to \"" + tip +
+           "\": use read_urdf<" + std::to_string(count) + ">");
+    }
+    for (urdf_link& each : result.links) {
+      each.collision = read_shapes(*links_.at(each.name));
+    }
+    result.unknown = names_.unknown;
+    return result;
+  }
+
+  /// All links and joints.
+  [[nodiscard]] robot_description description() const {
+    robot_description result;
+    result.file = path_;
+    result.unknown = names_.unknown;
+    for (const xml_element& each : robot_.children) {
+      if (each.name == "link") {
+        result.links.push_back(read_link(each));
+      } else if (each.name == "joint") {
+        result.joints.push_back(read_joint(each));
+      }
+    }
+    return result;
+  }
+
+private:
+  using elements = std::unordered_map<std::string_view, const xml_element*>;
 
   [[noreturn]] void fail(const std::string& what) const { raise(file_error(path_, what)); }
   [[noreturn]] void fail(const xml_element& in, const std::string& what) const {
     raise(file_error(path_, in.line, name_of(in) + ": " + what));
+  }
+  [[noreturn]] void fail(std::size_t joint, const std::string& what) const {
+    fail(*elements_[joint], what);
   }
   [[noreturn]] void fail_negative(const xml_element& in, std::string_view key) const {
     fail(in, quoted(in, key) + " is negative");
@@ -155,11 +221,6 @@ protected:
     return result;
   }
 
-  std::string path_;
-  xml_element robot_;
-  std::vector<urdf_unknown_element> unknown_;
-
-private:
   /// Maximum length (m) and angle (rad): larger ones lose digits.
   static constexpr double max_number = 1e6;
 
@@ -201,7 +262,7 @@ private:
     for (xml_element& each : element.children) {
       each.owner = is_part ? &element : element.owner;
       if (!has(kind->children, each.name)) {
-        unknown_.push_back({each.name, name_of(element), each.line});
+        names_.unknown.push_back({each.name, name_of(element), each.line});
         continue;
       }
       const bool is_one_of_many =
@@ -215,82 +276,6 @@ private:
   [[nodiscard]] static bool has(const auto& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
   }
-};
-
-/// Links and joints: all, or those from one link to another.
-class urdf_reader : urdf_document {
-public:
-  /// \throws file_error for errors anywhere in the description, except for numbers
-  explicit urdf_reader(const std::string& path) : urdf_document(path, read_xml(path)) {
-    names_.unknown = unknown_;
-    for (const xml_element& each : robot_.children) {
-      if (each.name == "link") {
-        names_.links.push_back(add_name(each, links_));
-      } else if (each.name == "joint") {
-        add_joint(each);
-      }
-    }
-  }
-
-  [[nodiscard]] const urdf_summary& names() const { return names_; }
-
-  /// The chain from the link `base` to the link `tip`.
-  [[nodiscard]] urdf_contents chain(const std::string& base, const std::string& tip,
-                                    std::size_t max_joints) const {
-    for (const std::string& link : {base, tip}) {
-      if (!links_.contains(link)) {
-        fail(no_link(link));
-      }
-    }
-    const auto pass = [&](std::size_t i) {
-      const xml_element& parent = child(*elements_[i], "parent");
-      if (const std::string& link = attribute(parent, "link"); !links_.contains(link)) {
-        fail(parent, no_link(link));
-      }
-    };
-    struct {
-      const urdf_reader& reader;
-      void operator()(std::size_t i, const std::string& what) const {
-        reader.fail(*reader.elements_[i], what);
-      }
-      void operator()(const std::string& what) const { reader.fail(what); }
-    } const fail_on_path{*this};
-    const link_path path = find_link_path(names_.joints, base, tip, pass, fail_on_path);
-    urdf_contents result = link_path_contents(path, base, [&](std::size_t i) {
-      const tree_joint joint = read_joint(*elements_[i]);
-      if (const std::string reason = not_in_a_chain(joint); !reason.empty()) {
-        fail(*elements_[i], reason);
-      }
-      return joint;
-    });
-    if (const std::size_t count = result.joint_names.size(); count > max_joints) {
-      fail(std::to_string(count) + " moving joints from \"" + base + "\" to \"" + tip +
-           "\": use read_urdf<" + std::to_string(count) + ">");
-    }
-    for (urdf_link& each : result.links) {
-      each.collision = read_shapes(*links_.at(each.name));
-    }
-    result.unknown = unknown_;
-    return result;
-  }
-
-  /// All links and joints.
-  [[nodiscard]] robot_description description() const {
-    robot_description result;
-    result.file = path_;
-    result.unknown = unknown_;
-    for (const xml_element& each : robot_.children) {
-      if (each.name == "link") {
-        result.links.push_back(read_link(each));
-      } else if (each.name == "joint") {
-        result.joints.push_back(read_joint(each));
-      }
-    }
-    return result;
-  }
-
-private:
-  using elements = std::unordered_map<std::string_view, const xml_element*>;
 
   [[nodiscard]] std::string no_link(const std::string& link) const {
     return "no link \"" + link + "\": " + closest_names(link, names_.links);
@@ -497,6 +482,8 @@ private:
     return result;
   }
 
+  std::string path_;
+  xml_element robot_;
   urdf_summary names_;
   std::vector<const xml_element*> elements_; ///< elements of the joints, as in `names_`
   elements links_, joints_;                  ///< elements by name
