@@ -299,47 +299,33 @@ void require_known_transformations(const std::string& path, const xml_element& i
   }
 }
 
-/// Triangles of a scene.
-class scene_triangles {
-public:
-  scene_triangles(const std::string& path, const aiScene& scene) : path_(path), scene_(scene) {
-    add(*scene.mRootNode, Eigen::Matrix4d::Identity());
-  }
-
-  std::vector<std::array<double, 3>> vertices;
-
-private:
-  void add(const aiNode& node, const Eigen::Matrix4d& parent) {
-    using matrix = Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>;
-    const Eigen::Matrix4d pose =
-        parent * Eigen::Map<const matrix>(&node.mTransformation.a1).cast<double>();
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-      add(*scene_.mMeshes[node.mMeshes[i]], pose);
-    }
-    for (unsigned i = 0; i < node.mNumChildren; ++i) {
-      add(*node.mChildren[i], pose);
-    }
-  }
-  /// Mirrored triangles are reversed, so that their outside remains outside.
-  void add(const aiMesh& mesh, const Eigen::Matrix4d& pose) {
-    const bool is_mirrored = pose.topLeftCorner<3, 3>().determinant() < 0;
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-      const aiFace& face = mesh.mFaces[i];
+/// Adds the triangles of a node and of those below it. Mirrored triangles are reversed, so that
+/// their outside remains outside.
+void add_triangles(const std::string& path, const aiScene& scene, const aiNode& node,
+                   const Eigen::Matrix4d& parent, std::vector<std::array<double, 3>>& to) {
+  using matrix = Eigen::Matrix<ai_real, 4, 4, Eigen::RowMajor>;
+  const Eigen::Matrix4d pose =
+      parent * Eigen::Map<const matrix>(&node.mTransformation.a1).cast<double>();
+  const bool is_mirrored = pose.topLeftCorner<3, 3>().determinant() < 0;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      const aiFace& face = mesh.mFaces[f];
       for (unsigned k = 0; k < 3 && face.mNumIndices == 3; ++k) { // others are points and lines
         const aiVector3D& v = mesh.mVertices[face.mIndices[is_mirrored ? 2 - k : k]];
         const Eigen::Vector4d x = pose * Eigen::Vector4d(v.x, v.y, v.z, 1);
         if (!x.allFinite()) {
-          raise(file_error(path_, "triangle " + std::to_string(vertices.size() / 3) +
-                                      " has a vertex that is not finite"));
+          raise(file_error(path, "triangle " + std::to_string(to.size() / 3) +
+                                     " has a vertex that is not finite"));
         }
-        vertices.push_back({x[0], x[1], x[2]});
+        to.push_back({x[0], x[1], x[2]});
       }
     }
   }
-
-  const std::string& path_;
-  const aiScene& scene_;
-};
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    add_triangles(path, scene, *node.mChildren[i], pose, to);
+  }
+}
 
 std::vector<std::array<double, 3>>
 read_imported_mesh(const std::string& path, const std::string& ending, std::size_t max_megabytes) {
@@ -358,7 +344,9 @@ read_imported_mesh(const std::string& path, const std::string& ending, std::size
   if (scene == nullptr || scene->mRootNode == nullptr) {
     raise(file_error(path, importer.GetErrorString()));
   }
-  return scene_triangles(path, *scene).vertices;
+  std::vector<std::array<double, 3>> result;
+  add_triangles(path, *scene, *scene->mRootNode, Eigen::Matrix4d::Identity(), result);
+  return result;
 }
 
 #else

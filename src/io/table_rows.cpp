@@ -54,11 +54,14 @@ struct column_name {
   bool is_arrival = false;  ///< time at which a program received the row
   bool is_measured = false; ///< time in the header of a message
   bool has_prefix = false;
+  std::string text; ///< as in the header
   std::string name;
   std::string unit; ///< as written, empty if absent
 
+  column_name() = default;
+
   /// \param prefix  removed from the name; without it, the name is read as a whole
-  explicit column_name(std::string_view cell, std::string_view prefix = {}) {
+  explicit column_name(std::string_view cell, std::string_view prefix = {}) : text(cell) {
     if (cell.size() > 1 && cell.front() == '"' && cell.back() == '"') { // as spreadsheets write
       cell = cell.substr(1, cell.size() - 2);
     }
@@ -147,13 +150,9 @@ struct table_layout {
   static constexpr std::size_t nanosec = std::size_t(table_column::nanosec);
 
   std::array<std::size_t, 9> at;
-  std::array<std::string, 9> names; ///< names as in the header
+  std::array<column_name, 9> names;
   std::size_t columns = 0;
-  std::array<std::string, 9> units;
-  bool has_time = false;   ///< true if the parameter is a time
-  bool is_seconds = false; ///< true for whole seconds, with nanoseconds in a column of their own
   bool is_euroc = false;   ///< true if named as in the files of the EuRoC data set
-  bool is_of_ros = false;  ///< true if the time is as `rostopic echo -p` writes it
   bool has_angles = false; ///< true for Euler angles instead of a quaternion
   std::string prefix;      ///< detected before the names of the columns, or empty
 
@@ -198,7 +197,7 @@ struct table_layout {
       const std::size_t k = std::size_t(what);
       if (what != table_column::other && (!has_angles || k < 4) && at[k] != absent && at[k] != i) {
         return "the file names column " + std::to_string(i + 1) + " '" + std::string(header[i]) +
-               "', but the stated header has '" + names[k] + "' in column " +
+               "', but the stated header has '" + names[k].text + "' in column " +
                std::to_string(at[k] + 1);
       }
     }
@@ -262,19 +261,13 @@ private:
           at[0] = absent;
         } else if (at[k] != absent) {
           is_repeated = true;
-          return "the header has both '" + names[k] + "' and '" + std::string(header[i]) + "'";
+          return "the header has both '" + names[k].text + "' and '" + std::string(header[i]) + "'";
         }
         has_arrival = cell.is_arrival || (has_arrival && !is_parameter);
         has_measured = has_measured || cell.is_measured;
         at[k] = i;
-        names[k] = header[i];
-        units[k] = cell.unit;
+        names[k] = cell;
         is_euroc = is_euroc || cell.name.starts_with("p_rs_");
-        if (k == 0) {
-          has_time = cell.is_a_time;
-          is_seconds = cell.is_seconds;
-          is_of_ros = cell.is_of_ros;
-        }
       }
     }
     return missing(has_position, stated);
@@ -302,9 +295,9 @@ private:
   /// Problem with the header: missing columns, or units of angles other than the given one.
   [[nodiscard]] std::string missing(bool has_position, const table_columns& stated) const {
     const std::optional<euler_columns>& angles = stated.angles;
-    if (is_seconds != (at[nanosec] != absent)) {
-      return "the header has '" + names[is_seconds ? 0 : nanosec] + "', but names no column " +
-             (is_seconds ? "nanosec" : "sec");
+    if (names[0].is_seconds != (at[nanosec] != absent)) {
+      return "the header has '" + names[names[0].is_seconds ? 0 : nanosec].text +
+             "', but names no column " + (names[0].is_seconds ? "nanosec" : "sec");
     }
     constexpr std::array<const char*, 8> short_names{"u", "x", "y", "z", "qw", "qx", "qy", "qz"};
     for (std::size_t k = 0; k < (has_angles ? 7 : 8); ++k) {
@@ -312,8 +305,8 @@ private:
         const std::string name = angles && k >= 4 ? angles->names()[k - 4] : short_names[k];
         return "the header names no column " + name + ": " + known_columns;
       }
-      if (has_angles && k >= 4 && !is_unit_of(*angles, units[k])) {
-        return "the header has the column " + names[k] + ", but euler_columns expects " +
+      if (has_angles && k >= 4 && !is_unit_of(*angles, names[k].unit)) {
+        return "the header has the column " + names[k].text + ", but euler_columns expects " +
                (angles->unit() == angle_unit::degree ? "degrees" : "radians");
       }
     }
@@ -673,19 +666,19 @@ private:
   [[nodiscard]] row_format format_of_header(std::size_t line, const table_layout& header) const {
     row_format result;
     result.layout = header;
-    const std::string& unit = header.units[0];
-    if (header.has_time && !header.is_seconds && unit.empty()) {
+    const std::string& unit = header.names[0].unit;
+    if (header.names[0].is_a_time && !header.names[0].is_seconds && unit.empty()) {
       const std::string_view first = header.at[0] < cells_.size() ? cells_[header.at[0]] : "";
-      const bool is_of_ros = header.is_of_ros && first.find_first_of(".eE") == first.npos;
+      const bool is_of_ros = header.names[0].is_of_ros && first.find_first_of(".eE") == first.npos;
       result.digits = header.is_euroc || is_of_ros ? 9 : guessed_digits(first);
       result.guessed_unit = name_of_time_unit(result.digits);
       if (result.digits > 0) {
         result.remark = header.is_euroc ? "a EuRoC file: timestamps in nanoseconds"
                         : is_of_ros
-                            ? header.names[0] + " as rostopic writes it, in nanoseconds"
+                            ? header.names[0].text + " as rostopic writes it, in nanoseconds"
                             : "timestamps of this size are taken for " + result.guessed_unit;
       }
-    } else if (header.has_time && !header.is_seconds) {
+    } else if (header.names[0].is_a_time && !header.names[0].is_seconds) {
       result.digits = digits_of_time_unit(path_, line, unit);
       if (result.digits > 0) {
         result.remark =
@@ -697,8 +690,8 @@ private:
                       (result.remark.empty() ? "" : "; " + result.remark);
     }
     for (std::size_t k = 1; has_position_ && k < 4; ++k) {
-      if (!header.units[k].empty() && header.units[k] != "m") {
-        fail(line, "the unit of positions is '" + header.units[k] + "' (expected m)");
+      if (!header.names[k].unit.empty() && header.names[k].unit != "m") {
+        fail(line, "the unit of positions is '" + header.names[k].unit + "' (expected m)");
       }
     }
     return result;
@@ -730,7 +723,7 @@ private:
     std::array<double, 9> x{};
     for (std::size_t k = 0; k < 9; ++k) {
       if (layout.at[k] != table_layout::absent) {
-        note(row, read_cell(path_, row.line, layout.names[k], cells_[layout.at[k]], x[k]));
+        note(row, read_cell(path_, row.line, layout.names[k].text, cells_[layout.at[k]], x[k]));
       }
     }
     if (!row.issue.empty()) {
@@ -739,15 +732,15 @@ private:
     const quaternion<double> q = layout.has_angles ? columns_.angles->rotation({x[4], x[5], x[6]})
                                                    : quaternion<double>(x[4], x[5], x[6], x[7]);
     if (const double length = norm(q); !(std::abs(length - 1) <= unit_norm_tolerance)) {
-      row.issue = "the quaternion of " + layout.names[4] + ", " + layout.names[5] + ", " +
-                  layout.names[6] + ", " + layout.names[7] + " has norm " + to_text(length) +
-                  ", not 1";
+      row.issue = "the quaternion of " + layout.names[4].text + ", " + layout.names[5].text + ", " +
+                  layout.names[6].text + ", " + layout.names[7].text + " has norm " +
+                  to_text(length) + ", not 1";
       return;
     }
-    if (layout.is_seconds) {
+    if (layout.names[0].is_seconds) {
       read_seconds(row, x[0], x[8]);
     } else {
-      require_integer(path_, row.line, layout.names[0], x[0], format_->guessed_unit);
+      require_integer(path_, row.line, layout.names[0].text, x[0], format_->guessed_unit);
       row.time = file_time(cells_[layout.at[0]], format_->digits);
     }
     row.position = {x[1], x[2], x[3]};
@@ -758,9 +751,9 @@ private:
   void read_seconds(table_row& row, double seconds, double nanoseconds) const {
     const auto require_between = [&](std::size_t k, double x, double least, double most) {
       if (x != std::floor(x) || x < least || x > most) {
-        note(row, format_->layout.names[k] + " is " + std::string(cells_[format_->layout.at[k]]) +
-                      " (expected an integer from " + to_text(least) + " to " + to_text(most) +
-                      ")");
+        note(row, format_->layout.names[k].text + " is " +
+                      std::string(cells_[format_->layout.at[k]]) + " (expected an integer from " +
+                      to_text(least) + " to " + to_text(most) + ")");
       }
     };
     require_between(0, seconds, -9e9, 9e9);
