@@ -16,7 +16,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
@@ -160,238 +159,214 @@ private:
   }
 };
 
-/// Closed-form solutions of a loop whose joints 4 to 6 have axes that meet.
-class spherical_loop {
-public:
-  explicit spherical_loop(const loop_equation& loop, const vector3d& centre)
-      : loop_(loop), centre_(centre) {}
+/// Error of the first three coordinates by round-off in the position of the centre.
+[[nodiscard]] double first_error(const loop_equation& loop, const vector3d& centre,
+                                 const six_coordinates& theta) {
+  constexpr double rounding = 3e-15;
+  const six_columns all = closure_error(loop, theta).jacobian;
+  const Eigen::Vector3d goal = loop.closing.point(centre);
+  Eigen::Matrix3d velocities;
+  for (int i = 0; i < 3; ++i) {
+    velocities.col(i) = all.col(i).head<3>() + all.col(i).tail<3>().cross(goal);
+  }
+  return rounding * velocities.inverse().norm();
+}
 
-  /// Calls visit(θ, multiplicity) for each solution: exp(θ₁S₁) exp(θ₂S₂) exp(θ₃S₃) moves the centre
-  /// to its goal, and a rotation remains.
-  ///
-  /// \return false if coordinates are undetermined
-  template <class Visit>
-  bool operator()(const Visit& visit) const {
-    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
-    const vector3d goal = loop_.closing.point(centre_);
-    const folded_elbow folded(loop_, centre_, goal);
-    bool is_determined = folded.is_certain;
-    if (folded.is_folded) {
-      bool is_met = false;
-      const auto met = [&](const six_coordinates& all, int multiplicity) {
-        is_met = true;
-        visit(all, multiplicity);
-      };
-      for (const auto& [theta1, theta2, theta3, multiplicity] : folded.all) {
-        if (!(folded.is_any && is_met)) {
-          six_coordinates theta;
-          theta << theta1, theta2, theta3, 0, 0, 0;
-          const double error = folded.is_any ? 0 : error_of(theta);
-          is_determined = wrist(theta, multiplicity, error, met) && is_determined;
-        }
-      }
-      return is_determined;
-    }
-    // In a frame with its origin on the second axis: the points e₃ c and e₁⁻¹ goal have the same
-    // component along that axis and the same squared norm.
-    const rotating_vector from(third.axis, centre_ - third.point, third.point - second.point);
-    const rotating_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
-    const auto height = [&](const rotating_vector& x) { return part_along(second.axis, x); };
-    const auto square = [&](const rotating_vector& x) {
-      const double constant = dot(x.across, x.across) + dot(x.along, x.along);
-      return first_harmonic{constant, 2 * dot(x.along, x.across), 2 * dot(x.along, x.normal)};
+/// Solves for the last three angles.
+///
+/// \param error  error of the first three coordinates, if it exceeds round-off
+/// \return false if coordinates are undetermined
+[[nodiscard]] bool solve_wrist(const loop_equation& loop, const vector3d& centre,
+                               six_coordinates& theta, int multiplicity, double error,
+                               const auto& visit) {
+  const quaternion<double> rotation =
+      conj(product_of_joints(loop, theta, 0, 3).rotation) * loop.closing.rotation;
+  const double nearest = for_each_three_axis_decomposition(
+      loop.joints[3], loop.joints[4], loop.joints[5], rotation,
+      [&](double alpha, double beta, double gamma, int m) {
+        theta.tail<3>() << alpha, beta, gamma;
+        visit(theta, multiplicity * m);
+      },
+      error);
+  constexpr double close_by = 1e-3;
+  return error > 0
+             ? nearest > std::max(2 * close_by, error)
+             : nearest > close_by || (nearest > 0 && nearest > first_error(loop, centre, theta));
+}
+
+/// Closed-form solutions of a loop whose joints 4 to 6 have axes that meet in `centre`: calls
+/// visit(θ, multiplicity) for each. exp(θ₁S₁) exp(θ₂S₂) exp(θ₃S₃) moves the centre to its goal, and
+/// a rotation remains.
+///
+/// \return false if coordinates are undetermined
+[[nodiscard]] bool solve_spherical(const loop_equation& loop, const vector3d& centre,
+                                   const auto& visit) {
+  const auto &first = loop.joints[0], &second = loop.joints[1], &third = loop.joints[2];
+  const vector3d goal = loop.closing.point(centre);
+  const folded_elbow folded(loop, centre, goal);
+  bool is_determined = folded.is_certain;
+  if (folded.is_folded) {
+    bool is_met = false;
+    const auto met = [&](const six_coordinates& all, int multiplicity) {
+      is_met = true;
+      visit(all, multiplicity);
     };
-    const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
-    connecting_rotation middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
-    const bool has_pairs = pairs([&](double near1, double near3, int m) {
-      middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
+    for (const auto& [theta1, theta2, theta3, multiplicity] : folded.all) {
+      if (!(folded.is_any && is_met)) {
         six_coordinates theta;
         theta << theta1, theta2, theta3, 0, 0, 0;
-        is_determined = wrist(theta, multiplicity, 0, visit) && is_determined;
-      });
-    });
-    return has_pairs && middle.nearest() > 0 && is_determined;
+        const double error = folded.is_any ? 0 : first_error(loop, centre, theta);
+        is_determined = solve_wrist(loop, centre, theta, multiplicity, error, met) && is_determined;
+      }
+    }
+    return is_determined;
   }
+  // In a frame with its origin on the second axis: the points e₃ c and e₁⁻¹ goal have the same
+  // component along that axis and the same squared norm.
+  const rotating_vector from(third.axis, centre - third.point, third.point - second.point);
+  const rotating_vector to(-1 * first.axis, goal - first.point, first.point - second.point);
+  const auto height = [&](const rotating_vector& x) { return part_along(second.axis, x); };
+  const auto square = [&](const rotating_vector& x) {
+    const double constant = dot(x.across, x.across) + dot(x.along, x.along);
+    return first_harmonic{constant, 2 * dot(x.along, x.across), 2 * dot(x.along, x.normal)};
+  };
+  const angle_pairs pairs{{height(to), square(to)}, {height(from), square(from)}};
+  connecting_rotation middle(second.axis, from, to, pairs.g[0], pairs.f[0]);
+  const bool has_pairs = pairs([&](double near1, double near3, int m) {
+    middle(near3, near1, m, [&](double theta3, double theta1, double theta2, int multiplicity) {
+      six_coordinates theta;
+      theta << theta1, theta2, theta3, 0, 0, 0;
+      is_determined = solve_wrist(loop, centre, theta, multiplicity, 0, visit) && is_determined;
+    });
+  });
+  return has_pairs && middle.nearest() > 0 && is_determined;
+}
 
-private:
-  /// Solves for the last three angles.
-  ///
-  /// \param error  error of the first three coordinates, if it exceeds round-off
-  /// \return false if coordinates are undetermined
-  template <class Visit>
-  bool wrist(six_coordinates& theta, int multiplicity, double error, const Visit& visit) const {
-    const quaternion<double> rotation =
-        conj(product_of_joints(loop_, theta, 0, 3).rotation) * loop_.closing.rotation;
-    const double nearest = for_each_three_axis_decomposition(
-        loop_.joints[3], loop_.joints[4], loop_.joints[5], rotation,
-        [&](double alpha, double beta, double gamma, int m) {
-          theta.tail<3>() << alpha, beta, gamma;
+/// Function of θ₅ for a fifth axis that has become parallel to the first three: 0 where the
+/// distance of the third axis from the first is at the centre of its range.
+[[nodiscard]] first_harmonic beyond_reach(const loop_equation& loop, const six_coordinates& theta) {
+  const auto &first = loop.joints[0], &second = loop.joints[1], &third = loop.joints[2],
+             &fifth = loop.joints[4];
+  const tip_pose after = loop.closing * inverse_pose(product_of_joints(loop, theta, 5, 1)),
+                 before = inverse_pose(product_of_joints(loop, theta, 3, 1));
+  const rotating_vector offset(-1 * fifth.axis, before.point(third.point) - fifth.point);
+  const vector3d fixed_part =
+      orthogonal_part(fifth.point - inverse_pose(after).point(first.point), fifth.axis);
+  const double a = length_of(orthogonal_part(second.point - first.point, first.axis)),
+               c = length_of(fixed_part),
+               b = length_of(orthogonal_part(third.point - second.point, first.axis)),
+               d = length_of(offset.across),
+               radius = (std::max(std::abs(a - b), std::abs(c - d)) + std::min(a + b, c + d)) / 2;
+  return {c * c + d * d - radius * radius, 2 * dot(fixed_part, offset.across),
+          2 * dot(fixed_part, offset.normal)};
+}
+
+/// Solves for the first three angles.
+///
+/// \return false if coordinates are undetermined
+[[nodiscard]] bool solve_plane(const loop_equation& loop, six_coordinates& theta, int multiplicity,
+                               const auto& visit) {
+  const auto &first = loop.joints[0], &second = loop.joints[1], &third = loop.joints[2];
+  const tip_pose motion = loop.closing * inverse_pose(product_of_joints(loop, theta, 3, 3));
+  const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
+  const double total_angle = angle_of(motion.rotation, n); // sum of angles about n and −n
+  const vector3d offset = second.point - first.point;
+  const rotating_vector arm(second.axis, third.point - second.point, offset);
+  const vector3d across = orthogonal_part(offset, n), goal = orthogonal_part(to, n);
+  connecting_rotation rotation(n, arm, to);
+  const double error = multiplicity > 1 ? 2 * one_angle : 0; // error of the other angles
+  const bool has_second = visit_zeros(
+      {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
+       2 * dot(across, arm.across), 2 * dot(across, arm.normal)},
+      [&](double near2, int near_multiplicity) {
+        rotation(near2, 0, near_multiplicity, [&](double theta2, double, double theta1, int m) {
+          theta[0] = theta1;
+          theta[1] = theta2;
+          theta[2] = dot(n, third.axis) * (total_angle - theta1 - dot(n, second.axis) * theta2);
           visit(theta, multiplicity * m);
-        },
-        error);
-    constexpr double close_by = 1e-3;
-    return error > 0 ? nearest > std::max(2 * close_by, error)
-                     : nearest > close_by || (nearest > 0 && nearest > error_of(theta));
-  }
-
-  /// Error of the first three coordinates by round-off in the position of the centre.
-  [[nodiscard]] double error_of(const six_coordinates& theta) const {
-    constexpr double rounding = 3e-15;
-    const six_columns all = closure_error(loop_, theta).jacobian;
-    const Eigen::Vector3d goal = loop_.closing.point(centre_);
-    Eigen::Matrix3d velocities;
-    for (int i = 0; i < 3; ++i) {
-      velocities.col(i) = all.col(i).head<3>() + all.col(i).tail<3>().cross(goal);
-    }
-    return rounding * velocities.inverse().norm();
-  }
-
-  const loop_equation& loop_;
-  vector3d centre_;
-};
-
-/// Closed-form solutions of a loop whose joints 1 to 3 have parallel axes.
-class planar_loop {
-public:
-  explicit planar_loop(const loop_equation& loop) : loop_(loop) {}
-
-  /// Calls visit(θ, multiplicity) for each solution: exp(θ₅S₅) exp(θ₆S₆) closing⁻¹ and
-  /// exp(−θ₄S₄) map the plane perpendicular to the three axes to the same plane, and a motion
-  /// of that plane remains.
-  ///
-  /// \return false if coordinates are undetermined
-  template <class Visit>
-  bool operator()(const Visit& visit) const {
-    const auto &fourth = loop_.joints[3], &fifth = loop_.joints[4], &sixth = loop_.joints[5];
-    const vector3d n = loop_.joints[0].axis;
-    const tip_pose opening = inverse_pose(loop_.closing);
-    const vector3d goal_normal = rotated(opening.rotation, n);
-    const double goal_distance = dot(goal_normal, opening.translation);
-    // Rotations of a plane about the fifth axis preserve the component of its normal along that
-    // axis and its distance from a point on that axis.
-    const rotating_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
-    const auto distance = [&](const rotating_vector& x, double before, const vector3d& offset) {
-      first_harmonic result = part_along(offset, x);
-      result.a += before;
-      return result;
-    };
-    const angle_pairs pairs{
-        {part_along(fifth.axis, to),
-         distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
-        {part_along(fifth.axis, from),
-         distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
-    connecting_rotation middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
-    bool is_determined = true;
-    const bool has_pairs = pairs([&](double near4, double near6, int m) {
-      middle(near6, near4, m, [&](double theta6, double theta4, double theta5, int multiplicity) {
-        six_coordinates theta;
-        theta << 0, 0, 0, theta4, theta5, theta6;
-        const auto visit_plane = [&](double angle, int times) {
-          theta[4] = angle;
-          is_determined = plane(theta, times, visit) && is_determined;
-        };
-        if (!middle.is_open() || !visit_zeros(beyond_reach(theta), visit_plane)) {
-          visit_plane(theta5, multiplicity);
-        }
-      });
-    });
-    return has_pairs && middle.nearest() > 0 && is_determined;
-  }
-
-private:
-  /// Function of θ₅ for a fifth axis that has become parallel to the first three: 0 where the
-  /// distance of the third axis from the first is at the centre of its range.
-  [[nodiscard]] first_harmonic beyond_reach(const six_coordinates& theta) const {
-    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2],
-               &fifth = loop_.joints[4];
-    const tip_pose after = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 5, 1)),
-                   before = inverse_pose(product_of_joints(loop_, theta, 3, 1));
-    const rotating_vector offset(-1 * fifth.axis, before.point(third.point) - fifth.point);
-    const vector3d fixed_part =
-        orthogonal_part(fifth.point - inverse_pose(after).point(first.point), fifth.axis);
-    const double a = length_of(orthogonal_part(second.point - first.point, first.axis)),
-                 c = length_of(fixed_part),
-                 b = length_of(orthogonal_part(third.point - second.point, first.axis)),
-                 d = length_of(offset.across),
-                 radius = (std::max(std::abs(a - b), std::abs(c - d)) + std::min(a + b, c + d)) / 2;
-    return {c * c + d * d - radius * radius, 2 * dot(fixed_part, offset.across),
-            2 * dot(fixed_part, offset.normal)};
-  }
-
-  template <class Visit>
-  bool plane(six_coordinates& theta, int multiplicity, const Visit& visit) const {
-    const auto &first = loop_.joints[0], &second = loop_.joints[1], &third = loop_.joints[2];
-    const tip_pose motion = loop_.closing * inverse_pose(product_of_joints(loop_, theta, 3, 3));
-    const vector3d &n = first.axis, to = motion.point(third.point) - first.point;
-    const double total_angle = angle_of(motion.rotation, n); // sum of angles about n and −n
-    const vector3d offset = second.point - first.point;
-    const rotating_vector arm(second.axis, third.point - second.point, offset);
-    const vector3d across = orthogonal_part(offset, n), goal = orthogonal_part(to, n);
-    connecting_rotation rotation(n, arm, to);
-    const double error = multiplicity > 1 ? 2 * one_angle : 0; // error of the other angles
-    const bool has_second = visit_zeros(
-        {dot(across, across) + dot(arm.across, arm.across) - dot(goal, goal),
-         2 * dot(across, arm.across), 2 * dot(across, arm.normal)},
-        [&](double near2, int near_multiplicity) {
-          rotation(near2, 0, near_multiplicity, [&](double theta2, double, double theta1, int m) {
-            theta[0] = theta1;
-            theta[1] = theta2;
-            theta[2] = dot(n, third.axis) * (total_angle - theta1 - dot(n, second.axis) * theta2);
-            visit(theta, multiplicity * m);
-          });
-        },
-        error);
-    // Angles that count as one may have put the third axis on the first.
-    return has_second && rotation.nearest() > error;
-  }
-
-  const loop_equation& loop_;
-};
-
-/// Closed-form solutions of a loop of three revolute and three prismatic joints.
-class three_prismatic_loop {
-public:
-  explicit three_prismatic_loop(const loop_equation& loop) : loop_(loop) {}
-
-  /// Calls visit(θ, multiplicity) for each solution: revolute joints alone make the rotation,
-  /// prismatic displacements the rest.
-  ///
-  /// \return false if coordinates are undetermined
-  template <class Visit>
-  bool operator()(const Visit& visit) const {
-    std::array<int, 3> revolute{}, prismatic{};
-    for (int i = 0, revolute_count = 0, prismatic_count = 0; i < 6; ++i) {
-      (loop_.joints[std::size_t(i)].is_revolute ? revolute[std::size_t(revolute_count++)]
-                                                : prismatic[std::size_t(prismatic_count++)]) = i;
-    }
-    const auto joint = [&](std::size_t k) { return loop_.joints[std::size_t(revolute[k])]; };
-    bool is_determined = true;
-    const double nearest = for_each_three_axis_decomposition(
-        joint(0), joint(1), joint(2), loop_.closing.rotation,
-        [&](double alpha, double beta, double gamma, int multiplicity) {
-          six_coordinates theta = six_coordinates::Zero();
-          theta[revolute[0]] = alpha;
-          theta[revolute[1]] = beta;
-          theta[revolute[2]] = gamma;
-          const closure_error closure(loop_, theta);
-          Eigen::Matrix3d directions;
-          for (int k = 0; k < 3; ++k) {
-            directions.col(k) = closure.jacobian.col(prismatic[std::size_t(k)]).head<3>();
-          }
-          const Eigen::Matrix3d inverse = directions.inverse();
-          is_determined = is_determined && inverse.norm() < 1e15 / directions.norm();
-          const Eigen::Vector3d d = inverse * closure.twist.head<3>();
-          for (int k = 0; k < 3; ++k) {
-            theta[prismatic[std::size_t(k)]] = d[k];
-          }
-          visit(theta, multiplicity);
         });
-    return nearest > 0 && is_determined;
-  }
+      },
+      error);
+  // Angles that count as one may have put the third axis on the first.
+  return has_second && rotation.nearest() > error;
+}
 
-private:
-  const loop_equation& loop_;
-};
+/// Closed-form solutions of a loop whose joints 1 to 3 have parallel axes: calls visit(θ,
+/// multiplicity) for each. exp(θ₅S₅) exp(θ₆S₆) closing⁻¹ and exp(−θ₄S₄) map the plane perpendicular
+/// to the three axes to the same plane, and a motion of that plane remains.
+///
+/// \return false if coordinates are undetermined
+[[nodiscard]] bool solve_planar(const loop_equation& loop, const auto& visit) {
+  const auto &fourth = loop.joints[3], &fifth = loop.joints[4], &sixth = loop.joints[5];
+  const vector3d n = loop.joints[0].axis;
+  const tip_pose opening = inverse_pose(loop.closing);
+  const vector3d goal_normal = rotated(opening.rotation, n);
+  const double goal_distance = dot(goal_normal, opening.translation);
+  // Rotations of a plane about the fifth axis preserve the component of its normal along that
+  // axis and its distance from a point on that axis.
+  const rotating_vector from(sixth.axis, goal_normal), to(-1 * fourth.axis, n);
+  const auto distance = [&](const rotating_vector& x, double before, const vector3d& offset) {
+    first_harmonic result = part_along(offset, x);
+    result.a += before;
+    return result;
+  };
+  const angle_pairs pairs{
+      {part_along(fifth.axis, to), distance(to, -dot(n, fourth.point), fourth.point - fifth.point)},
+      {part_along(fifth.axis, from),
+       distance(from, goal_distance - dot(goal_normal, sixth.point), sixth.point - fifth.point)}};
+  connecting_rotation middle(fifth.axis, from, to, pairs.g[1], pairs.f[1]);
+  bool is_determined = true;
+  const bool has_pairs = pairs([&](double near4, double near6, int m) {
+    middle(near6, near4, m, [&](double theta6, double theta4, double theta5, int multiplicity) {
+      six_coordinates theta;
+      theta << 0, 0, 0, theta4, theta5, theta6;
+      const auto visit_plane = [&](double angle, int times) {
+        theta[4] = angle;
+        is_determined = solve_plane(loop, theta, times, visit) && is_determined;
+      };
+      if (!middle.is_open() || !visit_zeros(beyond_reach(loop, theta), visit_plane)) {
+        visit_plane(theta5, multiplicity);
+      }
+    });
+  });
+  return has_pairs && middle.nearest() > 0 && is_determined;
+}
+
+/// Closed-form solutions of a loop of three revolute and three prismatic joints: calls visit(θ,
+/// multiplicity) for each. Revolute joints alone make the rotation, prismatic displacements the
+/// rest.
+///
+/// \return false if coordinates are undetermined
+[[nodiscard]] bool solve_three_prismatic(const loop_equation& loop, const auto& visit) {
+  std::array<int, 3> revolute{}, prismatic{};
+  for (int i = 0, revolute_count = 0, prismatic_count = 0; i < 6; ++i) {
+    (loop.joints[std::size_t(i)].is_revolute ? revolute[std::size_t(revolute_count++)]
+                                             : prismatic[std::size_t(prismatic_count++)]) = i;
+  }
+  const auto joint = [&](std::size_t k) { return loop.joints[std::size_t(revolute[k])]; };
+  bool is_determined = true;
+  const double nearest = for_each_three_axis_decomposition(
+      joint(0), joint(1), joint(2), loop.closing.rotation,
+      [&](double alpha, double beta, double gamma, int multiplicity) {
+        six_coordinates theta = six_coordinates::Zero();
+        theta[revolute[0]] = alpha;
+        theta[revolute[1]] = beta;
+        theta[revolute[2]] = gamma;
+        const closure_error closure(loop, theta);
+        Eigen::Matrix3d directions;
+        for (int k = 0; k < 3; ++k) {
+          directions.col(k) = closure.jacobian.col(prismatic[std::size_t(k)]).head<3>();
+        }
+        const Eigen::Matrix3d inverse = directions.inverse();
+        is_determined = is_determined && inverse.norm() < 1e15 / directions.norm();
+        const Eigen::Vector3d d = inverse * closure.twist.head<3>();
+        for (int k = 0; k < 3; ++k) {
+          theta[prismatic[std::size_t(k)]] = d[k];
+        }
+        visit(theta, multiplicity);
+      });
+  return nearest > 0 && is_determined;
+}
 
 /// Loop that begins with one of two such prismatic joints.
 struct parallel_prismatic {
@@ -485,15 +460,14 @@ struct parallel_prismatic {
   return a.is_revolute && b.is_revolute && is_on(a.axis, b.axis);
 }
 
-/// Solutions of the loop that begins with joint number `first` as a loop of the type `Form`;
-/// nothing if none is found and coordinates are undetermined.
-template <class Form, class... Rest>
+/// Solutions of the loop that begins with joint number `first` by one of the closed forms; nothing
+/// if none is found and coordinates are undetermined.
 [[nodiscard]] std::optional<loop_solution_set>
-solved(solution_method method, int first, const loop_equation& loop, const Rest&... rest) {
-  constexpr int max_solutions = std::same_as<Form, three_prismatic_loop> ? 2 : 8;
+solved(solution_method method, int first, const loop_equation& loop, const auto& solve_form) {
+  const int max_solutions = method == solution_method::three_prismatic ? 2 : 8;
   constexpr double rounding = 1e-13, nearby = .01;
   loop_solution_set result{.complex_solutions = max_solutions, .method = method};
-  result.is_complete = Form(loop, rest...)([&](six_coordinates theta, int multiplicity) {
+  result.is_complete = solve_form([&](six_coordinates theta, int multiplicity) {
     const closure_error closure(loop, theta);
     if (closure.twist.norm() > rounding * closure.size) { // near a singularity
       six_coordinates refined = theta;
@@ -525,7 +499,8 @@ solved(solution_method method, int first, const loop_equation& loop, const Rest&
   const auto prismatic_count = std::count_if(joints.begin(), joints.end(),
                                              [](const loop_joint& j) { return !j.is_revolute; });
   if (prismatic_count == 3) {
-    return solved<three_prismatic_loop>(solution_method::three_prismatic, 0, loop)
+    return solved(solution_method::three_prismatic, 0, loop,
+                  [&](const auto& visit) { return solve_three_prismatic(loop, visit); })
         .value_or(loop_solution_set{});
   }
   if (prismatic_count == 2) {
@@ -545,10 +520,13 @@ solved(solution_method method, int first, const loop_equation& loop, const Rest&
     std::optional<loop_solution_set> result;
     if (const auto centre = common_point(a, b, c)) {
       const vector3d in_loop = after == 0 ? *centre : inverse_pose(loop.closing).point(*centre);
-      result =
-          solved<spherical_loop>(solution_method::spherical_wrist, after, from(after), in_loop);
+      const loop_equation shifted = from(after);
+      result = solved(solution_method::spherical_wrist, after, shifted,
+                      [&](const auto& visit) { return solve_spherical(shifted, in_loop, visit); });
     } else if (are_parallel(a, b) && are_parallel(b, c)) {
-      result = solved<planar_loop>(solution_method::parallel_axes, first, from(first));
+      const loop_equation shifted = from(first);
+      result = solved(solution_method::parallel_axes, first, shifted,
+                      [&](const auto& visit) { return solve_planar(shifted, visit); });
     }
     if (result) {
       return std::move(*result);
