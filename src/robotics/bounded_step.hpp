@@ -52,27 +52,36 @@ template <class J>
   return result;
 }
 
-/// Cholesky factors L Lᵀ of a symmetric positive semidefinite matrix; Eigen's take four times as
-/// long. An unknown whose pivot is not positive is left out: it is 0 in solutions.
-class gram_factors {
+/// Damping of J Jᵀ: by λ, and if the smallest singular value σ is below a threshold by (threshold −
+/// σ)².
+struct damping {
+  double threshold = damping_threshold;
+  double lambda = 0;
+};
+
+/// Cholesky factors L Lᵀ of J Jᵀ with the damping that a small singular value of J requires (damped
+/// least squares); Eigen's take four times as long. An unknown whose pivot is not positive is left
+/// out: it is 0 in solutions.
+class damped_gram {
 public:
-  explicit gram_factors(const gram_matrix& a) : l_(a) {
-    for (int j = 0; j < 6; ++j) {
-      for (int i = j; i < 6; ++i) {
-        double rest = l_(i, j);
-        for (int k = 0; k < j; ++k) {
-          rest -= l_(i, k) * l_(j, k);
-        }
-        if (i > j) {
-          l_(i, j) = rest * l_(j, j);
-        } else {
-          l_(i, i) = rest > 0 ? 1 / std::sqrt(rest) : 0;
-          is_positive_ = is_positive_ && rest > 0;
-        }
-      }
+  explicit damped_gram(const gram_matrix& gram, const damping& settings = {}) {
+    factorise(gram, settings.lambda);
+    if (settings.threshold == 0) {
+      return;
+    }
+    // Smallest eigenvalue, from above: Rayleigh quotient after two inverse iterations.
+    if (is_positive_) {
+      const small_twist once = solve(small_twist::Ones()), twice = solve(once);
+      smallest_ = std::sqrt(std::max(0.0, once.dot(twice) / twice.squaredNorm()));
+    }
+    if (smallest_ < settings.threshold) {
+      const double shift = settings.threshold - smallest_;
+      factorise(gram, shift * shift);
     }
   }
 
+  /// Smallest singular value of J, from above; 0 if it was not computed.
+  [[nodiscard]] double smallest() const { return smallest_; }
   [[nodiscard]] bool is_positive() const { return is_positive_; }
   [[nodiscard]] small_twist solve(small_twist x) const {
     for (int i = 0; i < 6; ++i) {
@@ -91,47 +100,28 @@ public:
   }
 
 private:
+  void factorise(const gram_matrix& gram, double lambda) {
+    l_ = gram;
+    l_.diagonal().array() += lambda;
+    is_positive_ = true;
+    for (int j = 0; j < 6; ++j) {
+      for (int i = j; i < 6; ++i) {
+        double rest = l_(i, j);
+        for (int k = 0; k < j; ++k) {
+          rest -= l_(i, k) * l_(j, k);
+        }
+        if (i > j) {
+          l_(i, j) = rest * l_(j, j);
+        } else {
+          l_(i, i) = rest > 0 ? 1 / std::sqrt(rest) : 0;
+          is_positive_ = is_positive_ && rest > 0;
+        }
+      }
+    }
+  }
+
   gram_matrix l_;
   bool is_positive_ = true;
-};
-
-/// Damping of J Jᵀ: by λ, and if the smallest singular value σ is below a threshold by (threshold −
-/// σ)².
-struct damping {
-  double threshold = damping_threshold;
-  double lambda = 0;
-};
-
-/// J Jᵀ with the damping that a small singular value of J requires (damped least squares).
-class damped_gram {
-public:
-  explicit damped_gram(const gram_matrix& gram, const damping& settings = {})
-      : factors_(damped(gram, settings.lambda)) {
-    if (settings.threshold == 0) {
-      return;
-    }
-    // Smallest eigenvalue, from above: Rayleigh quotient after two inverse iterations.
-    if (factors_.is_positive()) {
-      const small_twist once = solve(small_twist::Ones()), twice = solve(once);
-      smallest_ = std::sqrt(std::max(0.0, once.dot(twice) / twice.squaredNorm()));
-    }
-    if (smallest_ < settings.threshold) {
-      const double shift = settings.threshold - smallest_;
-      factors_ = damped(gram, shift * shift);
-    }
-  }
-
-  [[nodiscard]] small_twist solve(const small_twist& e) const { return factors_.solve(e); }
-  /// Smallest singular value of J, from above; 0 if it was not computed.
-  [[nodiscard]] double smallest() const { return smallest_; }
-
-private:
-  [[nodiscard]] static gram_factors damped(gram_matrix gram, double lambda) {
-    gram.diagonal().array() += lambda;
-    return gram_factors(gram);
-  }
-
-  gram_factors factors_;
   double smallest_ = 0;
 };
 

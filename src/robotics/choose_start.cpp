@@ -35,116 +35,12 @@ void require_options(const start_options& o) {
   require_part("sampling", o.sampling);
 }
 
-/// Solutions for poses of the tip of a chain, among obstacles if there are any.
-class pose_solutions {
-public:
-  using joints = Eigen::VectorXd;
-  /// Solutions that are connected by self-motions.
-  using family = std::vector<joints>;
-
-  pose_solutions(const chain_view& arm, const scene* around, const pose_tolerance& tolerance)
-      : chain_(arm), around_(around), tolerance_(tolerance) {}
-
-  /// All solutions of six joints; of seven joints points of their self-motion curves, `resolution`
-  /// apart; of others, and where these find none or not all, those that random starts find.
-  [[nodiscard]] std::vector<family> at(const dual_quaternion<double>& goal,
-                                       double resolution) const {
-    std::vector<family> result;
-    bool is_complete = false;
-    if (is_algebraic(chain_, 6)) {
-      const auto all = all_inverse_kinematics(chain_, goal);
-      is_complete = all.is_complete;
-      for (const auto& branch : all.solutions) {
-        add(result, {branch.joints});
-      }
-    } else if (is_algebraic(chain_, 7)) {
-      for (auto& curve : self_motion_curves(chain_, goal, {.resolution = resolution})) {
-        add(result, std::move(curve.joints));
-      }
-      is_complete = !result.empty();
-    }
-    splitmix64 random(1);
-    for (int i = 0; i < 100 && !is_complete; ++i) {
-      const auto solution = from(configuration(random), goal, 0, 1e-3);
-      if (solution.reason == stop_reason::reached && is_new(solution.joints, result)) {
-        add(result, {solution.joints});
-      }
-    }
-    return result;
-  }
-
-  /// One solution, or the reason for its absence.
-  ///
-  /// \param part  fraction of the tolerance
-  [[nodiscard]] inverse_kinematics_result from(const joints& start,
-                                               const dual_quaternion<double>& goal, int restarts,
-                                               double part = 1) const {
-    const inverse_kinematics_options options{
-        .tolerance = {part * tolerance_.translation, part * tolerance_.rotation},
-        .max_restarts = restarts};
-    return around_ == nullptr
-               ? inverse_kinematics(chain_, goal, start, options)
-               : inverse_kinematics(chain_, goal, start, options, no_objective{}, *around_);
-  }
-
-  /// Joints moved by full turns into their limits, as far as that is possible.
-  [[nodiscard]] joints wrapped_into_limits(joints theta) const {
-    for (int i = 0; i < chain_.size(); ++i) {
-      if (chain_.steps()[std::size_t(i)].is_rotational &&
-          !chain_.steps()[std::size_t(i)].is_translational) {
-        theta[i] = wrap_into_limits(theta[i], chain_.limits(i));
-      }
-    }
-    return theta;
-  }
-  [[nodiscard]] bool is_within_limits(const joints& theta) const {
-    for (int i = 0; i < chain_.size(); ++i) {
-      if (!(chain_.limits(i).lower <= theta[i] && theta[i] <= chain_.limits(i).upper)) {
-        return false;
-      }
-    }
-    return true;
-  }
-  [[nodiscard]] bool is_clear(const joints& theta) const {
-    return around_ == nullptr ||
-           clearance(chain_, theta, *around_).distance >= around_->margin - tolerance_.translation;
-  }
-
-private:
-  void add(std::vector<family>& to, family all) const {
-    for (joints& theta : all) {
-      theta = wrapped_into_limits(theta);
-    }
-    std::erase_if(all, [&](const joints& x) { return !is_within_limits(x) || !is_clear(x); });
-    if (!all.empty()) {
-      to.push_back(std::move(all));
-    }
-  }
-  [[nodiscard]] static bool is_new(const joints& theta, const std::vector<family>& others) {
-    return std::none_of(others.begin(), others.end(), [&](const family& other) {
-      return (other.front() - theta).cwiseAbs().maxCoeff() < 1e-3;
-    });
-  }
-  [[nodiscard]] joints configuration(splitmix64& random) const {
-    joints theta(chain_.size());
-    for (int i = 0; i < chain_.size(); ++i) {
-      const auto& limits = chain_.limits(i);
-      const double lower = std::max(limits.lower, std::min(-std::numbers::pi, limits.upper));
-      const double upper = std::min(limits.upper, std::max(std::numbers::pi, limits.lower));
-      theta[i] = lower + (upper - lower) * random();
-    }
-    return theta;
-  }
-
-  const chain_view& chain_;
-  const scene* around_;
-  pose_tolerance tolerance_;
-};
-
 /// Search for a start configuration.
 class start_search {
   using joints = Eigen::VectorXd;
   using choice = start_search_result;
+  /// Solutions that are connected by self-motions.
+  using family = std::vector<joints>;
   struct candidate {
     joints start;
     std::size_t rank; ///< rank in its family
@@ -154,8 +50,7 @@ class start_search {
 public:
   start_search(const chain_view& chain, const path_function& path, const std::vector<double>& stops,
                const start_options& options, const solution_preferences& preferences)
-      : chain_(chain), path_(path), stops_(stops), options_(options), preferences_(preferences),
-        solutions_(chain, preferences.around, options.plan.tolerance) {}
+      : chain_(chain), path_(path), stops_(stops), options_(options), preferences_(preferences) {}
 
   [[nodiscard]] choice choose() const {
     choice result;
@@ -188,6 +83,99 @@ public:
   }
 
 private:
+  /// All solutions of six joints; of seven joints points of their self-motion curves, a
+  /// `resolution` apart; of others, and where these find none or not all, those that random starts
+  /// find.
+  [[nodiscard]] std::vector<family> solutions_at(const dual_quaternion<double>& goal) const {
+    std::vector<family> result;
+    bool is_complete = false;
+    if (is_algebraic(chain_, 6)) {
+      const auto all = all_inverse_kinematics(chain_, goal);
+      is_complete = all.is_complete;
+      for (const auto& branch : all.solutions) {
+        add(result, {branch.joints});
+      }
+    } else if (is_algebraic(chain_, 7)) {
+      for (auto& curve : self_motion_curves(chain_, goal, {.resolution = options_.resolution})) {
+        add(result, std::move(curve.joints));
+      }
+      is_complete = !result.empty();
+    }
+    splitmix64 random(1);
+    for (int i = 0; i < 100 && !is_complete; ++i) {
+      const auto solution = solution_from(configuration(random), goal, 0, 1e-3);
+      if (solution.reason == stop_reason::reached && is_new(solution.joints, result)) {
+        add(result, {solution.joints});
+      }
+    }
+    return result;
+  }
+
+  /// One solution, or the reason for its absence.
+  ///
+  /// \param part  fraction of the tolerance
+  [[nodiscard]] inverse_kinematics_result solution_from(const joints& start,
+                                                        const dual_quaternion<double>& goal,
+                                                        int restarts, double part = 1) const {
+    const inverse_kinematics_options options{
+        .tolerance = {part * options_.plan.tolerance.translation,
+                      part * options_.plan.tolerance.rotation},
+        .max_restarts = restarts};
+    return preferences_.around == nullptr
+               ? inverse_kinematics(chain_, goal, start, options)
+               : inverse_kinematics(chain_, goal, start, options, no_objective{},
+                                    *preferences_.around);
+  }
+
+  /// Joints moved by full turns into their limits, as far as that is possible.
+  [[nodiscard]] joints wrapped_into_limits(joints theta) const {
+    for (int i = 0; i < chain_.size(); ++i) {
+      if (chain_.steps()[std::size_t(i)].is_rotational &&
+          !chain_.steps()[std::size_t(i)].is_translational) {
+        theta[i] = wrap_into_limits(theta[i], chain_.limits(i));
+      }
+    }
+    return theta;
+  }
+  [[nodiscard]] bool is_within_limits(const joints& theta) const {
+    for (int i = 0; i < chain_.size(); ++i) {
+      if (!(chain_.limits(i).lower <= theta[i] && theta[i] <= chain_.limits(i).upper)) {
+        return false;
+      }
+    }
+    return true;
+  }
+  [[nodiscard]] bool is_clear(const joints& theta) const {
+    return preferences_.around == nullptr ||
+           clearance(chain_, theta, *preferences_.around).distance >=
+               preferences_.around->margin - options_.plan.tolerance.translation;
+  }
+
+  void add(std::vector<family>& to, family all) const {
+    for (joints& theta : all) {
+      theta = wrapped_into_limits(theta);
+    }
+    std::erase_if(all, [&](const joints& x) { return !is_within_limits(x) || !is_clear(x); });
+    if (!all.empty()) {
+      to.push_back(std::move(all));
+    }
+  }
+  [[nodiscard]] static bool is_new(const joints& theta, const std::vector<family>& others) {
+    return std::none_of(others.begin(), others.end(), [&](const family& other) {
+      return (other.front() - theta).cwiseAbs().maxCoeff() < 1e-3;
+    });
+  }
+  [[nodiscard]] joints configuration(splitmix64& random) const {
+    joints theta(chain_.size());
+    for (int i = 0; i < chain_.size(); ++i) {
+      const auto& limits = chain_.limits(i);
+      const double lower = std::max(limits.lower, std::min(-std::numbers::pi, limits.upper));
+      const double upper = std::min(limits.upper, std::max(std::numbers::pi, limits.lower));
+      theta[i] = lower + (upper - lower) * random();
+    }
+    return theta;
+  }
+
   [[nodiscard]] motion_plan follow_from(const joints& start, const plan_options& how) const {
     require_start(chain_, start, "follow_path");
     return follow(chain_, start, path_, stops_, how, preferences_);
@@ -214,7 +202,7 @@ private:
     const auto is_before = [](const candidate& a, const candidate& b) {
       return a.rank != b.rank ? a.rank < b.rank : a.cost < b.cost;
     };
-    for (const auto& family : solutions_.at(pose, options_.resolution)) {
+    for (const auto& family : solutions_at(pose)) {
       std::vector<candidate> all;
       for (const joints& x : family) {
         const double value = cost(x);
@@ -287,7 +275,7 @@ private:
     const double first = stops_.front(), last = stops_.back();
     joints nearby = result.plan.joints.empty() ? centre() : result.plan.joints.front();
     const auto is_solved = [&](double u) {
-      const auto solution = solutions_.from(nearby, path_(u), 100);
+      const auto solution = solution_from(nearby, path_(u), 100);
       if (solution.reason == stop_reason::reached) {
         nearby = solution.joints;
         return true;
@@ -314,11 +302,11 @@ private:
   /// True if the complete solution set of six joints contains a solution that the iterative search
   /// missed.
   [[nodiscard]] bool is_solved_otherwise(const dual_quaternion<double>& pose) const {
-    return is_algebraic(chain_, 6) && !solutions_.at(pose, options_.resolution).empty();
+    return is_algebraic(chain_, 6) && !solutions_at(pose).empty();
   }
 
   void explain(choice& result, const dual_quaternion<double>& pose) const {
-    const auto solution = solutions_.from(centre(), pose, 100);
+    const auto solution = solution_from(centre(), pose, 100);
     result.is_certain = solution.reason == stop_reason::out_of_reach;
     result.reason = solution.reason;
     if (result.reason == stop_reason::out_of_reach || result.reason == stop_reason::obstacle) {
@@ -355,7 +343,6 @@ private:
   const std::vector<double>& stops_;
   const start_options& options_;
   const solution_preferences& preferences_;
-  pose_solutions solutions_;
 };
 
 } // namespace

@@ -184,8 +184,7 @@ private:
   }
 
   /// Adds configurations on both sides of a singular one, for a target near its pose.
-  template <class Add>
-  void leave(const chain_state<Capacity>& singular, const tip_pose& target, const Add& add) {
+  void leave(const chain_state<Capacity>& singular, const tip_pose& target, const auto& add) {
     const singular_point<Capacity> current(singular.jacobian);
     const small_twist e = error_twist(singular.tip, target);
     const vector escape = current.escape_direction();
@@ -209,9 +208,8 @@ private:
   /// Adds a configuration reached from between two neighbours on a component of singular
   /// configurations, from where joint velocities can produce the twist to the target. Newton's
   /// method does not converge from other configurations nearby.
-  template <class Add>
   void leave_between(chain_state<Capacity> a, chain_state<Capacity> b, const tip_pose& target,
-                     const Add& add) {
+                     const auto& add) {
     const tip_pose current = a.tip;
     small_twist w = left_singular_twist(a.jacobian);
     const auto residual = [&](const chain_state<Capacity>& x) {

@@ -268,15 +268,10 @@ public:
   static constexpr int max_solutions = 8; ///< maximum number of solutions
   static constexpr int hidden = 0; ///< index of the joint whose angle the polynomial depends on
 
-  struct zeros {
-    std::array<complex, 8> values; ///< e^{iα}
-    double regularity = 0;         ///< close to 0 if the polynomial vanishes for all angles
-  };
-
   /// Zeros of the polynomial.
-  [[nodiscard]] zeros roots() const {
+  [[nodiscard]] determinant_zeros roots() const {
     using all_roots = circle_roots<4>;
-    zeros result;
+    determinant_zeros result;
     all_roots::values values;
     for (int k = 0; k < all_roots::samples; ++k) {
       values[std::size_t(k)] = loop_at(*this, all_roots::angle(k) + start).determinant();
@@ -284,14 +279,13 @@ public:
     }
     const all_roots roots_of_polynomial(all_roots::interpolated(values));
     for (int i = 0; i < all_roots::count; ++i) {
-      result.values[std::size_t(i)] = std::polar(1., start) * roots_of_polynomial[i];
+      result.values.push_back(std::polar(1., start) * roots_of_polynomial[i]);
     }
     return result;
   }
 
   /// Calls visit(θ) with coordinates near the real solutions with the angle of a zero.
-  template <class Visit>
-  void solution_at(double alpha, const Visit& visit) const {
+  void solution_at(double alpha, const auto& visit) const {
     const loop_at at(*this, alpha);
     const auto size = [&](std::size_t k) { return std::abs(at.branches[k].determinant); };
     const std::size_t best = size(0) < size(1) ? 0 : 1;

@@ -373,8 +373,7 @@ public:
 
   /// \param name  callable that returns the name of the goal for messages
   /// \throws invalid_input if the goal or the objective is nan at every configuration evaluated
-  template <class Name>
-  [[nodiscard]] inverse_kinematics_result operator()(const goal_view& of, const Name& name) const {
+  [[nodiscard]] inverse_kinematics_result operator()(const goal_view& of, const auto& name) const {
     scaled_goal goal{model_.length, {}, of};
     solution_list known;
     if (of.pose != nullptr) {
@@ -581,8 +580,7 @@ private:
   }
 
   /// Rejects nan: the best candidate is nan only if all candidates are.
-  template <class Name>
-  void require_numbers(const attempt& x, const Name& name) const {
+  void require_numbers(const attempt& x, const auto& name) const {
     const auto fail = [&](const std::string& what) {
       fail_not_a_number("duet: inverse_kinematics: " + what, model_.chain_joints(x.joints));
     };

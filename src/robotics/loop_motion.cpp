@@ -414,17 +414,27 @@ private:
   Eigen::VectorXd direction_;
 };
 
+/// These coordinates one after the other, each as a text.
+[[nodiscard]] std::string listed(const std::vector<int>& these, const auto& text_of) {
+  std::string result;
+  for (const int i : these) {
+    result += (result.empty() ? "" : ", ") + text_of(i);
+  }
+  return result;
+}
+[[nodiscard]] std::string coordinate_list(const closed_chain_mechanism& of,
+                                          const std::vector<int>& these) {
+  return printable(
+      listed(these, [&](int i) { return of.tree().coordinate_names()[std::size_t(i)]; }));
+}
+
 /// Names of the coordinates that move most, among those whose rates are not zero.
 [[nodiscard]] std::string moving_coordinates(const closed_chain_mechanism& of,
                                              const Eigen::VectorXd& rates) {
   const Eigen::VectorXd sizes = rates.cwiseQuotient(of.units()).cwiseAbs();
-  std::string result;
-  for (int i = 0; i < of.size(); ++i) {
-    if (sizes[i] > 1e-4 * sizes.maxCoeff()) {
-      result += (result.empty() ? "" : ", ") + of.tree().coordinate_names()[std::size_t(i)];
-    }
-  }
-  return printable(result);
+  std::vector<int> moving = all_but(of.size(), {});
+  std::erase_if(moving, [&](int i) { return !(sizes[i] > 1e-4 * sizes.maxCoeff()); });
+  return coordinate_list(of, moving);
 }
 
 /// Traces a motion along one of its driven coordinates.
@@ -608,18 +618,9 @@ void driven_motion::require_accelerations() const {
   }
 }
 
-std::string driven_motion::driven() const {
-  std::string result;
-  for (const int i : drives_) {
-    result += (result.empty() ? "" : ", ") + mechanism_.tree().coordinate_names()[std::size_t(i)];
-  }
-  return printable(result);
-}
+std::string driven_motion::driven() const { return detail::coordinate_list(mechanism_, drives_); }
 std::string driven_motion::text(const Eigen::VectorXd& q) const {
-  std::string result;
-  for (const int i : drives_) {
-    result += (result.empty() ? "" : ", ") + duet::to_text(q[i]);
-  }
+  const std::string result = detail::listed(drives_, [&](int i) { return duet::to_text(q[i]); });
   return drives_.size() == 1 ? result : "(" + result + ")";
 }
 [[noreturn]] void driven_motion::fail(const std::string& what, const Eigen::VectorXd& q,

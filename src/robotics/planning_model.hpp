@@ -249,11 +249,41 @@ public:
     return std::max(0.0, margin - clearance(theta));
   }
   /// Constraints that keep a step from θ at the margin: ∇d·Δ ≥ margin − d for each distance d
-  /// within the influence distance, in the planner's coordinates and lengths.
+  /// within the influence distance, in the planner's coordinates and lengths. The gradient ∇d =
+  /// Jᵀ [n; p × n] follows from the closest point p and the normal n there. A joint below both of
+  /// two bodies does not change their distance; one between them moves one body only.
   ///
   /// \tparam V  column of the chain's number of joints
   template <class V>
-  [[nodiscard]] std::vector<inequality<V>> margin_inequalities(const vector& theta) const;
+  [[nodiscard]] std::vector<inequality<V>> margin_inequalities(const vector& theta) const {
+    std::vector<inequality<V>> result;
+    if (around_ == nullptr) {
+      return result;
+    }
+    const bounded_vector<Capacity> joints = chain_joints(theta);
+    std::optional<joint_columns<double, 6, -Capacity>> j; // if something is near
+    for_each_proximity(bodies_at(joints), *around_, [&](const chain_clearance<double>& nearest) {
+      if (nearest.distance - around_->margin < around_->influence_distance_offset) {
+        if (!j) {
+          j = jacobian(*table_, joints, frame::spatial);
+        }
+        const int link = around_->bodies[nearest.body].link;
+        const int other = nearest.is_self ? around_->bodies[nearest.other].link : 0;
+        const vector3<double>& n = nearest.points.normal;
+        const vector3<double>& p =
+            link > other ? nearest.points.on_body : nearest.points.on_obstacle;
+        const vector3<double> moment = p.cross(n);
+        V gradient = V::Zero(V::RowsAtCompileTime == Eigen::Dynamic ? size : V::RowsAtCompileTime);
+        for (int i = std::min(link, other); i < std::max(link, other); ++i) {
+          const double outwards =
+              n.dot(j->col(i).template head<3>()) + moment.dot(j->col(i).template tail<3>());
+          gradient[i] = (link > other ? outwards : -outwards) * unit[i] / length;
+        }
+        result.push_back({gradient, (around_->margin - nearest.distance) / length});
+      }
+    });
+    return result;
+  }
   /// Step nearest to the desired joint step that moves the tip by `e` to first order and
   /// keeps the margin.
   [[nodiscard]] collision_free_step<Capacity>
@@ -314,41 +344,6 @@ private:
   const scene* around_;
   std::optional<bounded_chain<Capacity>> table_; ///< among obstacles, for poses of links
 };
-
-/// The gradient ∇d = Jᵀ [n; p × n] of a distance follows from the closest point p and the normal n
-/// there. A joint below both of two bodies does not change their distance; one between them moves
-/// one body only.
-template <int Capacity>
-template <class V>
-std::vector<inequality<V>>
-planning_model<Capacity>::margin_inequalities(const vector& theta) const {
-  std::vector<inequality<V>> result;
-  if (around_ == nullptr) {
-    return result;
-  }
-  const bounded_vector<Capacity> joints = chain_joints(theta);
-  std::optional<joint_columns<double, 6, -Capacity>> j; // if something is near
-  for_each_proximity(bodies_at(joints), *around_, [&](const chain_clearance<double>& nearest) {
-    if (nearest.distance - around_->margin < around_->influence_distance_offset) {
-      if (!j) {
-        j = jacobian(*table_, joints, frame::spatial);
-      }
-      const int link = around_->bodies[nearest.body].link;
-      const int other = nearest.is_self ? around_->bodies[nearest.other].link : 0;
-      const vector3<double>& n = nearest.points.normal;
-      const vector3<double>& p = link > other ? nearest.points.on_body : nearest.points.on_obstacle;
-      const vector3<double> moment = p.cross(n);
-      V gradient = V::Zero(V::RowsAtCompileTime == Eigen::Dynamic ? size : V::RowsAtCompileTime);
-      for (int i = std::min(link, other); i < std::max(link, other); ++i) {
-        const double outwards =
-            n.dot(j->col(i).template head<3>()) + moment.dot(j->col(i).template tail<3>());
-        gradient[i] = (link > other ? outwards : -outwards) * unit[i] / length;
-      }
-      result.push_back({gradient, (around_->margin - nearest.distance) / length});
-    }
-  });
-  return result;
-}
 
 DUET_ABI_END
 } // namespace duet::detail

@@ -27,7 +27,7 @@ M random_matrix(duet_test::random_source& random, M m) {
   return m;
 }
 
-TEST_CASE("gram_factors: solve systems; an unknown without a positive pivot is 0") {
+TEST_CASE("damped_gram: solve systems; an unknown without a positive pivot is 0") {
   duet_test::random_source random(4);
   for (int k = 0; k < 10; ++k) {
     const detail::gram_matrix root = random_matrix(random, detail::gram_matrix());
@@ -41,7 +41,7 @@ TEST_CASE("gram_factors: solve systems; an unknown without a positive pivot is 0
     cut.row(5).setZero();
     cut(5, 5) = -k % 2;
     const vector6<double> b = a * x;
-    const detail::gram_factors full(lower), reduced(cut);
+    const detail::damped_gram full(lower, {0, 0}), reduced(cut, {0, 0});
     CHECK(full.is_positive());
     CHECK((full.solve(b) - x).norm() < 1e-10 * x.norm());
     CHECK(!reduced.is_positive());

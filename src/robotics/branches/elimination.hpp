@@ -15,6 +15,7 @@
 #include <complex>
 #include <cstddef>
 #include <numbers>
+#include <vector>
 
 /// \file
 /// Solutions of a loop of six joints as zeros of a determinant in the angle of the
@@ -84,6 +85,12 @@ struct line_coordinates {
       cross(n, at.p), cross(n, at.l), cross(n, at.m), cross(n, at.c), 0, 0, 0};
   return {still.moved(j.point), cosine.moved(j.point), sine.moved(j.point)};
 }
+
+/// Zeros e^{iα} of the determinant of a system of equations that depends on an angle.
+struct determinant_zeros {
+  std::vector<std::complex<double>> values;
+  double regularity = 0; ///< close to 0 if the determinant vanishes for all angles
+};
 
 /// Raghavan–Roth elimination for a loop of six joints.
 class elimination {
@@ -156,18 +163,13 @@ public:
   static constexpr int max_solutions = 16; ///< maximum number of solutions
   static constexpr int hidden = 2; ///< index of the joint whose angle the determinant depends on
 
-  struct zeros {
-    std::array<complex, 24> values; ///< e^{iθ₃}; eight of them are extraneous
-    double regularity = 0;          ///< close to 0 if the determinant vanishes for all angles
-  };
-
-  /// Zeros of the determinant.
+  /// Zeros e^{iθ₃} of the determinant; eight of the 24 are extraneous.
   ///
   /// With x the tangent of half the angle from one at which no known arm has a solution to θ₃, the
   /// matrix is M₀ + 2 x M₁ + x² M₂ up to a factor: x is an eigenvalue of a 24 × 24 matrix, as
   /// accurate as solutions are regular, also if these share θ₃. (Zeros of a polynomial of which m
   /// coincide have an error of ε^{1/m}.)
-  [[nodiscard]] zeros roots() const {
+  [[nodiscard]] determinant_zeros roots() const {
     constexpr double start = .7345;
     const matrix constant = at(start), quadratic = at(start + std::numbers::pi),
                  linear = at(start + std::numbers::pi / 2) - .5 * (constant + quadratic);
@@ -177,19 +179,19 @@ public:
     companion.bottomLeftCorner<12, 12>() = -lu.solve(constant);
     companion.bottomRightCorner<12, 12>() = -2 * lu.solve(linear);
     const Eigen::EigenSolver<Eigen::Matrix<double, 24, 24>> solver(companion, false);
-    zeros result;
+    determinant_zeros result;
     const auto pivots = lu.matrixLU().diagonal().cwiseAbs().eval();
     result.regularity = pivots.minCoeff() / pivots.maxCoeff();
     for (Eigen::Index i = 0; i < 24; ++i) {
       const complex i_x = complex(0, 1) * solver.eigenvalues()[i];
-      result.values[std::size_t(i)] = std::polar(1., start) * (1. + i_x) / (1. - i_x);
+      result.values.push_back(std::polar(1., start) * (1. + i_x) / (1. - i_x));
     }
     return result;
   }
 
   /// Calls visit(θ) with coordinates near the real solution with this θ₃, if there is one.
-  template <class Visit>
-  void solution_at(double theta3, const Visit& visit) const {
+  void solution_at(double theta3, const auto& visit) const {
+    constexpr double nearly_real = .3;
     Eigen::Matrix<double, 12, 1> kernel;
     for (int i = 0; i < 12; ++i) {
       kernel[i] = std::cos(double(3 * i + 1));
@@ -219,26 +221,17 @@ public:
       return;
     }
     // Products of 1, cos θ₅, sin θ₅, or 1, d₅, d₅², which are real except for a common factor.
-    Eigen::Vector3cd factor = Eigen::Vector3cd::Zero();
+    Eigen::Vector3cd sum = Eigen::Vector3cd::Zero();
     for (int k = 0; k < 3; ++k) { // phases −3θ₄/2, −θ₄/2, θ₄/2; or weights 1, d₄, d₄²
       const complex weight =
           is_revolute ? std::polar(1., (1.5 - k) * std::arg(z)) : complex(std::pow(z.real(), k));
-      factor += weight * low.segment<3>(3 * k);
+      sum += weight * low.segment<3>(3 * k);
     }
-    const complex phase = std::sqrt(factor.cwiseProduct(factor).sum());
-    visit_factor(theta3, is_revolute ? std::arg(z) : z.real(), (factor * std::conj(phase)).real(),
-                 visit);
-  }
-
-private:
-  static constexpr double nearly_real = .3;
-
-  template <class Visit>
-  void visit_factor(double theta3, double theta4, Eigen::Vector3d factor,
-                    const Visit& visit) const {
+    const complex phase = std::sqrt(sum.cwiseProduct(sum).sum());
+    Eigen::Vector3d factor = (sum * std::conj(phase)).real();
     six_coordinates theta;
     theta[2] = theta3;
-    theta[3] = theta4;
+    theta[3] = is_revolute ? std::arg(z) : z.real();
     if (loop_.joints[4].is_revolute) {
       factor *= std::copysign(1., factor[0]);
       theta[4] = std::atan2(factor[2], factor[1]);
@@ -269,6 +262,7 @@ private:
     }
   }
 
+private:
   loop_equation loop_;
   Eigen::Matrix<double, 14, 27> arm_; // all equations, the last six without the eliminated products
   Eigen::Matrix<double, 8, 27> eliminated_; // eliminated products

@@ -170,8 +170,7 @@ inline constexpr double one_angle = 3e-7;
 ///
 /// \param error  error of a, b and c, if it exceeds round-off
 /// \return false if the function is zero to round-off, or an error decides whether there are zeros
-template <class Visit>
-bool visit_zeros(const first_harmonic& f, const Visit& visit, double error = 0) {
+bool visit_zeros(const first_harmonic& f, const auto& visit, double error = 0) {
   constexpr double rounding = 1e-12, nearly = 1e-9;
   const double r = std::sqrt(f.b * f.b + f.c * f.c);
   if (!(r > rounding)) {
@@ -195,8 +194,7 @@ struct angle_pairs {
   /// Calls visit(θ, φ, multiplicity) for each solution.
   ///
   /// \return false if one of the angles is undetermined
-  template <class Visit>
-  bool operator()(const Visit& visit) const {
+  bool operator()(const auto& visit) const {
     const double by_theta = regularity(f), by_phi = regularity(g);
     const auto swapped = [&](double x, double y, int m) { visit(y, x, m); };
     if (is_constant(f) || is_constant(g)) {
@@ -232,8 +230,7 @@ private:
   }
   /// Solves for φ if θ is arbitrary: by the equation with the larger amplitude, where the other one
   /// holds, too.
-  template <class Visit>
-  static void solve_constant(const two_values& f, const two_values& g, const Visit& visit) {
+  static void solve_constant(const two_values& f, const two_values& g, const auto& visit) {
     constexpr double rounding = 1e-6; // for φ where the zeros nearly coincide
     const std::size_t k = g[0].square() >= g[1].square() ? 0 : 1;
     static_cast<void>(
@@ -245,8 +242,7 @@ private:
   }
 
   /// Solves a system of which a linear combination of both equations does not depend on θ.
-  template <class Visit>
-  static bool solve_dependent(const two_values& f, const two_values& g, const Visit& visit) {
+  static bool solve_dependent(const two_values& f, const two_values& g, const auto& visit) {
     const double at_0 = std::hypot(f[0].b, f[0].c), at_1 = std::hypot(f[1].b, f[1].c);
     const std::size_t larger = at_0 >= at_1 ? 0 : 1, other = 1 - larger;
     const first_harmonic &fl = f[larger], &fo = f[other], &gl = g[larger], &go = g[other];
@@ -266,8 +262,7 @@ private:
   /// Solves (cos θ, sin θ) = u + V (cos φ, sin φ), whose square is 1.
   ///
   /// \return false if the equation is zero to round-off
-  template <class Visit>
-  static bool solve_regular(const two_values& f, const two_values& g, const Visit& visit) {
+  static bool solve_regular(const two_values& f, const two_values& g, const auto& visit) {
     const double d = determinant(f);
     const auto solved = [&](double r0, double r1) {
       return std::array{(r0 * f[1].c - r1 * f[0].c) / d, (f[0].b * r1 - f[1].b * r0) / d};
@@ -378,8 +373,7 @@ public:
 
   /// Calls visit(θ, φ, rotation angle, multiplicity) for a θ and φ that solve both equations to
   /// round-off; near the axis for all solutions close to them that have not been visited before.
-  template <class Visit>
-  void operator()(double theta, double phi, int multiplicity, const Visit& visit) {
+  void operator()(double theta, double phi, int multiplicity, const auto& visit) {
     const angles x{theta, phi};
     const perpendiculars w(*this, x);
     if (w.square < close_by_) {
@@ -473,8 +467,7 @@ private:
     }
   };
 
-  template <class Visit>
-  void visit_near_axis(const angles& seed, local_quadratic local, const Visit& visit) {
+  void visit_near_axis(const angles& seed, local_quadratic local, const auto& visit) {
     constexpr int steps = 5; // the error is squared in each
     for (int k = 0; k < steps && local.has_centre(); ++k) {
       local = local_quadratic(*this, local.centre());
@@ -509,8 +502,7 @@ private:
     }
   }
 
-  template <class Visit>
-  void visit_new(const angles& x, double error, int multiplicity, const Visit& visit) {
+  void visit_new(const angles& x, double error, int multiplicity, const auto& visit) {
     const perpendiculars w(*this, x);
     const double separation = 1e-8 * std::sqrt(std::max(rounding, std::sqrt(w.square)));
     const auto is_same = [&](const angles& y) {
@@ -524,9 +516,8 @@ private:
     }
   }
 
-  template <class Visit>
   void visit_one(const angles& x, const perpendiculars& w, double error, int multiplicity,
-                 const Visit& visit) {
+                 const auto& visit) {
     is_open_ = !(w.square > error * error);
     nearest_ = is_open_ ? 0 : std::min(nearest_, std::sqrt(w.square));
     visit(x.theta, x.phi, subproblem1_angle(axis_, w.from, w.to), multiplicity);
@@ -626,10 +617,9 @@ struct angle_solution {
 /// \param error  error of the rotation, if it exceeds round-off
 /// \return the sine of the smallest angle between the last axis and the first; 0 if
 /// α or β is undetermined
-template <class Visit>
 double for_each_three_axis_decomposition(const loop_joint& a, const loop_joint& b,
                                          const loop_joint& c, const quaternion<double>& rotation,
-                                         const Visit& visit, double error = 0) {
+                                         const auto& visit, double error = 0) {
   // The last rotation leaves its axis invariant; the first one preserves the angle between that
   // axis and its own.
   const subproblem2 both(a.axis, b.axis, c.axis, rotated(rotation, c.axis), error);
