@@ -399,12 +399,12 @@ private:
   }
 
   [[nodiscard]] tree_joint read_joint(const xml_element& element) const {
-    tree_joint result;
-    result.name = attribute(element, "name");
-    result.parent = attribute(child(element, "parent"), "link");
-    result.child = attribute(child(element, "child"), "link");
-    result.line = element.line;
-    result.motion = read_motion(element);
+    tree_joint result{attribute(element, "name"),
+                      attribute(child(element, "parent"), "link"),
+                      attribute(child(element, "child"), "link"),
+                      read_motion(element),
+                      {},
+                      element.line};
     if (const xml_element* const mimic = element.child("mimic")) {
       result.mimic = {attribute(*mimic, "joint"), number(*mimic, "multiplier", 1),
                       number(*mimic, "offset", 0)};

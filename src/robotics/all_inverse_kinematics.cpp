@@ -13,13 +13,11 @@
 #include <duet/robotics/all_inverse_kinematics.hpp>
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -60,7 +58,6 @@ void require_algebraic(const chain_view& chain, int n, const char* function) {
 
 solution_list solutions_within_limits(const chain_view& chain, const dual_quaternion<double>& goal,
                                       const pose_tolerance& tolerance) {
-  constexpr double full_turn = 2 * std::numbers::pi;
   const auto all = all_inverse_kinematics(chain, goal);
   solution_list result{{}, all.is_complete};
   for (const auto& each : all.solutions) {
@@ -70,11 +67,7 @@ solution_list solutions_within_limits(const chain_view& chain, const dual_quater
       const bool is_prismatic = chain.kind(i) == joint_kind::prismatic;
       const double slack = is_prismatic ? tolerance.translation : tolerance.rotation;
       const double lower = chain.limits(i).lower - slack, upper = chain.limits(i).upper + slack;
-      if (!is_prismatic && theta[i] < lower) {
-        theta[i] += full_turn * std::ceil((lower - theta[i]) / full_turn);
-      } else if (!is_prismatic && theta[i] > upper) {
-        theta[i] -= full_turn * std::ceil((theta[i] - upper) / full_turn);
-      }
+      theta[i] = is_prismatic ? theta[i] : moved_by_full_turns(theta[i], lower, upper);
       is_within = is_within && theta[i] >= lower && theta[i] <= upper;
       theta[i] = std::clamp(theta[i], chain.limits(i).lower, chain.limits(i).upper);
     }

@@ -16,7 +16,6 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>

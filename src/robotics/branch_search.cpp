@@ -478,10 +478,9 @@ solved(solution_method method, int first, const loop_equation& loop, const auto&
       }
     }
     loop_solution solution{theta, multiplicity};
+    const six_coordinates wrapped = loop.wrapped(theta);
     for (int k = 0; k < 6; ++k) {
-      const auto i = std::size_t((k + first) % 6);
-      solution.theta[Eigen::Index(i)] =
-          loop.joints[std::size_t(k)].is_revolute ? wrap_angle(theta[k]) : theta[k];
+      solution.theta[(k + first) % 6] = wrapped[k];
     }
     result.solutions.push_back(solution);
     result.complex_solutions -= multiplicity;
@@ -507,24 +506,17 @@ solved(solution_method method, int first, const loop_equation& loop, const auto&
     const auto pair = parallel_prismatic_of(loop);
     return pair ? solve_parallel_prismatic(*pair) : solve_two_prismatic(loop);
   }
-  const auto from = [&](int first) {
-    loop_equation result = loop;
-    for (int k = 0; k < first; ++k) {
-      result = result.shifted();
-    }
-    return result;
-  };
   for (std::size_t i = 0; i < 4 && prismatic_count == 0; ++i) {
     const loop_joint &a = joints[i], &b = joints[i + 1], &c = joints[i + 2];
     const int first = int(i), after = (first + 3) % 6;
     std::optional<loop_solution_set> result;
     if (const auto centre = common_point(a, b, c)) {
       const vector3d in_loop = after == 0 ? *centre : inverse_pose(loop.closing).point(*centre);
-      const loop_equation shifted = from(after);
+      const loop_equation shifted = loop.shifted(after);
       result = solved(solution_method::spherical_wrist, after, shifted,
                       [&](const auto& visit) { return solve_spherical(shifted, in_loop, visit); });
     } else if (are_parallel(a, b) && are_parallel(b, c)) {
-      const loop_equation shifted = from(first);
+      const loop_equation shifted = loop.shifted(first);
       result = solved(solution_method::parallel_axes, first, shifted,
                       [&](const auto& visit) { return solve_planar(shifted, visit); });
     }

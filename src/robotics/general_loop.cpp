@@ -76,11 +76,7 @@ public:
     if (all_.size() == max_count || !close_loop(loop_, theta)) {
       return not_found;
     }
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      if (loop_.joints[std::size_t(i)].is_revolute) {
-        theta[i] = wrap_angle(theta[i]);
-      }
-    }
+    theta = loop_.wrapped(theta);
     for (std::size_t i = 0; i < all_.size(); ++i) {
       if (is_same(all_[i].theta, theta)) {
         return i;
@@ -95,20 +91,9 @@ private:
   static constexpr double close_together = 1e-3; // half the distance of coinciding solutions
   static constexpr double nearly_singular = 1e-5;
 
-  /// b − a, revolute joints by the shorter arc.
-  [[nodiscard]] six_coordinates difference(const six_coordinates& a,
-                                           const six_coordinates& b) const {
-    six_coordinates result = b - a;
-    for (Eigen::Index i = 0; i < 6; ++i) {
-      if (loop_.joints[std::size_t(i)].is_revolute) {
-        result[i] = wrap_angle(result[i]);
-      }
-    }
-    return result;
-  }
   /// True if two solutions coincide to round-off: then the configuration halfway is one, too.
   [[nodiscard]] bool is_same(const six_coordinates& a, const six_coordinates& b) const {
-    const six_coordinates half = difference(a, b) / 2;
+    const six_coordinates half = loop_.wrapped(b - a) / 2;
     return half.cwiseAbs().maxCoeff() < close_together && is_closed(a + half);
   }
   /// True if two singular solutions coincide to round-off. If more than two coincide, the
@@ -117,7 +102,7 @@ private:
   [[nodiscard]] bool is_same_singularity(std::size_t a, std::size_t b) const {
     constexpr double singular = 1e-8, fraction = 1e-3;
     const double sigma = std::max(all_[a].sigma, all_[b].sigma),
-                 distance = difference(all_[a].theta, all_[b].theta).cwiseAbs().maxCoeff();
+                 distance = loop_.wrapped(all_[b].theta - all_[a].theta).cwiseAbs().maxCoeff();
     return sigma < singular && distance < 2 * close_together && sigma < fraction * distance;
   }
   [[nodiscard]] bool is_closed(const six_coordinates& theta) const {
@@ -552,23 +537,60 @@ zeros_on_circle(std::span<const std::complex<double>> roots) {
   return result;
 }
 
-/// Solutions of a loop, from those of slightly displaced loops.
+/// All solutions of a loop by a system of equations.
+///
+/// Axes at right angles and goals with round numbers make zeros coincide, hide solutions in an
+/// order of the joints, or make the determinant vanish for all angles. Therefore loops with
+/// displaced axes are solved, always with the same displacements, of 1e-8 to 1e-3 of the loop's
+/// size, in more than one order. Newton's method leads from their solutions to those of the loop
+/// itself. These are complete if successive displaced loops have as many real zeros as solutions
+/// were found: one loop if it is well conditioned, two otherwise, three close to singularities,
+/// five if there are no solutions; or if three loops add no others. They are not if some are on a
+/// curve, or near what is nearly a curve. Five loops are solved then, or a single one if no
+/// solution can be regular.
 template <class System>
 class general_solver {
 public:
   explicit general_solver(const loop_equation& loop) : loop_(loop), solutions_(loop) {}
 
-  [[nodiscard]] const loop_solutions& solutions() const { return solutions_; }
-  /// True if there may be solutions on curves of which no point was found.
-  [[nodiscard]] bool is_doubtful() const { return is_doubtful_; }
+  [[nodiscard]] loop_solution_set solve() {
+    constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-5};
+    const auto orders = orders_of<System>(loop_, disturbed(loop_, by[0], 1));
+    const auto needed = [&] {
+      const double sigma = solutions_.smallest_singular_value();
+      return solutions_.all().empty()         ? 5 // each may make a double solution complex
+             : sigma < .01 || has_close_pair_ ? 3
+             : sigma < .04 || !is_certain_    ? 2
+                                              : 1;
+    };
+    int agreeing = 0, quiet = 0;
+    const auto is_even = [&] {
+      return !solutions_.is_count_certain() || solutions_.count() % 2 == 0;
+    };
+    const auto is_enough = [&](std::size_t loops) {
+      return agreeing >= needed() ||
+             (solutions_.on_curves() > 0 && (loops == 5 || is_always_singular(loop_)));
+    };
+    for (std::size_t k = 0; k < by.size() && !is_enough(k); ++k) {
+      const auto before = solutions_.all().size();
+      const bool is_clear = add(orders[k % orders.size()], by[k], k + 2) && is_even();
+      const bool has_grown = solutions_.all().size() != before;
+      quiet = has_grown ? 0 : quiet + 1;
+      agreeing = has_grown ? int(is_clear) : agreeing + is_clear;
+    }
+    const bool agree = agreeing >= needed() || (quiet >= 3 && agreeing > 0 && is_even());
+    if (solutions_.all().empty()) {
+      add_from_random_guesses(); // finds a singular solution, or a curve of them
+    }
+    loop_solution_set result;
+    result.solutions = solutions_.all();
+    result.complex_solutions = std::max(0, System::max_solutions - solutions_.count());
+    result.is_complete = agree && solutions_.on_curves() == 0 && !solutions_.is_near_curve() &&
+                         !(solutions_.all().empty() && (is_doubtful_ || has_close_pair_));
+    return result;
+  }
 
-  /// True if the loop that was solved last is well conditioned and all its zeros near the circle
-  /// are real and separate.
-  [[nodiscard]] bool is_certain() const { return is_certain_; }
-
-  /// True if a displaced loop had two complex solutions that may be real without the displacement.
-  [[nodiscard]] bool has_close_pair() const { return has_close_pair_; }
-
+private:
   /// Adds solutions from random initial guesses: on curves of solutions those of a displaced loop
   /// may all be complex.
   void add_from_random_guesses() {
@@ -621,7 +643,6 @@ public:
     return is_clear;
   }
 
-private:
   static constexpr std::size_t not_found = loop_solutions::not_found;
 
   /// Index of the only solution near an angle at which the determinant vanishes, if it was found.
@@ -643,58 +664,13 @@ private:
 
   const loop_equation& loop_;
   loop_solutions solutions_;
-  bool is_doubtful_ = false, is_certain_ = false, has_close_pair_ = false;
+  bool is_doubtful_ = false; ///< true if there may be curves of solutions without a point found
+  /// True if the loop that was solved last is well conditioned and all its zeros near the circle
+  /// are real and separate.
+  bool is_certain_ = false;
+  /// True if a displaced loop had two complex solutions that may be real without the displacement.
+  bool has_close_pair_ = false;
 };
-
-/// All solutions of a loop by a system of equations.
-///
-/// Axes at right angles and goals with round numbers make zeros coincide, hide solutions in an
-/// order of the joints, or make the determinant vanish for all angles. Therefore loops with
-/// displaced axes are solved, always with the same displacements, of 1e-8 to 1e-3 of the loop's
-/// size, in more than one order. Newton's method leads from their solutions to those of the loop
-/// itself. These are complete if successive displaced loops have as many real zeros as solutions
-/// were found: one loop if it is well conditioned, two otherwise, three close to singularities,
-/// five if there are no solutions; or if three loops add no others. They are not if some are on a
-/// curve, or near what is nearly a curve. Five loops are solved then, or a single one if no
-/// solution can be regular.
-template <class System>
-[[nodiscard]] loop_solution_set solve_general_loop(const loop_equation& loop) {
-  constexpr std::array by{1e-4, 1e-5, 1e-6, 1e-4, 1e-7, 1e-3, 1e-8, 1e-5};
-  const auto orders = orders_of<System>(loop, disturbed(loop, by[0], 1));
-  general_solver<System> solver(loop);
-  const loop_solutions& solutions = solver.solutions();
-  const auto needed = [&] {
-    const double sigma = solutions.smallest_singular_value();
-    return solutions.all().empty()                  ? 5 // each may make a double solution complex
-           : sigma < .01 || solver.has_close_pair() ? 3
-           : sigma < .04 || !solver.is_certain()    ? 2
-                                                    : 1;
-  };
-  int agreeing = 0, quiet = 0;
-  const auto is_even = [&] { return !solutions.is_count_certain() || solutions.count() % 2 == 0; };
-  const auto is_enough = [&](std::size_t loops) {
-    return agreeing >= needed() ||
-           (solutions.on_curves() > 0 && (loops == 5 || is_always_singular(loop)));
-  };
-  for (std::size_t k = 0; k < by.size() && !is_enough(k); ++k) {
-    const auto before = solutions.all().size();
-    const bool is_clear = solver.add(orders[k % orders.size()], by[k], k + 2) && is_even();
-    const bool has_grown = solutions.all().size() != before;
-    quiet = has_grown ? 0 : quiet + 1;
-    agreeing = has_grown ? int(is_clear) : agreeing + is_clear;
-  }
-  const bool agree = agreeing >= needed() || (quiet >= 3 && agreeing > 0 && is_even());
-  if (solutions.all().empty()) {
-    solver.add_from_random_guesses(); // finds a singular solution, or a curve of them
-  }
-  loop_solution_set result;
-  result.solutions = solutions.all();
-  result.complex_solutions = std::max(0, System::max_solutions - solutions.count());
-  result.is_complete =
-      agree && solutions.on_curves() == 0 && !solutions.is_near_curve() &&
-      !(solutions.all().empty() && (solver.is_doubtful() || solver.has_close_pair()));
-  return result;
-}
 
 } // namespace
 
@@ -718,11 +694,11 @@ bool is_always_singular(const loop_equation& loop) {
 }
 
 loop_solution_set eliminated(const loop_equation& loop) {
-  return solve_general_loop<elimination>(loop);
+  return general_solver<elimination>(loop).solve();
 }
 
 loop_solution_set solve_two_prismatic(const loop_equation& loop) {
-  loop_solution_set result = solve_general_loop<two_prismatic>(loop);
+  loop_solution_set result = general_solver<two_prismatic>(loop).solve();
   result.method = solution_method::two_prismatic;
   return result;
 }

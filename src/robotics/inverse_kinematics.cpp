@@ -670,12 +670,8 @@ private:
   [[nodiscard]] vector within_limits(vector theta) const {
     for (Eigen::Index i = 0; i < model_.size; ++i) {
       const double lower = model_.lower[i], upper = model_.upper[i];
-      if (period_[i] > 0 && theta[i] > upper) {
-        theta[i] -= period_[i] * std::ceil((theta[i] - upper) / period_[i]);
-      } else if (period_[i] > 0 && theta[i] < lower) {
-        theta[i] += period_[i] * std::ceil((lower - theta[i]) / period_[i]);
-      }
-      theta[i] = std::clamp(theta[i], lower, upper);
+      const double x = period_[i] > 0 ? moved_by_full_turns(theta[i], lower, upper) : theta[i];
+      theta[i] = std::clamp(x, lower, upper);
     }
     return theta;
   }

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <cstddef>
 #include <vector>
 

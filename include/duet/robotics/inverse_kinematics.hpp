@@ -15,7 +15,6 @@
 #include <Eigen/Core>
 
 #include <concepts>
-#include <cstddef>
 #include <cstdint>
 #include <ranges>
 #include <span>

@@ -188,13 +188,11 @@ private:
   /// True if equal except for full turns.
   [[nodiscard]] bool is_same(const inverse_kinematics_solution& a,
                              const inverse_kinematics_solution& b) const {
-    bool result = true;
-    for (int i = 0; i < 6 && result; ++i) {
-      const double d = a.joints[i] - b.joints[i];
-      const bool is_revolute = loop_.joints[std::size_t(i)].is_revolute;
-      result = std::abs(is_revolute ? wrap_angle(d) : d / axes_.size) < max_residual;
+    six_coordinates d = loop_.wrapped(a.joints - b.joints);
+    for (int i = 0; i < 6; ++i) {
+      d[i] /= loop_.joints[std::size_t(i)].is_revolute ? 1 : axes_.size;
     }
-    return result;
+    return d.cwiseAbs().maxCoeff() < max_residual;
   }
 
   [[nodiscard]] inverse_kinematics_solution

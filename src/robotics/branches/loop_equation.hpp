@@ -56,17 +56,37 @@ struct loop_joint {
 using six_coordinates = Eigen::Matrix<double, 6, 1>;
 using six_columns = Eigen::Matrix<double, 6, 6>;
 
+/// Angle wrapped to (−π, π].
+[[nodiscard]] inline double wrap_angle(double x) {
+  constexpr double pi = std::numbers::pi, full_turn = 2 * pi;
+  const double size = std::abs(x);
+  // `std::remainder` alone gives the same, but takes twenty times as long.
+  const double r = size <= pi       ? x
+                   : size <= 3 * pi ? x - std::copysign(full_turn, x)
+                                    : std::remainder(x, full_turn);
+  return r <= -pi ? pi : r;
+}
+
 /// Loop-closure equation exp(θ₁S₁) … exp(θ₆S₆) = closing, a product of exponentials.
 struct loop_equation {
   std::array<loop_joint, 6> joints{};
   tip_pose closing{quaternion<double>(1), {0, 0, 0}};
 
-  /// Loop that begins with the second joint: exp(θ₂S₂) … exp(θ₆S₆) exp(θ₁ Ad(closing⁻¹)S₁) is the
-  /// same displacement.
-  [[nodiscard]] loop_equation shifted() const {
+  /// Coordinates, or differences of them, with those of revolute joints wrapped to (−π, π].
+  [[nodiscard]] six_coordinates wrapped(six_coordinates theta) const {
+    for (int i = 0; i < 6; ++i) {
+      theta[i] = joints[std::size_t(i)].is_revolute ? wrap_angle(theta[i]) : theta[i];
+    }
+    return theta;
+  }
+  /// Loop that begins with a later joint: exp(θ₂S₂) … exp(θ₆S₆) exp(θ₁ Ad(closing⁻¹)S₁) is the same
+  /// displacement.
+  [[nodiscard]] loop_equation shifted(int count = 1) const {
     loop_equation result = *this;
-    std::rotate(result.joints.begin(), result.joints.begin() + 1, result.joints.end());
-    result.joints[5] = displaced(inverse_pose(closing), joints[0]);
+    for (int k = 0; k < count; ++k) {
+      std::rotate(result.joints.begin(), result.joints.begin() + 1, result.joints.end());
+      result.joints[5] = displaced(inverse_pose(closing), result.joints[5]);
+    }
     return result;
   }
   /// Loop in reverse order, exp(−θ₆S₆) … exp(−θ₁S₁) = closing⁻¹.
@@ -184,17 +204,6 @@ struct loop_solution_set {
       {}; ///< if set, a solution represents all that it makes
 };
 
-/// Angle wrapped to (−π, π].
-[[nodiscard]] inline double wrap_angle(double x) {
-  constexpr double pi = std::numbers::pi, full_turn = 2 * pi;
-  const double size = std::abs(x);
-  // `std::remainder` alone gives the same, but takes twenty times as long.
-  const double r = size <= pi       ? x
-                   : size <= 3 * pi ? x - std::copysign(full_turn, x)
-                                    : std::remainder(x, full_turn);
-  return r <= -pi ? pi : r;
-}
-
 /// All solutions of a loop, by the method that suits its geometry.
 [[nodiscard]] loop_solution_set solutions_of(const loop_equation& loop);
 
@@ -213,6 +222,14 @@ struct loop_solution_set {
 
 /// All solutions of a loop with two prismatic joints, by the zeros of a polynomial.
 [[nodiscard]] loop_solution_set solve_two_prismatic(const loop_equation& loop);
+
+/// θ moved by full turns to below the upper limit or to above the lower one.
+[[nodiscard]] inline double moved_by_full_turns(double theta, double lower, double upper) {
+  constexpr double full_turn = 2 * std::numbers::pi;
+  return theta > upper   ? theta - full_turn * std::ceil((theta - upper) / full_turn)
+         : theta < lower ? theta + full_turn * std::ceil((lower - theta) / full_turn)
+                         : theta;
+}
 
 /// θ moved by a full turn into the limits, if that is possible.
 [[nodiscard]] double wrap_into_limits(double theta, const joint_limits<double>& limits);
