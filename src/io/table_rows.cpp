@@ -314,105 +314,6 @@ private:
   }
 };
 
-/// Comment before the first row that seems to name the columns.
-class commented_header {
-public:
-  void inspect(std::size_t line, std::string_view comment, const table_columns& stated) {
-    std::vector<std::string_view> cells;
-    split_cells(comment, cells);
-    if (cells.size() > 1 && cells[0].ends_with(':')) { // `columns: t x y z ...`
-      cells.erase(cells.begin());
-    }
-    std::array<bool, 10> has{};
-    for (const std::string_view cell : cells) {
-      has[std::size_t(column_name(cell, stated.prefix).what)] = true;
-    }
-    const auto has_angle = [&](const std::string& name) {
-      return std::any_of(cells.begin(), cells.end(), [&](std::string_view cell) {
-        return column_name(cell, stated.prefix).name == column_name(name).name;
-      });
-    };
-    const bool has_rotation =
-        (!stated.angles ? has[4] && has[5] && has[6] && has[7]
-                        : std::all_of(stated.angles->names().begin(), stated.angles->names().end(),
-                                      has_angle)) ||
-        table_layout().read(cells, false, stated).empty();
-    if (has_rotation ||
-        (!is_certain_ && cells.size() > 1 && column_name(cells[0]).what == table_column::u)) {
-      line_ = line;
-      cells_.assign(cells.begin(), cells.end());
-      is_certain_ = has_rotation;
-    }
-  }
-
-  /// Layout that the comment gives to rows with this number of columns. Empty if the comment is not
-  /// a header: its names or their number do not fit the rows, and no name contradicts the usual
-  /// layout of such rows.
-  ///
-  /// \throws file_error if it is ambiguous
-  [[nodiscard]] std::optional<table_layout> layout(const std::string& path, std::size_t columns,
-                                                   bool has_position, const table_columns& stated,
-                                                   const std::optional<table_layout>& usual) const {
-    table_layout result;
-    std::string problem;
-    if (cells_.size() == columns) {
-      const std::vector<std::string_view> header(cells_.begin(), cells_.end());
-      problem = result.read(header, has_position, stated);
-      if (problem.empty()) {
-        return result;
-      }
-    } else if (is_certain_) {
-      problem = "the comment names " + std::to_string(cells_.size()) +
-                " columns, but the rows have " + std::to_string(columns);
-    }
-    if (problem.empty() || (usual && !stated.angles && agrees_with(*usual))) {
-      return std::nullopt;
-    }
-    raise(file_error(path, line_, problem));
-  }
-
-  /// \throws file_error if the comment names the columns in another order than a stated header
-  void require_agreement(const std::string& path, const table_layout& stated,
-                         std::string_view prefix) const {
-    const std::vector<std::string_view> header(cells_.begin(), cells_.end());
-    if (const std::string problem = stated.contradiction(header, prefix);
-        is_certain_ && header.size() == stated.columns && !problem.empty()) {
-      raise(file_error(path, line_, problem));
-    }
-  }
-
-  /// Remark on a comment that could be a header of this number of columns, but is not; empty
-  /// otherwise.
-  [[nodiscard]] std::string remark(std::size_t columns) const {
-    return is_certain_ || (columns > 0 && cells_.size() == columns)
-               ? "the names in the comment of line " + std::to_string(line_) + " do not fit"
-               : "";
-  }
-
-private:
-  /// True if every known name is that of the column at its index. An unknown name may be of a
-  /// scalar part, which must be in the usual column, or of four numbers in ambiguous order.
-  [[nodiscard]] bool agrees_with(const table_layout& usual) const {
-    for (std::size_t i = 0; i < cells_.size(); ++i) {
-      const column_name cell(cells_[i]);
-      const std::string& name = cell.name;
-      const bool is_w = name == "w" || name.ends_with("_w") || (name.size() == 2 && name[1] == 'w');
-      const bool has_number =
-          name.size() == 2 && name[0] == 'q' && name[1] >= '0' && name[1] <= '9';
-      const table_column what =
-          cell.what == table_column::other && is_w ? table_column::qw : cell.what;
-      if (has_number || (what != table_column::other && usual.at[std::size_t(what)] != i)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
-  std::size_t line_ = 0;
-  std::vector<std::string> cells_;
-  bool is_certain_ = false;
-};
-
 // Formats, as io/table_file.hpp describes them.
 
 /// Format of the rows of a file.
@@ -519,7 +420,7 @@ public:
     const bool is_begin = !format_ && !header_;
     if (parts.text.empty()) {
       if (is_begin) {
-        comment_.inspect(line, parts.comment, columns_);
+        inspect(line, parts.comment);
       }
       return std::nullopt;
     }
@@ -576,6 +477,78 @@ private:
     std::size_t line;
     file_time time;
   };
+
+  /// Keeps a comment before the first row if it seems to name the columns.
+  void inspect(std::size_t line, std::string_view comment) {
+    std::vector<std::string_view> cells;
+    split_cells(comment, cells);
+    if (cells.size() > 1 && cells[0].ends_with(':')) { // `columns: t x y z ...`
+      cells.erase(cells.begin());
+    }
+    std::array<bool, 10> has{};
+    for (const std::string_view cell : cells) {
+      has[std::size_t(column_name(cell, columns_.prefix).what)] = true;
+    }
+    const auto has_angle = [&](const std::string& name) {
+      return std::any_of(cells.begin(), cells.end(), [&](std::string_view cell) {
+        return column_name(cell, columns_.prefix).name == column_name(name).name;
+      });
+    };
+    const bool has_rotation =
+        (!columns_.angles ? has[4] && has[5] && has[6] && has[7]
+                          : std::all_of(columns_.angles->names().begin(),
+                                        columns_.angles->names().end(), has_angle)) ||
+        table_layout().read(cells, false, columns_).empty();
+    if (has_rotation || (!is_header_certain_ && cells.size() > 1 &&
+                         column_name(cells[0]).what == table_column::u)) {
+      comment_line_ = line;
+      comment_.assign(cells.begin(), cells.end());
+      is_header_certain_ = has_rotation;
+    }
+  }
+
+  /// Layout that the comment gives to rows with as many columns as the first. Empty if the comment
+  /// is not a header: its names or their number do not fit the rows, and no name contradicts the
+  /// usual layout of such rows.
+  ///
+  /// \throws file_error if it is ambiguous
+  [[nodiscard]] std::optional<table_layout>
+  commented_layout(const std::optional<table_layout>& usual) const {
+    table_layout result;
+    std::string problem;
+    if (comment_.size() == cells_.size()) {
+      const std::vector<std::string_view> header(comment_.begin(), comment_.end());
+      problem = result.read(header, has_position_, columns_);
+      if (problem.empty()) {
+        return result;
+      }
+    } else if (is_header_certain_) {
+      problem = "the comment names " + std::to_string(comment_.size()) +
+                " columns, but the rows have " + std::to_string(cells_.size());
+    }
+    if (problem.empty() || (usual && !columns_.angles && agrees_with(*usual))) {
+      return std::nullopt;
+    }
+    fail(comment_line_, problem);
+  }
+
+  /// True if every known name is that of the column at its index. An unknown name may be of a
+  /// scalar part, which must be in the usual column, or of four numbers in ambiguous order.
+  [[nodiscard]] bool agrees_with(const table_layout& usual) const {
+    for (std::size_t i = 0; i < comment_.size(); ++i) {
+      const column_name cell(comment_[i]);
+      const std::string& name = cell.name;
+      const bool is_w = name == "w" || name.ends_with("_w") || (name.size() == 2 && name[1] == 'w');
+      const bool has_number =
+          name.size() == 2 && name[0] == 'q' && name[1] >= '0' && name[1] <= '9';
+      const table_column what =
+          cell.what == table_column::other && is_w ? table_column::qw : cell.what;
+      if (has_number || (what != table_column::other && usual.at[std::size_t(what)] != i)) {
+        return false;
+      }
+    }
+    return true;
+  }
 
   /// Reads one time a line, in the unit of a header if there is one.
   void read_times() {
@@ -699,19 +672,24 @@ private:
 
   void choose_format(std::size_t line, bool has_commas) {
     if (!header_ && stated_) {
-      comment_.require_agreement(path_, *stated_, columns_.prefix);
+      const std::vector<std::string_view> names(comment_.begin(), comment_.end());
+      const std::string problem = stated_->contradiction(names, columns_.prefix);
+      if (is_header_certain_ && names.size() == stated_->columns && !problem.empty()) {
+        fail(comment_line_, problem);
+      }
       header_ = stated_;
     } else if (!header_) {
-      header_ =
-          comment_.layout(path_, cells_.size(), has_position_, columns_, usual_layout(has_commas));
+      header_ = commented_layout(usual_layout(has_commas));
     }
     if (!header_ && columns_.angles) {
       fail(line, "there is no header before the first row (expected names of the columns of "
                  "angles)");
     }
     format_ = header_ ? format_of_header(line, *header_) : format_of_row(line, has_commas);
-    if (const std::string remark = comment_.remark(cells_.size()); !header_ && !remark.empty()) {
-      format_->remark += (format_->remark.empty() ? "" : "; ") + remark;
+    if (!header_ && (is_header_certain_ || comment_.size() == cells_.size())) {
+      format_->remark += (format_->remark.empty() ? "" : "; ") +
+                         std::string("the names in the comment of line ") +
+                         std::to_string(comment_line_) + " do not fit";
     }
     if (!times_path_.empty() && !format_->is_matrix) {
       fail(line, "the rows have times, and so does " + times_path_);
@@ -798,7 +776,10 @@ private:
   std::vector<time_row> times_;
   std::string times_remark_;
   std::optional<table_layout> header_;
-  commented_header comment_;
+  // Comment before the first row that seems to name the columns.
+  std::vector<std::string> comment_;
+  std::size_t comment_line_ = 0;
+  bool is_header_certain_ = false;
   std::optional<row_format> format_;
   std::size_t row_count_ = 0;
   std::vector<std::string_view> cells_;
