@@ -79,13 +79,12 @@ void solve_many(const C& chain, std::span<const goal_view> goals, const Start& s
                 std::span<inverse_kinematics_result> out, const inverse_kinematics_options& options,
                 const execution& how, const Objective& objective, const Scene& around,
                 bool is_one = false) {
-  static_assert(planning_types<Objective, Scene>::are_good);
+  const solution_preferences preferences = preferences_of(chain, objective, around);
   static_assert(
       std::same_as<Objective, no_objective> ||
           requires(const joint_vector<double, C::joints>& x) { double(objective(x)); },
       "duet: inverse_kinematics: the objective is not a function of the joint coordinates "
       "that returns a number");
-  const auto preferences = preferences_of(chain, objective, around);
   solve_goals(chain, goals, start_of(chain, start), out, options, how, preferences, is_one);
 }
 

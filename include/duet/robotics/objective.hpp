@@ -54,17 +54,6 @@ preferred_posture(V, W...) -> preferred_posture<detail::own_t<V>>;
 namespace detail {
 DUET_ABI_BEGIN
 
-/// Checks argument types before they are used, so that these messages precede other compiler
-/// errors.
-template <class Objective, class Scene>
-struct planning_types {
-  static_assert(!std::same_as<Objective, scene>,
-                "duet: a scene is passed as the objective; pass no_objective{} before the scene");
-  static_assert(std::same_as<Scene, scene> || std::same_as<Scene, no_scene>,
-                "duet: the argument after the objective is not a scene; pass obstacles as a scene");
-  static constexpr bool are_good = true;
-};
-
 /// \throws invalid_input for a posture of another number of joints, and entries that are not finite
 template <class Objective>
 void require_objective(const Objective&, int) {}
@@ -151,13 +140,18 @@ struct solution_preferences {
   [[nodiscard]] bool is_empty() const { return !objective && around == nullptr; }
 };
 
+/// Preferences of any types. (Its return type is deduced, so that its messages on argument types
+/// precede other compiler errors.)
+///
 /// \throws invalid_input for a preferred posture of another size
 template <class C, class Objective, class Scene>
-[[nodiscard]] solution_preferences preferences_of(const C& chain, const Objective& objective,
-                                                  const Scene& around) {
-  static_assert(planning_types<Objective, Scene>::are_good);
+[[nodiscard]] auto preferences_of(const C& chain, const Objective& objective, const Scene& around) {
+  static_assert(!std::same_as<Objective, scene>,
+                "duet: a scene is passed as the objective; pass no_objective{} before the scene");
+  static_assert(std::same_as<Scene, scene> || std::same_as<Scene, no_scene>,
+                "duet: the argument after the objective is not a scene; pass obstacles as a scene");
   require_objective(objective, chain.size());
-  return {objective_view::of<C::joints>(objective), scene_of(around)};
+  return solution_preferences{objective_view::of<C::joints>(objective), scene_of(around)};
 }
 
 DUET_ABI_END
