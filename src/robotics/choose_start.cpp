@@ -96,8 +96,9 @@ private:
         add(result, {branch.joints});
       }
     } else if (is_algebraic(chain_, 7)) {
-      for (auto& curve : self_motion_curves(chain_, goal, {.resolution = options_.resolution})) {
-        add(result, std::move(curve.joints));
+      for (const auto& curve :
+           self_motion_curves(chain_, goal, {.resolution = options_.resolution})) {
+        add(result, curve.joints);
       }
       is_complete = !result.empty();
     }
@@ -127,37 +128,29 @@ private:
                                     *preferences_.around);
   }
 
-  /// Joints moved by full turns into their limits, as far as that is possible.
-  [[nodiscard]] joints wrapped_into_limits(joints theta) const {
-    for (int i = 0; i < chain_.size(); ++i) {
-      if (chain_.steps()[std::size_t(i)].is_rotational &&
-          !chain_.steps()[std::size_t(i)].is_translational) {
-        theta[i] = wrap_into_limits(theta[i], chain_.limits(i));
+  /// Adds those of a family that are within their limits, moved into them by full turns, and clear
+  /// of obstacles.
+  void add(std::vector<family>& to, const family& all) const {
+    const scene* const around = preferences_.around;
+    family good;
+    for (joints theta : all) {
+      bool is_good = true;
+      for (int i = 0; i < chain_.size(); ++i) {
+        const auto& step = chain_.steps()[std::size_t(i)];
+        const joint_limits<double> limits = chain_.limits(i);
+        if (step.is_rotational && !step.is_translational) {
+          theta[i] = wrap_into_limits(theta[i], limits);
+        }
+        is_good = is_good && limits.lower <= theta[i] && theta[i] <= limits.upper;
+      }
+      if (is_good &&
+          (around == nullptr || clearance(chain_, theta, *around).distance >=
+                                    around->margin - options_.plan.tolerance.translation)) {
+        good.push_back(theta);
       }
     }
-    return theta;
-  }
-  [[nodiscard]] bool is_within_limits(const joints& theta) const {
-    for (int i = 0; i < chain_.size(); ++i) {
-      if (!(chain_.limits(i).lower <= theta[i] && theta[i] <= chain_.limits(i).upper)) {
-        return false;
-      }
-    }
-    return true;
-  }
-  [[nodiscard]] bool is_clear(const joints& theta) const {
-    return preferences_.around == nullptr ||
-           clearance(chain_, theta, *preferences_.around).distance >=
-               preferences_.around->margin - options_.plan.tolerance.translation;
-  }
-
-  void add(std::vector<family>& to, family all) const {
-    for (joints& theta : all) {
-      theta = wrapped_into_limits(theta);
-    }
-    std::erase_if(all, [&](const joints& x) { return !is_within_limits(x) || !is_clear(x); });
-    if (!all.empty()) {
-      to.push_back(std::move(all));
+    if (!good.empty()) {
+      to.push_back(std::move(good));
     }
   }
   [[nodiscard]] static bool is_new(const joints& theta, const std::vector<family>& others) {

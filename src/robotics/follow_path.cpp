@@ -553,10 +553,14 @@ private:
   /// True if the joints move far in a short step along the path.
   [[nodiscard]] bool is_reorienting(const waypoint& at, double step) const {
     constexpr double min_step = 1e-12;
-    return solver_.damped_below == undamped_threshold_near_singularity && step > min_step &&
-           solver_.joint_distance_to(at.state,
-                                     target_(std::min(at.u + step * length_, stops_.back()))) >
-               min_reorientation;
+    if (solver_.damped_below != undamped_threshold_near_singularity || !(step > min_step)) {
+      return false;
+    }
+    const auto& [theta, tip, jacobian] = at.state;
+    const small_twist e = error_twist(tip, target_(std::min(at.u + step * length_, stops_.back())));
+    return bounded_step(jacobian, e, solver_.lower - theta, solver_.upper - theta,
+                        {undamped_threshold_near_singularity})
+               .step.norm() > min_reorientation;
   }
 
   /// True if joint limits end the plan: without limits it continues beyond the parameter u, from
@@ -565,7 +569,8 @@ private:
   [[nodiscard]] bool is_stopped_by_limits(const partial_plan& x, double u) const {
     path_planner free = *this;
     free.remaining_iterations_ = 100000;
-    free.solver_.without_limits();
+    free.solver_.upper.head(solver_.model.size).fill(std::numeric_limits<double>::infinity());
+    free.solver_.lower = -free.solver_.upper;
     const double beyond = std::min(u + 4 * (u - x.back().u), stops_.back());
     free.stops_ = {stops_.front(), beyond};
     partial_plan end = free.undamped(partial_plan(x.back()));
@@ -580,7 +585,8 @@ private:
       return search.run(from.state, {from.u, beyond}).front().back().u == beyond;
     };
     return free.is_at_end(end) || (options_.search_step > 0 && continues_after_self_motion()) ||
-           (solver_.model.size <= 6 && !solver_.is_within_limits(from.state.theta));
+           (solver_.model.size <= 6 && ((from.state.theta.array() < solver_.lower.array()).any() ||
+                                        (from.state.theta.array() > solver_.upper.array()).any()));
   }
 
   /// Better plan with self-motions from a waypoint of `before`, or `before` itself.

@@ -67,11 +67,6 @@ struct pose_solver {
   vector lower = model.lower, upper = model.upper; ///< limits in use
   double damped_below = damping_threshold; ///< singular value below which steps are damped first
 
-  void without_limits() {
-    upper.head(model.size).fill(std::numeric_limits<double>::infinity());
-    lower = -upper;
-  }
-
   [[nodiscard]] bool is_endless(Eigen::Index joint) const {
     return model.is_rotational[std::size_t(joint)] && std::isinf(upper[joint] - lower[joint]);
   }
@@ -92,10 +87,6 @@ struct pose_solver {
     tolerance = {1e-3 * tolerance.translation, 1e-3 * tolerance.rotation};
   }
 
-  [[nodiscard]] bool is_within_limits(const vector& theta) const {
-    return !((theta.array() < lower.array()).any() || (theta.array() > upper.array()).any());
-  }
-
   /// Result of the step nearest to the desired joint step that takes the tip from a
   /// state nearby to the target to first order, and then of Newton's method by least-norm steps,
   /// without damping if that prevents convergence. No step leaves the limits.
@@ -110,14 +101,6 @@ struct pose_solver {
       result.iterations += before;
     }
     return result;
-  }
-
-  /// Length of the joint step to a target near a state, to first order, without damping.
-  [[nodiscard]] double joint_distance_to(const chain_state<Capacity>& from,
-                                         const tip_pose& target) const {
-    const auto step = bounded_step(from.jacobian, error_twist(from.tip, target), lower - from.theta,
-                                   upper - from.theta, {undamped_threshold_near_singularity});
-    return step.step.norm();
   }
 
 private:
