@@ -46,10 +46,10 @@ list(REMOVE_ITEM compile ${source}/include)
 function(check_by compiler document)
   cmake_path(GET compiler FILENAME name)
   execute_process(
-    COMMAND ${CMAKE_COMMAND} "-Dcompile=${compiler};-std=c++20;-Wpedantic;-Wconversion;-Wno-sign-conversion;-Wshadow;-I;${folder};${compile}"
-      -Ddocument=${folder}/${document}.md -Dfolder=${folder}/${name}_${document}
-      -P ${source}/tests/documents/check.cmake
-    ERROR_VARIABLE said RESULT_VARIABLE result)
+    COMMAND ${python} ${source}/tests/documents/check.py --folder ${folder}/${name}_${document}
+      --documents ${folder}/${document}.md
+      --compiler ${compiler} -std=c++20 -Wpedantic -Wconversion -Wno-sign-conversion -Wshadow -I ${folder} ${compile}
+    OUTPUT_VARIABLE said ERROR_VARIABLE said RESULT_VARIABLE result)
   message("${name}: ${said}")
   if(NOT result EQUAL 0 OR said MATCHES "^0 programs")
     message(FATAL_ERROR "not compiled by ${compiler}")
