@@ -195,9 +195,9 @@ private:
     const auto is_before = [](const candidate& a, const candidate& b) {
       return a.rank != b.rank ? a.rank < b.rank : a.cost < b.cost;
     };
-    for (const auto& family : solutions_at(pose)) {
+    for (const family& found : solutions_at(pose)) {
       std::vector<candidate> all;
-      for (const joints& x : family) {
+      for (const joints& x : found) {
         const double value = cost(x);
         if (std::isnan(value)) {
           unknown.push_back(x);
