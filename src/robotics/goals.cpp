@@ -19,8 +19,8 @@ namespace {
 using detail::components, detail::require;
 
 /// \throws invalid_input for a vector that is not a unit vector
-void require_unit(const vector3<double>& n, const std::string& function, const std::string& name) {
-  require(std::abs(n.squaredNorm() - 1) <= 1e-6, "duet: ", function, ": the ", name, " (", n[0],
+void require_unit(const vector3<double>& n, const char* function, const auto&... name) {
+  require(std::abs(n.squaredNorm() - 1) <= 1e-6, "duet: ", function, ": the ", name..., " (", n[0],
           ", ", n[1], ", ", n[2], ") is not a unit vector");
 }
 
@@ -175,7 +175,7 @@ void require_goal(const task_space_region& r, const std::string& name) {
             r.lower[i], " to ", r.upper[i], " along axis ", i,
             " of its frame (expected lower <= upper)");
   }
-  require_unit(components(r.axis), "inverse_kinematics", "axis of " + name);
+  require_unit(components(r.axis), "inverse_kinematics", "axis of ", name);
   require(r.max_tilt >= 0, "duet: inverse_kinematics: max_tilt of ", name, " is ", r.max_tilt,
           " (expected a non-negative number)");
   require(r.rotation_upper - r.rotation_lower >= 0,

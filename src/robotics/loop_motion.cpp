@@ -414,7 +414,7 @@ private:
   Eigen::VectorXd direction_;
 };
 
-/// These coordinates one after the other, each as a text.
+/// Texts of coordinates, separated by commas.
 [[nodiscard]] std::string listed(const std::vector<int>& these, const auto& text_of) {
   std::string result;
   for (const int i : these) {

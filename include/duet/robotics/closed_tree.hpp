@@ -33,14 +33,26 @@ DUET_ABI_BEGIN
 /// for the identity, or rotations about z, and nowhere else, so axes cannot converge to the
 /// opposite direction.
 [[nodiscard]] inline std::span<const int> vanishing_components(constraint_kind kind) {
-  static constexpr std::array components{0, 1, 2, 3, 4, 5, 0, 1, 3, 4, 5, 2, 3, 4};
-  struct range {
-    std::size_t first, count;
-  };
-  constexpr std::array<range, 8> of_kinds{
-      {{0, 6}, {0, 5}, {6, 5}, {6, 4}, {0, 3}, {0, 3}, {11, 3}, {0, 0}}};
-  const auto [first, count] = of_kinds[std::size_t(kind)];
-  return std::span<const int>(components).subspan(first, count);
+  static constexpr std::array all{0, 1, 2, 3, 4, 5};
+  static constexpr std::array along_axis{0, 1, 3, 4, 5};
+  static constexpr std::array in_plane{2, 3, 4};
+  const std::span<const int> fixed(all), prismatic(along_axis), planar(in_plane);
+  switch (kind) {
+  case constraint_kind::fixed:
+    return fixed;
+  case constraint_kind::revolute:
+    return fixed.first(5);
+  case constraint_kind::prismatic:
+    return prismatic;
+  case constraint_kind::cylindrical:
+    return prismatic.first(4);
+  case constraint_kind::planar:
+    return planar;
+  case constraint_kind::distance:
+    return {};
+  default: // universal and spherical
+    return fixed.first(3);
+  }
 }
 
 /// A loop-closure constraint, prepared for evaluation.

@@ -140,8 +140,8 @@ struct solution_preferences {
   [[nodiscard]] bool is_empty() const { return !objective && around == nullptr; }
 };
 
-/// Preferences of any types. (Its return type is deduced, so that its messages on argument types
-/// precede other compiler errors.)
+/// Preferences from an objective and a scene. (The return type is deduced, so that messages on
+/// types of arguments precede other compiler errors.)
 ///
 /// \throws invalid_input for a preferred posture of another size
 template <class C, class Objective, class Scene>
