@@ -410,7 +410,7 @@ private:
     }
   }
 
-  /// True for the columns of arguments of an intermediate.
+  /// True for the columns of the arguments that an intermediate result depends on.
   [[nodiscard]] std::vector<bool> columns_of(const intermediate& z) const {
     std::vector<bool> result(std::size_t(tangent_size(problem_.arguments)), false);
     for (const jacobian_part* a : z.arguments) {
@@ -418,7 +418,7 @@ private:
     }
     return result;
   }
-  /// Without the other columns.
+  /// The matrix with zeros in all other columns.
   [[nodiscard]] static matrix in_columns(matrix m, const std::vector<bool>& is_column) {
     for (Eigen::Index k = 0; k < m.cols(); ++k) {
       if (!is_column[std::size_t(k)]) {

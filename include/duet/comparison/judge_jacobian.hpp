@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -123,14 +124,16 @@ DUET_ABI_BEGIN
 
 /// An argument or result of several parts: an array or a tuple.
 template <class X>
-concept JacobianParts = !EigenMatrix<X> && requires {
-  std::tuple_size<X>::value;
+concept JacobianParts = is_tuple<X> || requires {
+  requires std::same_as<X, std::array<typename X::value_type, std::tuple_size<X>::value>>;
 };
-
+/// A rotation or a pose.
 template <class X>
-inline constexpr bool is_judged_pose = false;
-template <class S>
-inline constexpr bool is_judged_pose<quaternion<dual<S, 1, screw_tag>>> = true;
+concept JudgedMotion = requires {
+  manifold<X>::takes_rates_of_any_scalar;
+};
+template <class X>
+concept JudgedPose = JudgedMotion<X> && manifold<X>::dimension == 6;
 
 inline void append_part(std::vector<jacobian_part>& list, jacobian_part::kind type,
                         const std::string& name, Eigen::Index dimension) {
@@ -151,9 +154,8 @@ void append_parts(std::vector<jacobian_part>& list, const std::string& name) {
     static_assert(X::SizeAtCompileTime > 0,
                   "duet: judge_jacobian: vectors need a size known at compile time");
     append_part(list, kind::vector, name, X::SizeAtCompileTime);
-  } else if constexpr (requires { manifold<X>::takes_rates_of_any_scalar; }) {
-    append_part(list, is_judged_pose<X> ? kind::pose : kind::rotation, name,
-                manifold<X>::dimension);
+  } else if constexpr (JudgedMotion<X>) {
+    append_part(list, JudgedPose<X> ? kind::pose : kind::rotation, name, manifold<X>::dimension);
   } else {
     static_assert(Real<X> || Arithmetic<X>,
                   "duet: judge_jacobian: arguments and results are numbers, Eigen vectors of fixed "
@@ -167,7 +169,7 @@ template <class X>
 void save_state(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
   if constexpr (JacobianParts<X>) {
     std::apply([&](const auto&... each) { (save_state(each, state, next), ...); }, x);
-  } else if constexpr (is_judged_pose<X>) {
+  } else if constexpr (JudgedPose<X>) {
     save_state(rotation(x), state, next);
     save_state(translation(x), state, next);
   } else {
@@ -189,12 +191,12 @@ template <class T, class X>
       return parts{load_state<T, std::tuple_element_t<I, X>>(state, next)...};
     }
     (std::make_index_sequence<std::tuple_size_v<X>>{});
-  } else if constexpr (is_judged_pose<X>) {
+  } else if constexpr (JudgedPose<X>) {
     const auto q = load_state<T, decltype(rotation(std::declval<const X&>()))>(state, next);
     return pose(q, load_state<T, decltype(translation(std::declval<const X&>()))>(state, next));
   } else {
     const auto x = map_scalars([&](const auto&) { return T(state[next++]); }, X());
-    if constexpr (requires { manifold<X>::takes_rates_of_any_scalar; }) {
+    if constexpr (JudgedMotion<X>) {
       return normalized(x);
     } else {
       return x;

@@ -488,7 +488,8 @@ private:
       combinations =
           std::min(max_combinations + 1, combinations * std::max<std::size_t>(1, points.size()));
     }
-    // Adds a point of the special ones choose(argument, their number), random beyond the last.
+    // Adds a point: of each argument the special one number choose(argument, count), or a random
+    // one if that is not below their count.
     const auto add = [&](auto&& choose) {
       std::size_t index = 0;
       result.push_back(joined([&](const auto& domain) {

@@ -29,8 +29,8 @@ class slips_of_terms : protected slips_at_points {
 protected:
   using slips_at_points::slips_at_points;
 
-  /// Lines of a rectangle, columns or rows, that contain other lines: their indices in the whole
-  /// matrix; −1 for those that contain none.
+  /// For each column, or row, of a rectangle the index of that of the exact matrix whose entries it
+  /// contains; −1 if it contains no such line.
   [[nodiscard]] std::vector<Eigen::Index> sources_of_lines(const scope& at, bool is_columns) const {
     const matrix& whole = samples_[0].exact;
     const Eigen::Index count = is_columns ? at.columns : at.rows,
@@ -42,9 +42,11 @@ protected:
     for (Eigen::Index k = 0; k < count; ++k) {
       const Eigen::Index own = (is_columns ? at.column : at.row) + k;
       Eigen::Index source = -1;
-      for (Eigen::Index n = -1; n < all && source < 0; ++n) {
-        // First the line itself, then that after the last source, then in order of distance.
-        const bool is_next = n == 0 && k > 0 && is_columns;
+      // First the line itself, then a column that follows the last source, then in order of
+      // distance.
+      const bool has_next = is_columns && k > 0;
+      for (Eigen::Index n = has_next ? -1 : 0; n < all && source < 0; ++n) {
+        const bool is_next = has_next && n == 0;
         const Eigen::Index other =
             (is_next ? from.back() + 1 : own + std::max<Eigen::Index>(n, 0)) % all;
         const bool is_source =
