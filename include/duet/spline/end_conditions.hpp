@@ -118,10 +118,12 @@ template <class T, class V>
   static_assert(V::SizeAtCompileTime == 3 || V::SizeAtCompileTime == 6,
                 "duet: end rates are angular, 3-vectors, or twists [v; ω], 6-vectors");
   for (const V* rate : {&start, &end}) {
-    require(rate->allFinite(), "duet: ", condition, ": the rate at the ",
-            rate == &start ? "start" : "end", ", (",
-            rate->transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "}),
-            "), is not finite");
+    if (!rate->allFinite()) {
+      raise(invalid_input(message(
+          "duet: ", condition, ": the rate at the ", rate == &start ? "start" : "end", ", (",
+          rate->transpose().format({Eigen::StreamPrecision, Eigen::DontAlignCols, ", "}),
+          "), is not finite")));
+    }
   }
   return {half_rate<T>(start), half_rate<T>(end)};
 }
