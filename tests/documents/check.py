@@ -8,9 +8,9 @@ tests share, but no other header: it must include what else it needs. One that i
 is linked to the libraries, one that includes duet/interop/ceres to Ceres, without which it is left out; others must do
 without.
 
-With --part the programs are compiled together instead, in namespaces, which takes less time: a part of them, as
-1/4 is the first of four. Those with fewer headers come first, but a program may then use a header of another, and the
-libraries. It may also hide a name of duet that it would make ambiguous.
+With --part a part of the programs, such as the first of four by 1/4, is compiled together, each in a namespace, which
+takes less time. That overlooks a program that lacks a header which another one before it includes, or a library, and
+one whose names would be ambiguous beside those of duet.
 
 usage: check.py [--part <i>/<n>] [--precompiled <header> --instantiated <header> --optimised <object file>]
          [--libraries <files and flags>] [--ceres <flags>] --folder <for programs> --documents <file>...
@@ -32,7 +32,7 @@ class Program:
         self.document, self.number = document, number
         self.code, self.printed = block[1], block[2]
         self.line = text[:block.start(1)].count("\n") + 1
-        self.needs_libraries = "#include <duet/io/" in self.code or "#include <duet/robotics/" in self.code
+        self.needs_libraries = bool(re.search("#include <duet/(io|robotics)[/.]", self.code))
         self.needs_ceres = "#include <duet/interop/ceres" in self.code
         # Else it would run for longer than that takes.
         self.flags = ["-O1"] if "judge_cost_function" in self.code else []
