@@ -222,7 +222,9 @@ struct residual_blocks<Y> {
 
 /// The problem in tangent coordinates at the estimate, for `levenberg_marquardt`.
 ///
-/// \tparam R  scalar of the linear problem, so that its matrices are compiled only where it is used
+/// \tparam R  scalar of the linear problem, a parameter so that only programs that solve one
+/// compile
+///   its matrices
 template <class F, class X, class R>
 class nonlinear_least_squares_problem {
   using vector = Eigen::VectorX<R>;
