@@ -298,7 +298,7 @@ struct joint_cubic {
     return {value(s), first(s), each([&](Eigen::Index i) { return second(i, s) / 2; }), c3,
             its_length};
   }
-  /// The numbers f(i) of all coordinates.
+  /// Column of the numbers f(i) of all coordinates.
   [[nodiscard]] Eigen::VectorXd each(const auto& f) const {
     Eigen::VectorXd result(c0.size());
     for (Eigen::Index i = 0; i < result.size(); ++i) {
