@@ -9,8 +9,8 @@
 #include "support/gnuplot.hpp"
 #include "support/program.hpp"
 #include <duet/core/text/csv.hpp>
-
 #include <duet/core/text/file.hpp>
+
 #include <duet/derivative/derivative.hpp>
 #include <duet/quaternion/curves.hpp>
 #include <duet/quaternion/exponential.hpp>
