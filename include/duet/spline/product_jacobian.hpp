@@ -132,8 +132,7 @@ public:
 
   /// \param b  weights of the factors
   template <class B>
-  DUET_ALWAYS_INLINE functions_of_factors(const std::array<B, Factors>& b,
-                                          const vector3<T>* omega) {
+  DUET_OUT_OF_LINE functions_of_factors(const std::array<B, Factors>& b, const vector3<T>* omega) {
     const auto square = [&](std::size_t j) DUET_INLINE_LAMBDA {
       const three_vector<T> v = components(omega[j]);
       return T(dot(v, v));
@@ -222,8 +221,8 @@ struct tail_vectors {
   std::array<std::array<vector, 3>, Factors> velocity; ///< v_j, v_j′, v_j″ of tail T_j
   std::array<vector, 4> rates; ///< w = v_0, a = v_0′, j = v_0″ and v_0‴
 
-  DUET_ALWAYS_INLINE tail_vectors(const quaternion<T>& start, const vector3<T>* increments,
-                                  const functions_of_factors<T, Factors>& functions) {
+  DUET_OUT_OF_LINE tail_vectors(const quaternion<T>& start, const vector3<T>* increments,
+                                const functions_of_factors<T, Factors>& functions) {
     quaternion<T> tail(T(1));
     for (std::size_t j = Factors; j-- > 0;) {
       const auto& f = functions[j];
@@ -242,7 +241,7 @@ struct tail_vectors {
   ///
   /// \param b  element [d][j] is the d-th derivative of the weight of factor j, d ≤ 4
   template <class Weights>
-  DUET_ALWAYS_INLINE void add_rates(const Weights& b) {
+  DUET_OUT_OF_LINE void add_rates(const Weights& b) {
     const real_type_t<T> two(2), three(3);
     const T zero(0);
     const vector none{zero, zero, zero};
@@ -282,10 +281,10 @@ struct tail_vectors {
 ///
 /// \param b  element [d][j] is the d-th derivative of the weight of factor j
 template <int Rates, class T, std::size_t Factors, class Weights>
-DUET_ALWAYS_INLINE void fill_product_jacobian(const tail_vectors<T, Factors>& tails,
-                                              const functions_of_factors<T, Factors>& functions,
-                                              const vector3<T>* increments, const Weights& b,
-                                              const block_pointers<Rates, T>& blocks) {
+DUET_OUT_OF_LINE void fill_product_jacobian(const tail_vectors<T, Factors>& tails,
+                                            const functions_of_factors<T, Factors>& functions,
+                                            const vector3<T>* increments, const Weights& b,
+                                            const block_pointers<Rates, T>& blocks) {
   using matrix = matrix_rows<T>;
   [[maybe_unused]] const real_type_t<T> two(2);
   std::array<matrix, std::size_t(Rates) + 1> behind; // F_{j+1}, at first −I, −ŵ, −â, −ĵ
