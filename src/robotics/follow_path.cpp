@@ -5,6 +5,7 @@
 #include "planning_model.hpp"
 
 #include <duet/core/errors.hpp>
+#include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
 #include <duet/dual_quaternion/screw.hpp>
 #include <duet/kinematics/motion_plan.hpp>
@@ -821,9 +822,18 @@ planned(const planning_model<Capacity>& model, const Eigen::VectorXd& start,
 
 DUET_ABI_BEGIN
 
+path_function checked(path_function path) {
+  return [path = std::move(path)](double u) {
+    const dual_quaternion<double> a = path(u);
+    require_pose(a, "follow_path", "the pose at " + to_text(u));
+    return normalized(a);
+  };
+}
+
 motion_plan follow(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
                    const path_function& target, const std::vector<double>& stops,
                    const plan_options& options, const solution_preferences& preferences) {
+  require_start(chain, start, "follow_path");
   require_options(options, "follow_path");
   return with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
     return planned(planning_model<Capacity>(chain, preferences.around), start, target, stops,
@@ -853,6 +863,8 @@ motion_plan plan_screw_motion(const chain_view& chain,
                               const Eigen::Ref<const Eigen::VectorXd>& start,
                               const dual_quaternion<double>& goal, const plan_options& options,
                               const solution_preferences& preferences) {
+  require_start(chain, start, "plan_screw_motion");
+  require_pose(goal, "plan_screw_motion", "the goal");
   require_options(options, "plan_screw_motion");
   return with_capacity(chain.size(), [&]<int Capacity>(std::integral_constant<int, Capacity>) {
     const planning_model<Capacity> model(chain, preferences.around);

@@ -183,6 +183,10 @@ void require_goal(const task_space_region& r, const std::string& name) {
           " to ", r.rotation_upper, " (expected lower <= upper)");
 }
 
+goal_view::goal_view(const dual_quaternion<double>& goal)
+    : pose(&goal),
+      check([&goal](const std::string& name) { require_pose(goal, "inverse_kinematics", name); }) {}
+
 DUET_ABI_END
 } // namespace detail
 } // namespace duet

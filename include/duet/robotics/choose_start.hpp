@@ -101,7 +101,7 @@ find_start_configuration(const C& chain, const Path& path, double first, double 
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: find_start_configuration: the parameter of the path goes from ", first,
                   " to ", last, " (expected an increasing, finite interval)");
-  return detail::find_start(chain, detail::checked(path), {first, last}, options,
+  return detail::find_start(chain, detail::checked(std::cref(path)), {first, last}, options,
                             detail::preferences_of(chain, objective, around));
 }
 
@@ -114,7 +114,7 @@ template <SerialChain C, PosePath Spline, class Objective = no_objective, class 
                                                            const Objective& objective = {},
                                                            const Scene& around = {}) {
   const auto& breaks = spline.breaks();
-  return detail::find_start(chain, detail::checked(spline),
+  return detail::find_start(chain, detail::checked(std::cref(spline)),
                             std::vector<double>(breaks.begin(), breaks.end()), options,
                             detail::preferences_of(chain, objective, around));
 }

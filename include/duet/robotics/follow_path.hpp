@@ -2,13 +2,11 @@
 #pragma once
 
 #include <duet/core/errors.hpp>
-#include <duet/core/text/number_text.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/chain_view.hpp>
 #include <duet/kinematics/motion_plan.hpp>
 #include <duet/kinematics/serial_chain.hpp>
-#include <duet/quaternion/norm.hpp>
 #include <duet/robotics/clearance.hpp>
 #include <duet/robotics/objective.hpp>
 
@@ -36,7 +34,12 @@ DUET_ABI_BEGIN
 /// Poses as a function of a parameter.
 using path_function = std::function<dual_quaternion<double>(double)>;
 
-/// Joint path of a chain along a path whose poses have been validated.
+/// The path as unit dual quaternions.
+///
+/// \throws invalid_input when called, for a value that is not a pose
+[[nodiscard]] path_function checked(path_function path);
+
+/// Joint path of a chain along a checked path.
 ///
 /// \param stops  parameters that become waypoints, increasing; the first and the last are the ends
 motion_plan follow(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
@@ -47,15 +50,6 @@ motion_plan follow(const chain_view& chain, const Eigen::Ref<const Eigen::Vector
 motion_plan follow_poses(const chain_view& chain, const Eigen::Ref<const Eigen::VectorXd>& start,
                          std::span<const dual_quaternion<double>> poses,
                          const plan_options& options, const solution_preferences& preferences);
-
-template <PosePath Path>
-[[nodiscard]] auto checked(const Path& path) {
-  return [&path](double u) {
-    const dual_quaternion<double> a = path(u);
-    require_pose(a, "follow_path", "the pose at " + to_text(u));
-    return normalized(a);
-  };
-}
 
 DUET_ABI_END
 } // namespace detail
@@ -89,12 +83,11 @@ template <SerialChain C, VectorLike Start, PosePath Path, class Objective = no_o
   static_assert(detail::Becomes<std::invoke_result_t<const Path&, double>, dual_quaternion<double>>,
                 "duet: follow_path: the path must return a dual_quaternion<double>: pose(q, t), or "
                 "from_eigen(...) of an Eigen::Isometry3d");
-  detail::require_start(chain, start, "follow_path");
   detail::require(first < last && last - first < std::numeric_limits<double>::infinity(),
                   "duet: follow_path: the parameter of the path goes from ", first, " to ", last,
                   " (expected an increasing, finite interval)");
-  return detail::follow(chain, detail::start_of(chain, start), detail::checked(path), {first, last},
-                        options, detail::preferences_of(chain, objective, around));
+  return detail::follow(chain, detail::start_of(chain, start), detail::checked(std::cref(path)),
+                        {first, last}, options, detail::preferences_of(chain, objective, around));
 }
 
 /// Plans joint motion that moves the tip along a spline of poses, over its whole domain.
@@ -104,9 +97,8 @@ template <SerialChain C, VectorLike Start, PosePath Spline, class Objective = no
 [[nodiscard]] motion_plan follow_path(const C& chain, const Start& start, const Spline& spline,
                                       const plan_options& options = {},
                                       const Objective& objective = {}, const Scene& around = {}) {
-  detail::require_start(chain, start, "follow_path");
   const auto& breaks = spline.breaks();
-  return detail::follow(chain, detail::start_of(chain, start), detail::checked(spline),
+  return detail::follow(chain, detail::start_of(chain, start), detail::checked(std::cref(spline)),
                         std::vector<double>(breaks.begin(), breaks.end()), options,
                         detail::preferences_of(chain, objective, around));
 }
@@ -118,7 +110,6 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
                                       std::span<const dual_quaternion<double>> poses,
                                       const plan_options& options = {},
                                       const Objective& objective = {}, const Scene& around = {}) {
-  detail::require_start(chain, start, "follow_path");
   return detail::follow_poses(chain, detail::start_of(chain, start), poses, options,
                               detail::preferences_of(chain, objective, around));
 }

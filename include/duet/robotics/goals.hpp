@@ -150,9 +150,7 @@ struct goal_view {
   /// other goals.
   std::function<void(const std::string& name)> check;
 
-  goal_view(const dual_quaternion<double>& goal)
-      : pose(&goal),
-        check([&goal](const auto& name) { require_pose(goal, "inverse_kinematics", name); }) {}
+  goal_view(const dual_quaternion<double>& goal);
   template <TipGoal G>
   goal_view(const G& goal) : constraint([&goal](const auto& tip) { return goal.constraint(tip); }) {
     if constexpr (requires(const vector3<double>& point) { goal.distance_from(point); }) {

@@ -41,8 +41,6 @@ template <SerialChain C, VectorLike Start, class Objective = no_objective, class
 plan_screw_motion(const C& chain, const Start& start, const dual_quaternion<double>& goal,
                   const plan_options& options = {}, const Objective& objective = {},
                   const Scene& around = {}) {
-  detail::require_start(chain, start, "plan_screw_motion");
-  detail::require_pose(goal, "plan_screw_motion", "the goal");
   return detail::plan_screw_motion(chain, detail::start_of(chain, start), goal, options,
                                    detail::preferences_of(chain, objective, around));
 }
