@@ -354,6 +354,7 @@ TEST_CASE("to_text: a formula reads back as the same formula") {
   CHECK(to_text(read_formula("exp(-u)*sin(omega*u^2)")) == "exp(-u) * sin(omega * u^2)");
   CHECK(to_text(read_formula("0.1x + pi", {.exact_constants = true}), true) == "0.1 * x + pi");
   CHECK(to_text(read_formula("scalar b, a; a - b")) == "scalar b, a; a - b");
+  CHECK(to_text(read_formula("(6u - v)/(-3)")) == "-(6 * u - v) / 3");
 }
 
 TEST_CASE("to_text: a traced function becomes text, and what has no text is an error") {

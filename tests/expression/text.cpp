@@ -34,6 +34,14 @@ TEST_CASE("text, with no parentheses too few or too many") {
   CHECK(to_text(pi * x) == "pi * x");
 }
 
+TEST_CASE("text: signs and exact products of numbers come first, and 0/0 stays") {
+  CHECK(to_text(c<-2> * x * (c<3> * y)) == "-6 * x * y");
+  CHECK(to_text(0.1_c * x * c<-3>) == "-3 * 0.1 * x");
+  CHECK(to_text(x / c<-3>) == "-x / 3");
+  CHECK(to_text(c<0> / c<0> + x) == "0 / 0 + x");
+  CHECK(to_text(c<0> / y + x) == "x");
+}
+
 TEST_CASE("constants to the last digit") {
   constexpr quaternion_symbol<"q"> q;
   constexpr pose_symbol<"A"> a;

@@ -145,6 +145,7 @@ TEST_CASE("trace: bits of the function, also where it overflows or vanishes") {
   };
   check([](auto x, auto y) { return (x * 1e200) * 1e-200 + y; });
   check([](auto x, auto y) { return 1e-200 * (1e200 * x) / y; });
+  check([](auto x, auto y) { return 0x1p-600 * (0x1p-600 * x) * y; });
   check([](auto x, auto y) { return 0.1 * (0.3 * x) - y * 0.1; });
   check([](auto x, auto y) { return (x + y) - x; });
   check([](auto x, auto y) { return x * x / (y * y); });

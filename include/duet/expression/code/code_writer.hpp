@@ -9,6 +9,7 @@
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/graph_text.hpp>
 #include <duet/expression/graph/recorded.hpp>
+#include <duet/expression/tree/number.hpp>
 
 #include <algorithm>
 #include <array>

@@ -13,6 +13,7 @@
 #include <duet/expression/graph/functions_of_one.hpp>
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
+#include <duet/expression/tree/number.hpp>
 
 #include <cmath>
 #include <concepts>

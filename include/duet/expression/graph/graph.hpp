@@ -3,7 +3,7 @@
 
 #include <duet/core/compiler/types.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/expression/tree/number.hpp>
+#include <duet/expression/tree/exact.hpp>
 
 #include <algorithm>
 #include <array>
@@ -116,7 +116,7 @@ struct graph_node {
 /// The operations of one or more formulas, operands first, each once (hash-consing). Only exact
 /// simplifications are made, which keep the written order: terms 0 and factors 0 and 1, signs,
 /// arithmetic of numbers without rounding, and choices that are known.
-class graph {
+class graph : public detail::exact_rules<graph, operation> {
 public:
   /// A graph of more nodes is refused.
   static constexpr int max_nodes = 10'000'000;
@@ -159,7 +159,7 @@ public:
       std::swap(exchanged.operands[0], exchanged.operands[1]);
       const int found = table_.empty() ? -1 : table_[slot_of(exchanged)];
       if (found >= 0) {
-        return commutes(what) ? found : negated(found);
+        return commutes(what) ? found : negative(found);
       }
     }
     return insert(n);
@@ -236,169 +236,67 @@ private:
     return table_[slot];
   }
 
-  /// The number as a node: `number` is an operation in these functions.
-  [[nodiscard]] int value_of(double x) { return number(x); }
-  [[nodiscard]] int negated(int i) { return apply(operation::negative, i); }
+  // For the rules that the graph shares with the tape.
+
+  friend detail::exact_rules<graph, operation>;
+  [[nodiscard]] operation code(int i) const { return (*this)[i].what; }
+  [[nodiscard]] int operand(int i, int k) const { return (*this)[i].operands[std::size_t(k)]; }
+  [[nodiscard]] double value(int i) const { return (*this)[i].number; }
+  [[nodiscard]] bool is_zero(int i) const { return is_number(i, 0); }
+  [[nodiscard]] int negative(int a) { return apply(operation::negative, a); }
+  [[nodiscard]] int sum(int a, int b) { return apply(operation::sum, a, b); }
+  [[nodiscard]] int difference(int a, int b) { return apply(operation::difference, a, b); }
+  [[nodiscard]] int product(int a, int b) { return apply(operation::product, a, b); }
+  [[nodiscard]] int quotient(int a, int b) { return apply(operation::quotient, a, b); }
+
   /// A simpler node of the same value, or −1.
   [[nodiscard]] int simplified(operation what, int a, int b, int c, int index) {
-    using enum operation;
     switch (what) {
-    case negative: {
-      const graph_node x = (*this)[a];
-      if (x.what == number) {
-        return value_of(-x.number);
-      }
-      return x.what == negative ? x.operands[0] : -1;
-    }
-    case sum:
+    case operation::negative:
+      return simplified_negative(a);
+    case operation::sum:
       return simplified_sum(a, b);
-    case difference:
-      if (is_number(b, 0)) {
-        return a;
-      }
-      if (is_number(a, 0)) {
-        return negated(b);
-      }
-      if (is(b, negative)) {
-        return apply(sum, a, (*this)[b].operands[0]);
-      }
-      if (is(a, negative)) {
-        return negated(apply(sum, (*this)[a].operands[0], b));
-      }
-      if (is_number(b) && (*this)[b].number < 0) {
-        return apply(sum, a, value_of(-(*this)[b].number));
-      }
-      if (is_number(a) && is_number(b) &&
-          detail::is_sum_exact((*this)[a].number, -(*this)[b].number)) {
-        return value_of((*this)[a].number - (*this)[b].number);
-      }
-      return -1;
-    case product:
-      return simplified_product(a, b);
-    case quotient:
-      return simplified_quotient(a, b);
-    case power:
+    case operation::difference: {
+      const int simple = simplified_difference(a, b);
+      return simple < 0 && is(a, operation::negative) ? negative(sum(operand(a, 0), b)) : simple;
+    }
+    case operation::product:
+      return is_zero(a) ? a : is_zero(b) ? b : simplified_product(a, b);
+    case operation::quotient: {
+      const int simple = simplified_quotient(a, b);
+      int exponent = 0;
+      const bool is_power_of_2 = is_number(b) && std::frexp(value(b), &exponent) == 0.5 &&
+                                 exponent > -1000 && exponent < 1000;
+      return simple < 0 && is_power_of_2 ? product(number(1 / value(b)), a) : simple;
+    }
+    case operation::power:
       return index == 1 ? a : -1;
-    case sin:
-      return is(a, negative)   ? negated(apply(sin, (*this)[a].operands[0]))
-             : is_number(a, 0) ? a
-                               : -1;
-    case cos:
-      return is(a, negative)   ? apply(cos, (*this)[a].operands[0])
-             : is_number(a, 0) ? value_of(1)
-                               : -1;
-    case abs:
-      return is(a, negative) ? apply(abs, (*this)[a].operands[0]) : is(a, abs) ? a : -1;
-    case no:
-      return is(a, no) ? (*this)[a].operands[0] : -1;
-    case both:
-    case either:
+    case operation::sin:
+      return is(a, operation::negative) ? negative(apply(operation::sin, operand(a, 0)))
+             : is_zero(a)               ? a
+                                        : -1;
+    case operation::cos:
+      return is(a, operation::negative) ? apply(operation::cos, operand(a, 0))
+             : is_zero(a)               ? number(1)
+                                        : -1;
+    case operation::abs:
+      return is(a, operation::negative) ? apply(operation::abs, operand(a, 0))
+             : is(a, operation::abs)    ? a
+                                        : -1;
+    case operation::no:
+      return is(a, operation::no) ? operand(a, 0) : -1;
+    case operation::both:
+    case operation::either:
       return a == b ? a : -1;
-    case select:
-      return b == c      ? b
-             : is(a, no) ? apply(select, (*this)[a].operands[0], c, b)
-             : is(b, negative) && is(c, negative)
-                 ? negated(apply(select, a, (*this)[b].operands[0], (*this)[c].operands[0]))
+    case operation::select:
+      return b == c                 ? b
+             : is(a, operation::no) ? apply(operation::select, operand(a, 0), c, b)
+             : is(b, operation::negative) && is(c, operation::negative)
+                 ? negative(apply(operation::select, a, operand(b, 0), operand(c, 0)))
                  : -1;
     default:
       return -1;
     }
-  }
-  [[nodiscard]] int simplified_sum(int a, int b) {
-    if (is_number(a, 0)) {
-      return b;
-    }
-    if (is_number(b, 0)) {
-      return a;
-    }
-    if (is(b, operation::negative)) {
-      return apply(operation::difference, a, (*this)[b].operands[0]);
-    }
-    if (is(a, operation::negative)) {
-      return apply(operation::difference, b, (*this)[a].operands[0]);
-    }
-    if (is_number(a) && is_number(b) &&
-        detail::is_sum_exact((*this)[a].number, (*this)[b].number)) {
-      return number((*this)[a].number + (*this)[b].number);
-    }
-    if (is_number(b) && (*this)[b].number < 0) {
-      return apply(operation::difference, a, number(-(*this)[b].number));
-    }
-    return a == b ? apply(operation::product, value_of(2), a) : -1;
-  }
-  [[nodiscard]] int simplified_product(int a, int b) {
-    if (is_number(b) && !is_number(a)) {
-      return apply(operation::product, b, a);
-    }
-    if (is(b, operation::negative)) {
-      return negated(apply(operation::product, a, (*this)[b].operands[0]));
-    }
-    if (is(a, operation::negative)) {
-      return negated(apply(operation::product, (*this)[a].operands[0], b));
-    }
-    if (!is_number(a)) {
-      return -1;
-    }
-    const double factor = (*this)[a].number;
-    if (factor == 0 || factor == 1 || factor == -1) {
-      return factor == 0 ? a : factor == 1 ? b : negated(b);
-    }
-    if (is_number(b)) {
-      const double second = (*this)[b].number;
-      if (detail::is_product_exact(factor, second)) {
-        return value_of(factor * second);
-      }
-      if (factor < 0 || second < 0) {
-        const int sizes =
-            apply(operation::product, value_of(std::abs(factor)), value_of(std::abs(second)));
-        return (factor < 0) != (second < 0) ? negated(sizes) : sizes;
-      }
-      return -1;
-    }
-    if (factor < 0) {
-      return negated(apply(operation::product, value_of(-factor), b));
-    }
-    const graph_node second = (*this)[b];
-    if (second.what == operation::product && is_number(second.operands[0]) &&
-        detail::is_product_exact(factor, (*this)[second.operands[0]].number)) {
-      return apply(operation::product, value_of(factor * (*this)[second.operands[0]].number),
-                   second.operands[1]);
-    }
-    return -1;
-  }
-  [[nodiscard]] int simplified_quotient(int a, int b) {
-    if (is(a, operation::negative)) {
-      return negated(apply(operation::quotient, (*this)[a].operands[0], b));
-    }
-    if (is(b, operation::negative)) {
-      return negated(apply(operation::quotient, a, (*this)[b].operands[0]));
-    }
-    if (is_number(a, 0) && !is_number(b, 0)) {
-      return a;
-    }
-    if (is_number(a) && (*this)[a].number < 0) {
-      return negated(apply(operation::quotient, value_of(-(*this)[a].number), b));
-    }
-    if (!is_number(b)) {
-      return -1;
-    }
-    const double divisor = (*this)[b].number;
-    if (divisor == 1 || divisor == -1) {
-      return divisor == 1 ? a : negated(a);
-    }
-    int exponent = 0;
-    const double fraction = std::frexp(divisor, &exponent);
-    if ((fraction == 0.5 || fraction == -0.5) && exponent > -1000 && exponent < 1000) {
-      return apply(operation::product, value_of(1 / divisor), a); // a power of 2
-    }
-    if (is_number(a)) {
-      const double ratio = (*this)[a].number / divisor;
-      if (divisor != 0 && ratio * divisor == (*this)[a].number &&
-          detail::is_product_exact(ratio, divisor)) {
-        return value_of(ratio);
-      }
-    }
-    return -1;
   }
 
   std::vector<graph_node> nodes_;

@@ -129,7 +129,7 @@ private:
 };
 
 /// A tape that grows. Entries are indices; entry 0 is the scalar zero, entry 1 the number 1.
-class tape_builder {
+class tape_builder : public exact_rules<tape_builder, tape_code> {
 public:
   /// Continues the tape in a memory.
   template <class Memory>
@@ -167,6 +167,8 @@ public:
   [[nodiscard]] constexpr bool is_number(int i) const {
     return code(i) == tape_code::number || i == 0;
   }
+  /// The value of a number.
+  [[nodiscard]] constexpr double value(int i) const { return entries_[i].number; }
 
   [[nodiscard]] constexpr int zero(kind k) {
     return add(tape_code::zero, k, 0, 0, nullptr, nullptr, 0);
@@ -191,177 +193,85 @@ public:
   }
 
   [[nodiscard]] constexpr int negative(int a) {
-    const tape_entry& e = entries_[a];
-    switch (e.code) {
-    case tape_code::zero:
-      return a;
-    case tape_code::number:
-      return number(-e.number);
-    case tape_code::negative:
-      return operand(a, 0);
-    case tape_code::difference:
-      return difference(operand(a, 1), operand(a, 0));
-    case tape_code::product:
-      if (is_number(operand(a, 0))) {
-        return product(negative(operand(a, 0)), operand(a, 1));
-      }
-      break;
-    case tape_code::embedded_block:
-      return embedded_like(a, negative(operand(a, 0)));
-    default:
-      break;
-    }
-    return plain(tape_code::negative, e.kind_of, a);
+    const int simple = simplified_negative(a);
+    return simple >= 0                            ? simple
+           : code(a) == tape_code::difference     ? difference(operand(a, 1), operand(a, 0))
+           : code(a) == tape_code::embedded_block ? embedded_like(a, negative(operand(a, 0)))
+                                                  : plain(tape_code::negative, kind_of(a), a);
   }
 
   [[nodiscard]] constexpr int sum(int a, int b) {
-    const tape_entry& x = entries_[a];
-    const tape_entry& y = entries_[b];
-    if (x.code == tape_code::zero) {
-      return b;
-    }
-    if (y.code == tape_code::zero) {
-      return a;
-    }
-    if (x.code == tape_code::number && y.code == tape_code::number &&
-        is_sum_exact(x.number, y.number)) {
-      return number(x.number + y.number);
-    }
-    if (a == b) {
-      return product(number(2), a);
-    }
-    if (is_of_number_and(a, tape_code::sum, b)) {
-      return sum(operand(a, 0), product(number(2), b)); // doubling is exact
-    }
-    if (is_of_number_and(b, tape_code::sum, a)) {
-      return sum(operand(b, 0), product(number(2), a));
-    }
-    if (starts_with_minus(b)) {
-      return difference(a, negative(b));
-    }
-    if (x.code == tape_code::negative) {
-      return difference(b, negative(a));
-    }
-    return plain_of_two(tape_code::sum, x.kind_of, a, b);
+    const int simple = simplified_sum(a, b);
+    return simple >= 0 ? simple
+           : is_of_number_and(a, tape_code::sum, b) // doubling is exact
+               ? sum(operand(a, 0), product(number(2), b))
+               : is_of_number_and(b, tape_code::sum, a)
+                     ? sum(operand(b, 0), product(number(2), a))
+                     : plain_of_two(tape_code::sum, kind_of(a), a, b);
   }
 
   [[nodiscard]] constexpr int difference(int a, int b) {
-    const tape_entry& x = entries_[a];
-    const tape_entry& y = entries_[b];
-    if (x.code == tape_code::zero) {
-      return negative(b);
-    }
-    if (y.code == tape_code::zero) {
-      return a;
-    }
-    if (x.code == tape_code::number && y.code == tape_code::number &&
-        is_sum_exact(x.number, -y.number)) {
-      return number(x.number - y.number);
-    }
-    if (a == b) {
-      return zero(x.kind_of);
-    }
-    if (is_of_number_and(a, tape_code::difference, b)) {
-      return difference(operand(a, 0), product(number(2), b));
-    }
-    if (starts_with_minus(b)) {
-      return sum(a, negative(b));
-    }
-    return plain_of_two(tape_code::difference, x.kind_of, a, b);
+    const int simple = simplified_difference(a, b);
+    return simple >= 0 ? simple
+           : a == b    ? zero(kind_of(a))
+           : is_of_number_and(a, tape_code::difference, b)
+               ? difference(operand(a, 0), product(number(2), b))
+               : plain_of_two(tape_code::difference, kind_of(a), a, b);
   }
 
   [[nodiscard]] constexpr int product(int a, int b) {
-    const tape_entry& x = entries_[a];
-    const tape_entry& y = entries_[b];
-    if (is_matrix(x.kind_of) && is_matrix(y.kind_of)) {
+    const kind of_a = kind_of(a), of_b = kind_of(b);
+    if (is_matrix(of_a) && is_matrix(of_b)) {
       return matrix_product(a, b);
     }
-    const kind k = x.kind_of == kind::scalar ? y.kind_of : x.kind_of;
-    if (x.code == tape_code::zero || y.code == tape_code::zero) {
-      return zero(k);
-    }
-    if (a == 1) {
-      return b;
-    }
-    if (b == 1) {
-      return a;
-    }
-    if (y.code == tape_code::embedded_block) {
-      return embedded_like(b, product(a, operand(b, 0)));
-    }
-    if (x.code == tape_code::number) {
-      if (y.code == tape_code::number && is_product_exact(x.number, y.number)) {
-        return number(x.number * y.number);
-      }
-      if (x.number == -1) {
-        return negative(b);
-      }
-      if (y.code == tape_code::negative) {
-        return negative(product(a, operand(b, 0)));
-      }
-      if (y.code == tape_code::product) {
-        const int n = operand(b, 0);
-        if (is_number(n) && is_product_exact(x.number, entries_[n].number)) {
-          return product(product(a, n), operand(b, 1));
-        }
-      }
-      return plain_of_two(tape_code::product, k, a, b);
-    }
-    if (y.kind_of == kind::scalar && (x.kind_of != kind::scalar || y.code == tape_code::number)) {
+    if (of_b == kind::scalar && of_a != kind::scalar) {
       return product(b, a);
     }
-    if (x.code == tape_code::negative) {
-      return negative(product(operand(a, 0), b));
+    if (is_zero(a) || is_zero(b)) {
+      return zero(of_b);
     }
-    if (y.code == tape_code::negative) {
-      return negative(product(a, operand(b, 0)));
+    if (code(b) == tape_code::embedded_block) {
+      return embedded_like(b, product(a, operand(b, 0)));
     }
-    if (has_leading_number(a)) {
-      return product(operand(a, 0), product(operand(a, 1), b));
+    if (const int simple = simplified_product(a, b); simple >= 0) {
+      return simple;
     }
-    if (has_leading_number(b)) {
-      return product(operand(b, 0), product(a, operand(b, 1)));
-    }
-    if (is_inverse(a)) {
-      return quotient(b, operand(a, 1));
-    }
-    if (is_inverse(b)) {
-      return quotient(a, operand(b, 1));
-    }
-    if (k == kind::scalar) {
+    if (!is_number(a)) {
+      if (has_leading_number(a)) {
+        return product(operand(a, 0), product(operand(a, 1), b));
+      }
+      if (has_leading_number(b)) {
+        return product(operand(b, 0), product(a, operand(b, 1)));
+      }
+      if (is_inverse(a)) {
+        return quotient(b, operand(a, 1));
+      }
+      if (is_inverse(b)) {
+        return quotient(a, operand(b, 1));
+      }
       const int m = exponent(a), n = exponent(b);
       const int base = m == 1 ? a : operand(a, 0);
-      if (base == (n == 1 ? b : operand(b, 0)) && m > 0 && n > 0) {
+      if (of_b == kind::scalar && base == (n == 1 ? b : operand(b, 0)) && m > 0 && n > 0) {
         return power(base, m + n);
       }
     }
-    return plain_of_two(tape_code::product, k, a, b);
+    return plain_of_two(tape_code::product, of_b, a, b);
   }
 
   [[nodiscard]] constexpr int quotient(int a, int b) {
-    const tape_entry& x = entries_[a];
-    if (x.code == tape_code::zero || b == 1) {
-      return a;
-    }
-    if (x.code == tape_code::number && is_divided_exactly(a, b)) {
-      return number(x.number / entries_[b].number);
-    }
-    if (x.code == tape_code::embedded_block) {
+    if (code(a) == tape_code::embedded_block) {
       return embedded_like(a, quotient(operand(a, 0), b));
     }
-    if (starts_with_minus(a)) {
-      return negative(quotient(negative(a), b));
-    }
-    if (starts_with_minus(b)) {
-      return negative(quotient(a, negative(b)));
+    if (const int simple = simplified_quotient(a, b); simple >= 0) {
+      return simple;
     }
     if (!is_number(b) || !is_divided_exactly(a, b)) {
-      return plain_of_two(tape_code::quotient, x.kind_of, a, b);
+      return plain_of_two(tape_code::quotient, kind_of(a), a, b);
     }
-    if (x.code == tape_code::sum) { // (4 x + 2)/2 becomes 2 x + 1
+    if (code(a) == tape_code::sum) { // (4 x + 2)/2 becomes 2 x + 1
       return sum(quotient(operand(a, 0), b), quotient(operand(a, 1), b));
     }
-    if (x.code == tape_code::difference) {
+    if (code(a) == tape_code::difference) {
       return difference(quotient(operand(a, 0), b), quotient(operand(a, 1), b));
     }
     return product(quotient(operand(a, 0), b), operand(a, 1));
@@ -779,12 +689,6 @@ private:
   [[nodiscard]] constexpr int exponent(int i) const {
     return code(i) == tape_code::power ? entries_[i].parameter : 1;
   }
-  [[nodiscard]] constexpr bool starts_with_minus(int i) const {
-    const tape_entry& e = entries_[i];
-    return e.code == tape_code::negative || (e.code == tape_code::number && e.number < 0) ||
-           (e.code == tape_code::product && code(operand(i, 0)) == tape_code::number &&
-            entries_[operand(i, 0)].number < 0);
-  }
   [[nodiscard]] constexpr bool is_of_number_and(int i, tape_code code_of_i, int u) const {
     if (code(i) != code_of_i || operand(i, 1) != u) {
       return false;
@@ -794,17 +698,13 @@ private:
            (n.code == tape_code::input && n.kind_of == kind::scalar && n.parameter < 0);
   }
   [[nodiscard]] constexpr bool is_divided_exactly(int a, int b) const {
-    const tape_entry& x = entries_[a];
-    switch (x.code) {
+    switch (code(a)) {
     case tape_code::zero:
-    case tape_code::number: {
-      const double divisor = entries_[b].number;
-      const double ratio = divisor == 0 ? 0 : x.number / divisor;
-      return is_number(b) && divisor != 0 && ratio * divisor == x.number &&
-             is_product_exact(ratio, divisor);
-    }
+    case tape_code::number:
+      return is_quotient_exact(value(a), value(b));
     case tape_code::product:
-      return is_number(operand(a, 0)) && is_divided_exactly(operand(a, 0), b);
+    case tape_code::negative:
+      return is_divided_exactly(operand(a, 0), b);
     case tape_code::sum:
     case tape_code::difference:
       return is_divided_exactly(operand(a, 0), b) && is_divided_exactly(operand(a, 1), b);
