@@ -221,10 +221,13 @@ public:
                                                                        name_of_item(Items{})...} {
     bool is_full = true;
     for (int capacity = 1024; is_full; capacity *= 4) {
-      memory_ = tape_vectors(capacity);
+      const std::size_t size = std::size_t(capacity);
+      memory_ = {{},
+                 std::vector<tape_entry>(size),
+                 std::vector<int>(4 * size),
+                 std::vector<tape_memo>(size)};
       tape_builder tape(memory_, true);
       root_ = recipe<Node>::template add<tape_use<0, true>, held<Items...>>(tape);
-      tape.finish(memory_);
       is_full = memory_.is_full;
     }
   }
@@ -292,7 +295,7 @@ private:
   notation style_;
   std::vector<printed> items_;
   std::vector<std::string> names_;
-  tape_vectors memory_ = tape_vectors(1);
+  tape_vectors memory_;
   int root_ = 0;
 };
 

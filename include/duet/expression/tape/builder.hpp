@@ -71,6 +71,7 @@ struct tape_entry {
   int first;     ///< index of the first operand in the list of operands
   int count;     ///< of operands
   int next;      ///< entry with the same hash
+  int head;      ///< 1 + the last entry whose hash leads to this one, 0 without
   double number;
   const tape_operation* operation;
 };
@@ -82,38 +83,30 @@ struct tape_memo {
   int entry;
   int order; ///< number of times that its rates can be made
   int next;
+  int head; ///< as of an entry
 };
 
-/// Memory of a tape, at compile time.
-template <int Capacity>
-struct tape_memory {
-  tape_entry entries[std::size_t(Capacity)] = {};
-  int operands[std::size_t(4 * Capacity)] = {};
-  int table[std::size_t(Capacity)] = {};
-  tape_memo memos[std::size_t(Capacity)] = {};
-  int memo_table[std::size_t(Capacity)] = {};
-  int size = 0;
+/// Numbers of what is on a tape.
+struct tape_counts {
+  int size = 0; ///< entries
   int operand_count = 0;
   int memo_count = 0;
   bool is_full = false; ///< true if the tape needs more memory
 };
 
-/// Memory of a tape at run time.
-struct tape_vectors {
-  explicit tape_vectors(int capacity)
-      : entries(std::size_t(capacity)), operands(std::size_t(4 * capacity)),
-        table(std::size_t(capacity)), memos(std::size_t(capacity)),
-        memo_table(std::size_t(capacity)) {}
-
-  std::vector<tape_entry> entries;
-  std::vector<int> operands, table;
-  std::vector<tape_memo> memos;
-  std::vector<int> memo_table;
-  int size = 0;
-  int operand_count = 0;
-  int memo_count = 0;
-  bool is_full = false;
+/// Memory of a tape, as arrays or as vectors.
+template <class Entries, class Operands, class Memos>
+struct tape_lists : tape_counts {
+  Entries entries = {};
+  Operands operands = {}; ///< four for each entry
+  Memos memos = {};       ///< one for each entry
 };
+/// Memory of a tape at compile time.
+template <int Capacity>
+using tape_memory = tape_lists<tape_entry[std::size_t(Capacity)], int[std::size_t(4 * Capacity)],
+                               tape_memo[std::size_t(Capacity)]>;
+/// Memory of a tape at run time.
+using tape_vectors = tape_lists<std::vector<tape_entry>, std::vector<int>, std::vector<tape_memo>>;
 
 /// Whole numbers, 0 at first, one for each entry of a tape.
 class tape_numbers {
@@ -134,26 +127,16 @@ public:
   /// Continues the tape in a memory.
   template <class Memory>
   constexpr explicit tape_builder(Memory& memory, bool is_printed = false)
-      : entries_(std::data(memory.entries)), operands_(std::data(memory.operands)),
-        table_(std::data(memory.table)), memos_(std::data(memory.memos)),
-        memo_table_(std::data(memory.memo_table)), capacity_(int(std::size(memory.entries))),
-        memo_count_(memory.memo_count), size_(memory.size), operand_count_(memory.operand_count),
-        is_full_(memory.is_full), is_printed_(is_printed) {
-    if (size_ == 0) {
+      : counts_(memory), entries_(std::data(memory.entries)), operands_(std::data(memory.operands)),
+        memos_(std::data(memory.memos)), capacity_(int(std::size(memory.entries))),
+        is_printed_(is_printed) {
+    if (size() == 0) {
       static_cast<void>(zero(kind::scalar));
       static_cast<void>(number(1));
     }
   }
-  /// Writes the sizes into the memory.
-  template <class Memory>
-  constexpr void finish(Memory& memory) const {
-    memory.memo_count = memo_count_;
-    memory.size = size_;
-    memory.operand_count = operand_count_;
-    memory.is_full = is_full_;
-  }
 
-  [[nodiscard]] constexpr int size() const { return size_; }
+  [[nodiscard]] constexpr int size() const { return counts_.size; }
   [[nodiscard]] constexpr int capacity() const { return capacity_; }
   [[nodiscard]] constexpr const tape_entry& operator[](int i) const { return entries_[i]; }
   [[nodiscard]] constexpr int operand(int i, int k) const {
@@ -496,7 +479,7 @@ public:
 
   /// Entry of a node of the written formula, or −1 if it is not on the tape with rates of an order.
   [[nodiscard]] constexpr int recalled(unsigned hash, const char* id, int order) const {
-    for (int i = memo_table_[hash % unsigned(capacity_)] - 1; i >= 0; i = memos_[i].next) {
+    for (int i = memos_[hash % unsigned(capacity_)].head - 1; i >= 0; i = memos_[i].next) {
       if (memos_[i].hash == hash && memos_[i].id == id && memos_[i].order >= order) {
         return memos_[i].entry;
       }
@@ -504,13 +487,14 @@ public:
     return -1;
   }
   constexpr int remember(unsigned hash, const char* id, int order, int entry) {
-    if (memo_count_ == capacity_) {
-      is_full_ = true;
+    if (counts_.memo_count == capacity_) {
+      counts_.is_full = true;
       return entry;
     }
-    int& head = memo_table_[hash % unsigned(capacity_)];
-    memos_[memo_count_] = {hash, id, entry, order, head - 1};
-    head = ++memo_count_;
+    int& head = memos_[hash % unsigned(capacity_)].head;
+    tape_memo& memo = memos_[counts_.memo_count];
+    memo = {hash, id, entry, order, head - 1, memo.head};
+    head = ++counts_.memo_count;
     return entry;
   }
 
@@ -609,7 +593,7 @@ private:
     for (int i = 0; i < count; ++i) {
       hash = hash * 37 + unsigned(x[i]);
     }
-    int& head = table_[hash % unsigned(capacity_)];
+    int& head = entries_[hash % unsigned(capacity_)].head;
     for (int i = head - 1; i >= 0; i = entries_[i].next) {
       tape_entry& e = entries_[i];
       if (e.code == code && is_equal(e, k, parameter, number, operation, x, count)) {
@@ -619,16 +603,17 @@ private:
         return i;
       }
     }
-    if (size_ == capacity_ || operand_count_ + count > 4 * capacity_) {
-      is_full_ = true;
+    if (size() == capacity_ || counts_.operand_count + count > 4 * capacity_) {
+      counts_.is_full = true;
       return 0;
     }
-    entries_[size_] = {code, k, parameter, operand_count_, count, head - 1, number, operation};
+    tape_entry& e = entries_[size()];
+    e = {code, k, parameter, counts_.operand_count, count, head - 1, e.head, number, operation};
     for (int i = 0; i < count; ++i) {
-      operands_[operand_count_++] = x[i];
+      operands_[counts_.operand_count++] = x[i];
     }
-    head = ++size_;
-    return size_ - 1;
+    head = ++counts_.size;
+    return head - 1;
   }
   [[nodiscard]] constexpr bool is_equal(const tape_entry& e, kind k, int parameter, double number,
                                         const tape_operation* operation, const int* x,
@@ -713,16 +698,11 @@ private:
     }
   }
 
+  tape_counts& counts_;
   tape_entry* entries_;
   int* operands_;
-  int* table_;
   tape_memo* memos_;
-  int* memo_table_;
   int capacity_;
-  int memo_count_;
-  int size_;
-  int operand_count_;
-  bool is_full_;
   bool is_printed_; ///< true if derivatives of functions are formulas of other functions
 };
 

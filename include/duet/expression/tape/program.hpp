@@ -220,7 +220,6 @@ template <class Build, class Held, int Pass, int Capacity>
   }
   tape_builder tape(result);
   Build::template build<Held, Pass>(tape, result.roots);
-  tape.finish(result);
   return result;
 }
 
