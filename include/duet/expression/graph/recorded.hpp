@@ -12,8 +12,10 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <limits>
 #include <ostream>
 #include <string>
@@ -94,18 +96,20 @@ public:
     return a.is_constant() ? recorded(-a.number_) : of(expression::operation::negative, a);
   }
   [[nodiscard]] friend recorded operator+(const recorded& a, const recorded& b) {
-    return known(a, b) ? recorded(a.number_ + b.number_) : of(expression::operation::sum, a, b);
+    return are_constant(a, b) ? recorded(a.number_ + b.number_)
+                              : of(expression::operation::sum, a, b);
   }
   [[nodiscard]] friend recorded operator-(const recorded& a, const recorded& b) {
-    return known(a, b) ? recorded(a.number_ - b.number_)
-                       : of(expression::operation::difference, a, b);
+    return are_constant(a, b) ? recorded(a.number_ - b.number_)
+                              : of(expression::operation::difference, a, b);
   }
   [[nodiscard]] friend recorded operator*(const recorded& a, const recorded& b) {
-    return known(a, b) ? recorded(a.number_ * b.number_) : of(expression::operation::product, a, b);
+    return are_constant(a, b) ? recorded(a.number_ * b.number_)
+                              : of(expression::operation::product, a, b);
   }
   [[nodiscard]] friend recorded operator/(const recorded& a, const recorded& b) {
-    return known(a, b) ? recorded(a.number_ / b.number_)
-                       : of(expression::operation::quotient, a, b);
+    return are_constant(a, b) ? recorded(a.number_ / b.number_)
+                              : of(expression::operation::quotient, a, b);
   }
   recorded& operator+=(const recorded& b) { return *this = *this + b; }
   recorded& operator-=(const recorded& b) { return *this = *this - b; }
@@ -118,28 +122,29 @@ public:
                            : out << expression::detail::short_text(*x.graph_, x.node_);
   }
 
-  /// The operation applied to numbers of which one at least is recorded.
-  [[nodiscard]] static recorded of(expression::operation what, const recorded& a, int index = 0) {
-    return {*a.graph_, a.graph_->apply(what, a.node_, -1, -1, index)};
+  /// True if nothing is recorded of any of the numbers.
+  [[nodiscard]] static bool are_constant(const std::same_as<recorded> auto&... x) {
+    return (x.is_constant() && ...);
   }
-  [[nodiscard]] static recorded of(expression::operation what, const recorded& a,
-                                   const recorded& b) {
-    expression::graph& g = *(a.is_constant() ? b : a).graph_;
-    const int first = a.node_in(g);
-    return {g, g.apply(what, first, b.node_in(g))};
+  /// The operation applied to numbers, of which one at least is recorded; a number or condition.
+  template <class Result = recorded>
+  [[nodiscard]] static Result of(expression::operation what,
+                                 const std::same_as<recorded> auto&... x) {
+    return with_index<Result>(what, 0, x...);
   }
-  [[nodiscard]] static recorded of(expression::operation what, const recorded& a, const recorded& b,
-                                   const recorded& c) {
-    expression::graph& g = *(!a.is_constant() ? a : !b.is_constant() ? b : c).graph_;
-    const int first = a.node_in(g), second = b.node_in(g);
-    return {g, g.apply(what, first, second, c.node_in(g))};
+  /// The operation with an index, as a power, applied likewise.
+  template <class Result = recorded>
+  [[nodiscard]] static Result with_index(expression::operation what, int index,
+                                         const std::same_as<recorded> auto&... x) {
+    expression::graph* g = nullptr;
+    static_cast<void>(((g = x.graph_, g != nullptr) || ...));
+    std::array<int, 3> nodes{-1, -1, -1};
+    int count = 0;
+    ((nodes[std::size_t(count++)] = x.node_in(*g)), ...);
+    return {*g, g->apply(what, nodes[0], nodes[1], nodes[2], index)};
   }
 
 private:
-  [[nodiscard]] static bool known(const recorded& a, const recorded& b) {
-    return a.is_constant() && b.is_constant();
-  }
-
   expression::graph* graph_ = nullptr;
   int node_ = -1;
   double number_ = 0;
@@ -212,37 +217,21 @@ private:
   bool value_ = false;
 };
 
-namespace detail {
-
-[[nodiscard]] inline recorded_condition compared(expression::operation what, const recorded& a,
-                                                 const recorded& b) {
-  expression::graph& g = *(a.is_constant() ? b : a).home();
-  const int first = a.node_in(g);
-  return {g, g.apply(what, first, b.node_in(g))};
-}
-[[nodiscard]] inline bool are_constant(const recorded& a, const recorded& b) {
-  return a.is_constant() && b.is_constant();
-}
-
-} // namespace detail
-
-[[nodiscard]] inline recorded_condition operator<(const recorded& a, const recorded& b) {
-  return detail::are_constant(a, b) ? recorded_condition(a.number() < b.number())
-                                    : detail::compared(expression::operation::less, a, b);
-}
-[[nodiscard]] inline recorded_condition operator<=(const recorded& a, const recorded& b) {
-  return detail::are_constant(a, b) ? recorded_condition(a.number() <= b.number())
-                                    : detail::compared(expression::operation::less_equal, a, b);
-}
+#define DUET_RECORDED_COMPARISON(sign, name)                                                       \
+  [[nodiscard]] inline recorded_condition operator sign(const recorded& a, const recorded& b) {    \
+    return recorded::are_constant(a, b)                                                            \
+               ? recorded_condition(a.number() sign b.number())                                    \
+               : recorded::of<recorded_condition>(expression::operation::name, a, b);              \
+  }
+DUET_RECORDED_COMPARISON(<, less)
+DUET_RECORDED_COMPARISON(<=, less_equal)
+DUET_RECORDED_COMPARISON(==, equal)
+#undef DUET_RECORDED_COMPARISON
 [[nodiscard]] inline recorded_condition operator>(const recorded& a, const recorded& b) {
   return b < a;
 }
 [[nodiscard]] inline recorded_condition operator>=(const recorded& a, const recorded& b) {
   return b <= a;
-}
-[[nodiscard]] inline recorded_condition operator==(const recorded& a, const recorded& b) {
-  return detail::are_constant(a, b) ? recorded_condition(a.number() == b.number())
-                                    : detail::compared(expression::operation::equal, a, b);
 }
 [[nodiscard]] inline recorded_condition operator!=(const recorded& a, const recorded& b) {
   return !(a == b);
@@ -300,8 +289,8 @@ DUET_EACH_ROUNDING(DUET_RECORDED_FUNCTION)
 
 #define DUET_RECORDED_FUNCTION(name)                                                               \
   [[nodiscard]] inline recorded name(const recorded& a, const recorded& b) {                       \
-    return detail::are_constant(a, b) ? recorded(std::name(a.number(), b.number()))                \
-                                      : recorded::of(expression::operation::name, a, b);           \
+    return recorded::are_constant(a, b) ? recorded(std::name(a.number(), b.number()))              \
+                                        : recorded::of(expression::operation::name, a, b);         \
   }
 DUET_RECORDED_FUNCTION(atan2)
 DUET_RECORDED_FUNCTION(hypot)
@@ -315,19 +304,18 @@ DUET_RECORDED_FUNCTION(remainder)
 }
 /// x^p; of a whole p from −16 to 16 by an operation of its own, within 4 ulp.
 [[nodiscard]] inline recorded pow(const recorded& x, const recorded& p) {
-  if (detail::are_constant(x, p)) {
+  if (recorded::are_constant(x, p)) {
     return std::pow(x.number(), p.number());
   }
   if (p.is_constant() && std::abs(p.number()) <= 16 && std::trunc(p.number()) == p.number()) {
     const int n = int(p.number());
-    return n == 0 ? recorded(1) : recorded::of(expression::operation::power, x, n);
+    return n == 0 ? recorded(1) : recorded::with_index(expression::operation::power, n, x);
   }
   return recorded::of(expression::operation::pow, x, p);
 }
 [[nodiscard]] inline recorded fma(const recorded& x, const recorded& y, const recorded& z) {
-  return detail::are_constant(x, y) && z.is_constant()
-             ? recorded(std::fma(x.number(), y.number(), z.number()))
-             : recorded::of(expression::operation::fma, x, y, z);
+  return recorded::are_constant(x, y, z) ? recorded(std::fma(x.number(), y.number(), z.number()))
+                                         : recorded::of(expression::operation::fma, x, y, z);
 }
 /// a + t (b − a) from the nearer end.
 [[nodiscard]] inline recorded lerp(const recorded& a, const recorded& b, const recorded& t) {
@@ -354,25 +342,19 @@ DUET_RECORDED_FUNCTION(remainder)
 
 /// Classification, recorded.
 [[nodiscard]] inline recorded_condition isfinite(const recorded& x) {
-  return x.is_constant()
-             ? recorded_condition(std::isfinite(x.number()))
-             : recorded_condition(*x.home(), x.home()->apply(expression::operation::is_finite,
-                                                             x.node_in(*x.home())));
+  return x.is_constant() ? recorded_condition(std::isfinite(x.number()))
+                         : recorded::of<recorded_condition>(expression::operation::is_finite, x);
 }
 [[nodiscard]] inline recorded_condition isnan(const recorded& x) {
-  return x.is_constant()
-             ? recorded_condition(std::isnan(x.number()))
-             : recorded_condition(
-                   *x.home(), x.home()->apply(expression::operation::is_nan, x.node_in(*x.home())));
+  return x.is_constant() ? recorded_condition(std::isnan(x.number()))
+                         : recorded::of<recorded_condition>(expression::operation::is_nan, x);
 }
 [[nodiscard]] inline recorded_condition isinf(const recorded& x) {
   return !isfinite(x) && !isnan(x);
 }
 [[nodiscard]] inline recorded_condition signbit(const recorded& x) {
-  return x.is_constant()
-             ? recorded_condition(std::signbit(x.number()))
-             : recorded_condition(*x.home(), x.home()->apply(expression::operation::is_negative,
-                                                             x.node_in(*x.home())));
+  return x.is_constant() ? recorded_condition(std::signbit(x.number()))
+                         : recorded::of<recorded_condition>(expression::operation::is_negative, x);
 }
 /// |magnitude| with the sign of `sign`.
 [[nodiscard]] inline recorded copysign(const recorded& magnitude, const recorded& sign) {
@@ -382,11 +364,11 @@ DUET_RECORDED_FUNCTION(remainder)
 
 /// c_index(s) as one expression::operation: duet calls this for recorded numbers.
 [[nodiscard]] inline recorded recorded_stumpff(const recorded& s, int index) {
-  return recorded::of(expression::operation::stumpff, s, index);
+  return recorded::with_index(expression::operation::stumpff, index, s);
 }
 /// atan2(√s, w)/√s as one expression::operation, likewise.
 [[nodiscard]] inline recorded recorded_arc_ratio(const recorded& s, const recorded& w) {
-  if (detail::are_constant(s, w)) {
+  if (recorded::are_constant(s, w)) {
     const double root = std::sqrt(s.number());
     return root == 0 && w.number() > 0 ? 1 / w.number() : std::atan2(root, w.number()) / root;
   }

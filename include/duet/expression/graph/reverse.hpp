@@ -9,6 +9,7 @@
 #include <duet/dual/stumpff.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
+#include <duet/expression/graph/functions_of_one.hpp>
 #include <duet/expression/graph/graph.hpp>
 #include <duet/expression/graph/recorded.hpp>
 
@@ -35,25 +36,7 @@ namespace duet::expression::detail {
   case operation::name:                                                                            \
     return duet::rule::name{}.slope(x, y);
   switch (what) {
-    DUET_CASE(sqrt)
-    DUET_CASE(cbrt)
-    DUET_CASE(exp)
-    DUET_CASE(exp2)
-    DUET_CASE(expm1)
-    DUET_CASE(log)
-    DUET_CASE(log2)
-    DUET_CASE(log10)
-    DUET_CASE(log1p)
-    DUET_CASE(tan)
-    DUET_CASE(asin)
-    DUET_CASE(acos)
-    DUET_CASE(atan)
-    DUET_CASE(tanh)
-    DUET_CASE(asinh)
-    DUET_CASE(acosh)
-    DUET_CASE(atanh)
-    DUET_CASE(erf)
-    DUET_CASE(erfc)
+    DUET_EACH_FUNCTION_WITH_SLOPE(DUET_CASE)
 #undef DUET_CASE
   case operation::sin:
     return cos(x);
