@@ -35,13 +35,8 @@ public:
 
   [[nodiscard]] std::string type() const { return is_single_ ? "float" : "double"; }
   [[nodiscard]] std::string number(double x) const {
-    if (std::isnan(x)) {
-      return "NAN";
-    }
-    if (std::isinf(x)) {
-      return x < 0 ? "-INFINITY" : "INFINITY";
-    }
-    return is_single_ ? number_literal(static_cast<float>(x)) + "f" : number_literal(x);
+    return is_single_ && std::isfinite(x) ? number_literal(static_cast<float>(x)) + "f"
+                                          : number_literal(x, "NAN", "INFINITY");
   }
   [[nodiscard]] std::string function(const std::string& name) const {
     return is_cpp() ? "std::" + name : name + (is_single_ ? "f" : "");

@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <map>
@@ -52,6 +53,12 @@ template <class T>
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), x).ptr;
   const std::string text(digits.data(), end);
   return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+/// The decimal digits of x, or the names that a language has for NaN and infinity.
+template <class T>
+[[nodiscard]] std::string number_literal(T x, const char* nan, const std::string& infinity) {
+  return std::isnan(x) ? nan : std::isinf(x) ? (x < 0 ? "-" : "") + infinity : number_literal(x);
 }
 
 /// Keywords of C, C++, Python, MATLAB and Octave, and names that their libraries take or that look

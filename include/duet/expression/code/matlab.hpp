@@ -8,7 +8,6 @@
 #include <duet/expression/graph/trace.hpp>
 
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <set>
@@ -26,15 +25,7 @@ namespace detail {
 /// MATLAB, as Octave also runs it.
 class matlab_language {
 public:
-  [[nodiscard]] std::string number(double x) const {
-    if (std::isnan(x)) {
-      return "NaN";
-    }
-    if (std::isinf(x)) {
-      return x < 0 ? "-Inf" : "Inf";
-    }
-    return number_literal(x);
-  }
+  [[nodiscard]] std::string number(double x) const { return number_literal(x, "NaN", "Inf"); }
   [[nodiscard]] printed call(const graph_node& n, const std::array<printed, 3>& x) const {
     std::string name(function_name_of(n.what));
     if (n.what == operation::trunc) {

@@ -8,7 +8,6 @@
 #include <duet/expression/graph/trace.hpp>
 
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <string>
@@ -24,15 +23,7 @@ namespace detail {
 /// Python with NumPy, of numbers and of arrays alike.
 class python_language {
 public:
-  [[nodiscard]] std::string number(double x) const {
-    if (std::isnan(x)) {
-      return "np.nan";
-    }
-    if (std::isinf(x)) {
-      return x < 0 ? "-np.inf" : "np.inf";
-    }
-    return number_literal(x);
-  }
+  [[nodiscard]] std::string number(double x) const { return number_literal(x, "np.nan", "np.inf"); }
   [[nodiscard]] printed call(const graph_node& n, const std::array<printed, 3>& x) const {
     return call_of(function(n), n, x);
   }
@@ -40,18 +31,8 @@ public:
     return {"np.where(" + x[0].text + ", " + x[1].text + ", " + x[2].text + ")"};
   }
   [[nodiscard]] printed condition(const graph_node& n, const std::array<printed, 3>& x) const {
-    const auto infix = [&](const char* sign) -> printed {
-      return {x[0].inside(precedence::sum) + sign + x[1].inside(precedence::sum),
-              precedence::condition};
-    };
     const std::string both = "(" + x[0].text + ", " + x[1].text + ")";
     switch (n.what) {
-    case operation::less:
-      return infix(" < ");
-    case operation::less_equal:
-      return infix(" <= ");
-    case operation::equal:
-      return infix(" == ");
     case operation::both:
       return {"np.logical_and" + both};
     case operation::either:
@@ -59,7 +40,7 @@ public:
     case operation::no:
       return {"np.logical_not(" + x[0].text + ")"};
     default:
-      return {"np." + std::string(function_name_of(n.what)) + "(" + x[0].text + ")"};
+      return infix_condition(n, x, "", "np.");
     }
   }
   [[nodiscard]] std::string assignment(const std::string& name, const std::string& value,
