@@ -704,6 +704,115 @@ TEST_CASE("functions over double alone are differentiated by differences") {
         verdict::disagrees);
 }
 
+TEST_CASE("round-off where the Jacobian vanishes, and of other entries beside a slip") {
+  const auto f = [](const auto& q, const auto& t, const auto& a, const auto& b) {
+    const auto x = rotate(q, a);
+    return b[0] * (t[1] * x[2] - t[2] * x[1]) + b[1] * (t[2] * x[0] - t[0] * x[2]) +
+           b[2] * (t[0] * x[1] - t[1] * x[0]);
+  };
+  const auto inputs =
+      sampler(rotations{}, vectors<3>{1}, vectors<3>{2}, vectors<3>{2}).named("q", "t", "a", "b");
+  const auto judge = [&](slip s) {
+    return judge_jacobian(
+        "epipolar constraint", f,
+        [s](const rotation_type& q, const Vector3d& t, const Vector3d& a, const Vector3d& b) {
+          const Matrix3d r = rotation_matrix(q);
+          const Vector3d x = r * a, m = r.transpose() * b.cross(t);
+          Eigen::Matrix<double, 1, 12> j;
+          j << (s == 1 ? -1 : 1) * a.cross(m).transpose(),
+              (s == 2 ? .5 : 1) * x.cross(b).transpose(), (s == 3 ? -1 : 1) * m.transpose(),
+              t.cross(x).transpose();
+          if (s == 4) { // columns exchanged in two blocks
+            j.col(0).swap(j.col(1));
+            j.col(10).swap(j.col(11));
+          }
+          return j;
+        },
+        inputs);
+  };
+  check_slips(judge,
+              {{1, "sign", "d f / d q"}, {2, "half angle", "d f / d t"}, {3, "sign", "d f / d a"}},
+              {{1, 2}, {2, 3}, {1, 3}, {4, 0}});
+}
+
+TEST_CASE("derivatives by stored numbers of one rotation beside those of another") {
+  const auto f = [](const auto& a, const auto& b, const auto& p, const auto& t) {
+    const auto y = rotate(b, p);
+    using S = std::decay_t<decltype(y[0] + t[0])>;
+    return rotate(a, vector3<S>(y[0] + t[0], y[1] + t[1], y[2] + t[2]));
+  };
+  const auto inputs =
+      sampler(rotations{}, rotations{}, vectors<3>{2}, vectors<3>{2}).named("a", "b", "p", "t");
+  const auto by_quaternion = [](const rotation_type& q, const Vector3d& p, double sign) {
+    const Vector3d v(q.x(), q.y(), q.z());
+    Eigen::Matrix<double, 3, 4> m; // of the rotation matrix of any norm
+    m << 2 * (q.w() * p + v.cross(p)), 2 * (v.dot(p) * Matrix3d::Identity() + v * p.transpose() -
+                                            p * v.transpose() - sign * q.w() * hat(p));
+    return m;
+  };
+  const auto judge = [&](slip s) {
+    return judge_jacobian(
+        "two rotations", f,
+        [&](const rotation_type& a, const rotation_type& b, const Vector3d& p, const Vector3d& t) {
+          const Matrix3d r = rotation_matrix(a), back = rotation_matrix(b);
+          Eigen::Matrix<double, 3, 4> by_a = by_quaternion(a, back * p + t, s == 1 ? -1 : 1),
+                                      by_b = by_quaternion(b, p, s == 2 ? -1 : 1);
+          by_a(0, 2) *= s == 3 ? -1 : 1;
+          Eigen::Matrix<double, 3, 14> j;
+          j << by_a, r * by_b, r * back, (s == 4 ? -1 : 1) * r;
+          return j;
+        },
+        inputs, {.samples = 20});
+  };
+  check_slips(judge,
+              {{1, "sign of a[0]", "d f / d a[1..3], by stored numbers"},
+               {2, "sign of b[0]", "d f / d b[1..3], by stored numbers"},
+               {3, "sign", "entry (0, 2) of d f / d a, by stored numbers"},
+               {4, "sign", "d f / d t"}},
+              {{1, 2}, {1, 4}, {3, 4}});
+}
+
+TEST_CASE("errors as small as what a hypothesis may leave, and terms that hide a second slip") {
+  const auto f = [](const auto& a, const auto& b, const auto& v) {
+    const auto q = conj(a) * b;
+    using S = std::decay_t<decltype(q.w() + v[0])>;
+    const vector3<S> e(rotation_vector(q));
+    return std::tuple(e, vector3<S>(v[0] - 9.81, v[1], v[2]), conj(a));
+  };
+  const auto inputs = sampler(rotations{3.1}, rotations{3.1}, vectors<3>{2})
+                          .named("a", "b", "v")
+                          .where([](const auto& a, const auto& b, const auto&) {
+                            return rotation_vector(conj(a) * b).norm() < 3.1;
+                          });
+  const auto judge = [&](slip s) {
+    return judge_jacobian("differences", f,
+                          [s](const rotation_type& a, const rotation_type& b, const Vector3d&) {
+                            const Matrix3d one = Matrix3d::Identity();
+                            const Vector3d e = rotation_vector(conj(a) * b);
+                            MatrixXd j = MatrixXd::Zero(9, 9);
+                            j.topLeftCorner<3, 3>() = -left_jacobian_inverse(e);
+                            j.block<3, 3>(0, 3) = s == 1 && e.norm() < 2e-4
+                                                      ? Matrix3d(one + .5 * hat(e))
+                                                      : right_jacobian_inverse(e);
+                            j.block<3, 3>(3, 6) = one;
+                            j.block<3, 3>(6, 0) = s == 2 ? one : Matrix3d(-rotation_matrix(a));
+                            if (s == 3) { // a constant error of two blocks
+                              j.middleRows<3>(3).setConstant(.7);
+                            }
+                            return j;
+                          },
+                          inputs, {.samples = 100});
+  };
+  check_slips(judge, {}, {{2, 0}, {3, 0}});
+  const jacobian_judgement j = judge({1});
+  CAPTURE(to_text(j));
+  CHECK(j.outcome == verdict::disagrees);
+  CHECK(has(j, "only in the branch of small values: angle of a^-1 b", "d f[0] / d b"));
+  for (const jacobian_slip& s : j.slips) {
+    CHECK(s.name.find("only in the branch") == 0);
+  }
+}
+
 TEST_CASE("what a Jacobian returns: matrices side by side, numbers row by row, wrong sizes") {
   const auto f = [](const auto& q, const auto& p) { return rotate(q, p); };
   const auto inputs = sampler(rotations{}, vectors<3>{1}).named("q", "p");

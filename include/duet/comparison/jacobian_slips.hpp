@@ -32,6 +32,20 @@ public:
       : slips_of_terms(problem, samples) {}
 
   [[nodiscard]] std::vector<jacobian_slip> found() {
+    // Where the error is as small as what a hypothesis may leave, it confirms none.
+    const scope least = scopes_.front();
+    std::erase_if(scopes_, [&](const scope& at) {
+      return std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+        return fits(s, at, of(s.exact, at), 1e-8);
+      });
+    });
+    if (scopes_.empty()) {
+      scopes_ = {least};
+      if (problem_.written) {
+        try_regions();
+      }
+      return std::move(slips_);
+    }
     try_algebra();
     try_frames();
     if (problem_.truth) {
@@ -397,10 +411,23 @@ private:
     };
     std::vector<jacobian_sample> samples = samples_;
     for (jacobian_sample& s : samples) {
+      const matrix error = s.written - s.exact;
       s.exact = exact_at(s.state, s.truth);
       s.written.resize(s.raw.rows(), stored);
       for (Eigen::Index k = 0; k < stored; ++k) {
         s.written.col(k) = s.raw.col(order[std::size_t(k)]);
+      }
+      // Right derivatives may be those of another continuation.
+      std::size_t next = 0;
+      for (const jacobian_part& a : problem_.arguments) {
+        if (a.is_motion() && (last_ < a.first || first_ >= a.first + a.dimension)) {
+          const Eigen::Index column = part.arguments[next].first;
+          const matrix chart = chart_derivative(a, s.state, problem_.side, quaternion_order::wxyz);
+          s.written.middleCols(column, a.state_size()) =
+              s.exact.middleCols(column, a.state_size()) +
+              divided(error.middleCols(a.first, a.dimension), chart);
+        }
+        next += a.type == kind::pose ? 2 : 1;
       }
       s.allowed += 1e-12 * largest_entry(s.exact);
       s.is_wrong = largest_entry(s.written - s.exact) > s.allowed;

@@ -356,9 +356,16 @@ public:
       return result;
     }
     if (error > s.allowed && error < 1e-4 * scale) {
-      s.allowed += options_.tolerance * half_ulp * sensitivity(s);
+      s.allowed += rounding_effect(s);
+    } else if (const double most = 1e-10 * scale; has_error_between(s, s.allowed, most)) {
+      s.allowed = std::min(s.allowed + rounding_effect(s), most); // of other entries than the slip
     }
     return error <= s.allowed ? verdict::agrees : verdict::disagrees;
+  }
+
+  /// Allowed effect of rounded arguments on an entry.
+  [[nodiscard]] double rounding_effect(const jacobian_sample& s) const {
+    return options_.tolerance * std::numeric_limits<double>::epsilon() / 2 * sensitivity(s);
   }
 
   /// True if the largest error of a sample is round-off of the handwritten code: somewhere towards
@@ -444,6 +451,17 @@ public:
   }
 
 private:
+  /// True if the error of an entry is in a range.
+  [[nodiscard]] static bool has_error_between(const jacobian_sample& s, double least, double most) {
+    for (Eigen::Index i = 0; i < s.exact.size(); ++i) {
+      const double error = double(std::abs(s.written(i) - s.truth.jacobian(i)));
+      if (error > least && error <= most) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   /// Change of the Jacobian per relative change of the state; of both sides the smaller.
   [[nodiscard]] double sensitivity(const jacobian_sample& s) const {
     constexpr double step = 0x1p-20;
@@ -558,17 +576,33 @@ points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates
   for (std::size_t n = 0; n < points.size(); ++n) {
     samples.push_back(judge.sample_at(inputs.state(points[n])));
     verdicts.push_back(judge.judged(samples.back()));
-    if (verdicts.back() == verdict::disagrees) {
-      wrong.push_back(n);
-    }
-    const double error = judge.error_of(samples[n]) / largest_entry(samples[n].exact);
-    if (error > result.worst_error && std::isfinite(error)) {
-      result.worst_error = error;
-      result.worst_input = inputs.describe(points[n]);
-    }
     const progress now{n + 1, points.size()};
     if (options.report && !options.report(now) && now.done < now.count) {
       raise(cancelled(now));
+    }
+  }
+  double scale = 0;
+  for (const jacobian_sample& s : samples) {
+    const double size = largest_entry(s.exact);
+    scale = std::isfinite(size) ? std::max(scale, size) : scale;
+  }
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    jacobian_sample& s = samples[n];
+    const double error = judge.error_of(s);
+    // A matrix that vanishes is round-off as a whole.
+    const bool is_nothing = s.truth.error == 0 && largest_entry(s.exact) < 1e-9 * scale;
+    if (is_nothing && verdicts[n] == verdict::disagrees) {
+      s.allowed += judge.rounding_effect(s);
+      verdicts[n] = error <= s.allowed ? verdict::agrees : verdict::disagrees;
+    }
+    if (verdicts[n] == verdict::disagrees) {
+      wrong.push_back(n);
+    }
+    const double relative = error / largest_entry(s.exact);
+    if (relative > result.worst_error && std::isfinite(relative) &&
+        !(is_nothing && verdicts[n] == verdict::agrees)) {
+      result.worst_error = relative;
+      result.worst_input = inputs.describe(points[n]);
     }
   }
   std::sort(wrong.begin(), wrong.end(), [&](std::size_t a, std::size_t b) {

@@ -274,6 +274,19 @@ protected:
     });
   }
 
+  /// True if a matrix is that of a rotation, or the adjoint one of a pose.
+  [[nodiscard]] static bool is_adjoint(const matrix& m) {
+    if (m.rows() != m.cols() || (m.rows() != 3 && m.rows() != 6)) {
+      return false;
+    }
+    const Eigen::Matrix3d r = m.bottomRightCorner(3, 3);
+    const double tolerance = 1e-9;
+    return largest_entry(product_of(r, r.transpose()) - matrix::Identity(3, 3)) < tolerance &&
+           r.determinant() > 0 &&
+           (m.rows() == 3 || (largest_entry(m.topLeftCorner(3, 3) - r) < tolerance &&
+                              largest_entry(m.bottomLeftCorner(3, 3)) < tolerance));
+  }
+
   void try_algebra() {
     const auto is_square = [](const matrix& m) { return m.rows() == m.cols() && m.rows() > 1; };
     const auto try_factor = [&](const std::string& name, double factor) {
@@ -296,7 +309,9 @@ protected:
             message(name, " one summand: all but ", one < 0 ? "minus " : "", "the identity matrix"),
             [&, one, factor = factor](const matrix& m) -> matrix {
               const matrix identity = one * matrix::Identity(m.rows(), m.cols());
-              return is_square(m) ? matrix(identity + factor * (m - identity)) : matrix();
+              const bool is_opposite = factor == 0 && is_square(m) && is_adjoint(-one * m);
+              return is_square(m) && !is_opposite ? matrix(identity + factor * (m - identity))
+                                                  : matrix();
             });
       }
     }

@@ -62,6 +62,48 @@ protected:
     return from;
   }
 
+  /// True if columns, or rows, of several arguments, or results, come from others by more than one
+  /// slip: exchanged in one argument alone and otherwise in another, or partly from zeros
+  /// elsewhere.
+  ///
+  /// \param from  sources of the lines of a rectangle
+  [[nodiscard]] bool has_two_exchanges(const scope& at, const std::vector<Eigen::Index>& from,
+                                       bool is_columns) const {
+    std::set<std::vector<Eigen::Index>> exchanges; // empty: with other arguments
+    const Eigen::Index begin = is_columns ? at.column : at.row,
+                       end = begin + Eigen::Index(from.size());
+    for (const jacobian_part& p : is_columns ? problem_.arguments : problem_.results) {
+      const Eigen::Index size = p.dimension == 6 ? 3 : p.dimension;
+      for (Eigen::Index first = p.first; first < p.first + p.dimension; first += size) {
+        std::vector<Eigen::Index> own;
+        bool has_moved_within = false, has_outside = false, has_zeros = false;
+        for (Eigen::Index k = std::max(first, begin); k < std::min(first + size, end); ++k) {
+          const Eigen::Index source = from[std::size_t(k - begin)];
+          own.push_back(source - first);
+          const bool is_outside = source < first || source >= first + size;
+          has_outside = has_outside || is_outside;
+          has_moved_within = has_moved_within || (!is_outside && source != k);
+          has_zeros = has_zeros ||
+                      (is_outside &&
+                       std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+                         return largest_entry(is_columns ? s.exact.block(at.row, source, at.rows, 1)
+                                                         : s.exact.block(source, at.column, 1,
+                                                                         at.columns)) <= s.allowed;
+                       }));
+        }
+        if (has_moved_within && has_zeros) {
+          return true;
+        }
+        if (has_outside) {
+          exchanges.insert(std::vector<Eigen::Index>());
+        } else if (has_moved_within) {
+          exchanges.insert(own);
+        }
+      }
+    }
+    return exchanges.size() > 1;
+  }
+
   /// Columns that contain other columns, and rows that contain other rows.
   void try_columns() {
     for (const bool is_columns : {true, false}) {
@@ -80,7 +122,7 @@ protected:
         const bool is_slip = is_columns
                                  ? !distances.empty() && (is_injective || distances.size() == 1)
                                  : at.columns > 1 || (at.rows > 1 && is_injective);
-        if (*different.begin() >= 0 && is_slip) {
+        if (*different.begin() >= 0 && is_slip && !has_two_exchanges(at, from, is_columns)) {
           accept(message(from.size() == 1
                              ? (is_columns ? "wrong index: column " : "wrong index: row ")
                          : !is_columns  ? "permuted or wrong rows: "
@@ -105,9 +147,12 @@ protected:
     }
   }
 
-  /// A term that contains a wrong constant: the error is a constant matrix.
+  /// A term that contains a wrong constant: the error of one block is a constant matrix.
   void try_constants() {
     for (const scope& at : scopes_) {
+      if (at.argument == nullptr || at.result == nullptr) {
+        continue;
+      }
       const matrix first = of(samples_[0].written, at) - of(samples_[0].exact, at);
       // Where several right entries are constant as well, any others would be.
       Eigen::Index count = 0;
