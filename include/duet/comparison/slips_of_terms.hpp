@@ -62,9 +62,7 @@ protected:
     return from;
   }
 
-  /// True if columns, or rows, of several arguments, or results, come from others by more than one
-  /// slip: exchanged in one argument alone and otherwise in another, or partly from zeros
-  /// elsewhere.
+  /// True if columns, or rows, of several arguments, or results, are exchanged differently.
   ///
   /// \param from  sources of the lines of a rectangle
   [[nodiscard]] bool has_two_exchanges(const scope& at, const std::vector<Eigen::Index>& from,
@@ -76,28 +74,15 @@ protected:
       const Eigen::Index size = p.dimension == 6 ? 3 : p.dimension;
       for (Eigen::Index first = p.first; first < p.first + p.dimension; first += size) {
         std::vector<Eigen::Index> own;
-        bool has_moved_within = false, has_outside = false, has_zeros = false;
+        bool is_exchanged = false, has_outside = false;
         for (Eigen::Index k = std::max(first, begin); k < std::min(first + size, end); ++k) {
           const Eigen::Index source = from[std::size_t(k - begin)];
           own.push_back(source - first);
-          const bool is_outside = source < first || source >= first + size;
-          has_outside = has_outside || is_outside;
-          has_moved_within = has_moved_within || (!is_outside && source != k);
-          has_zeros = has_zeros ||
-                      (is_outside &&
-                       std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-                         return largest_entry(is_columns ? s.exact.block(at.row, source, at.rows, 1)
-                                                         : s.exact.block(source, at.column, 1,
-                                                                         at.columns)) <= s.allowed;
-                       }));
+          is_exchanged = is_exchanged || source != k;
+          has_outside = has_outside || source < first || source >= first + size;
         }
-        if (has_moved_within && has_zeros) {
-          return true;
-        }
-        if (has_outside) {
-          exchanges.insert(std::vector<Eigen::Index>());
-        } else if (has_moved_within) {
-          exchanges.insert(own);
+        if (is_exchanged) {
+          exchanges.insert(has_outside ? std::vector<Eigen::Index>() : own);
         }
       }
     }
