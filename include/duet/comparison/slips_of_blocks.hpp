@@ -305,11 +305,16 @@ protected:
     for (const double one : {1., -1.}) {
       for (const auto& [name, factor] : {std::pair("sign of", -1.), std::pair("missing:", 0.),
                                          std::pair("twice", 2.), std::pair("half of", .5)}) {
-        attempt_change(
+        attempt(
             message(name, " one summand: all but ", one < 0 ? "minus " : "", "the identity matrix"),
-            [&, one, factor = factor](const matrix& m) -> matrix {
-              const matrix identity = one * matrix::Identity(m.rows(), m.cols());
-              const bool is_opposite = factor == 0 && is_square(m) && is_adjoint(-one * m);
+            [&, one, factor = factor](const jacobian_sample& s, const scope& at) -> matrix {
+              const matrix m = of(s.exact, at),
+                           identity = one * matrix::Identity(m.rows(), m.cols());
+              const bool is_opposite =
+                  factor == 0 &&
+                  std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& other) {
+                    return is_adjoint(-one * of(other.exact, at));
+                  });
               return is_square(m) && !is_opposite ? matrix(identity + factor * (m - identity))
                                                   : matrix();
             });
