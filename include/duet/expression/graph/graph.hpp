@@ -3,7 +3,7 @@
 
 #include <duet/core/compiler/types.hpp>
 #include <duet/core/errors.hpp>
-#include <duet/expression/tree/exact.hpp>
+#include <duet/expression/tree/exact_rules.hpp>
 
 #include <algorithm>
 #include <array>
