@@ -32,7 +32,8 @@ public:
       : slips_of_terms(problem, samples) {}
 
   [[nodiscard]] std::vector<jacobian_slip> found() {
-    // Where the error is as small as what a hypothesis may leave, it confirms none.
+    // Any hypothesis fits errors that are no larger than it may leave: only branches are tried
+    // there.
     const scope least = scopes_.front();
     std::erase_if(scopes_, [&](const scope& at) {
       return std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
@@ -417,7 +418,8 @@ private:
       for (Eigen::Index k = 0; k < stored; ++k) {
         s.written.col(k) = s.raw.col(order[std::size_t(k)]);
       }
-      // Right derivatives may be those of another continuation.
+      // Beyond unit quaternions the handwritten function may be continued otherwise: columns of
+      // other rotations become the exact ones plus their error in tangent coordinates.
       std::size_t next = 0;
       for (const jacobian_part& a : problem_.arguments) {
         if (a.is_motion() && (last_ < a.first || first_ >= a.first + a.dimension)) {

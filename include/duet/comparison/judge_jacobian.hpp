@@ -343,7 +343,6 @@ public:
         return verdict::not_finite;
       }
     }
-    constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
     const double scale = largest_entry(s.exact), error = error_of(s);
     s.allowed = options_.tolerance * half_ulp * scale;
     if (s.truth.error > 0) { // differences have about eleven digits
@@ -365,7 +364,7 @@ public:
 
   /// Allowed effect of rounded arguments on an entry.
   [[nodiscard]] double rounding_effect(const jacobian_sample& s) const {
-    return options_.tolerance * std::numeric_limits<double>::epsilon() / 2 * sensitivity(s);
+    return options_.tolerance * half_ulp * sensitivity(s);
   }
 
   /// True if the largest error of a sample is round-off of the handwritten code: somewhere towards
@@ -451,6 +450,8 @@ public:
   }
 
 private:
+  static constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
+
   /// True if the error of an entry is in a range.
   [[nodiscard]] static bool has_error_between(const jacobian_sample& s, double least, double most) {
     for (Eigen::Index i = 0; i < s.exact.size(); ++i) {
@@ -589,9 +590,9 @@ points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates
   for (std::size_t n = 0; n < points.size(); ++n) {
     jacobian_sample& s = samples[n];
     const double error = judge.error_of(s);
-    // A matrix that vanishes is round-off as a whole.
-    const bool is_nothing = s.truth.error == 0 && largest_entry(s.exact) < 1e-9 * scale;
-    if (is_nothing && verdicts[n] == verdict::disagrees) {
+    // All entries of a Jacobian that vanishes are round-off.
+    const bool vanishes = s.truth.error == 0 && largest_entry(s.exact) < 1e-9 * scale;
+    if (vanishes && verdicts[n] == verdict::disagrees) {
       s.allowed += judge.rounding_effect(s);
       verdicts[n] = error <= s.allowed ? verdict::agrees : verdict::disagrees;
     }
@@ -600,7 +601,7 @@ points_near_zeros(const jacobian_problem& problem, const std::vector<coordinates
     }
     const double relative = error / largest_entry(s.exact);
     if (relative > result.worst_error && std::isfinite(relative) &&
-        !(is_nothing && verdicts[n] == verdict::agrees)) {
+        !(vanishes && verdicts[n] == verdict::agrees)) {
       result.worst_error = relative;
       result.worst_input = inputs.describe(points[n]);
     }
