@@ -34,9 +34,9 @@ DUET_ABI_BEGIN
 /// Poses as a function of a parameter.
 using path_function = std::function<dual_quaternion<double>(double)>;
 
-/// The path as unit dual quaternions.
+/// Path whose poses are those of `path`, validated and normalised.
 ///
-/// \throws invalid_input when called, for a value that is not a pose
+/// \throws invalid_input from the returned function, for a value that is not a pose
 [[nodiscard]] path_function checked(path_function path);
 
 /// Joint path of a chain along a checked path.
