@@ -222,9 +222,7 @@ struct residual_blocks<Y> {
 
 /// The problem in tangent coordinates at the estimate, for `levenberg_marquardt`.
 ///
-/// \tparam R  scalar of the linear problem, a parameter so that only programs that solve one
-/// compile
-///   its matrices
+/// \tparam R  scalar of the linear problem: as a parameter its matrices compile only where used
 template <class F, class X, class R>
 class nonlinear_least_squares_problem {
   using vector = Eigen::VectorX<R>;
