@@ -6,6 +6,7 @@
 #include <duet/core/random_source.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/core/text/printable.hpp>
+#include <duet/expression/graph/bounded_values.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_derivative.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
@@ -33,103 +34,6 @@ using namespace duet::expression;
 
 const real_50 round_off("1e-49");
 const real_50 tolerance("1e-30");
-
-/// The values of a formula in 50 digits with bounds of their round-off, by running error analysis:
-/// each operation is repeated with operands that are off by their bounds. So complete cancellation,
-/// as in cosh(x)^2 - sinh(x)^2 of a large x, is not taken for a value.
-class bounded_values {
-public:
-  bounded_values(const formula_graph& f, const std::vector<real_50>& inputs)
-      : g_(f.operations()), x_(std::size_t(g_.size())), error_(x_.size()), holds_(x_.size()) {
-    const std::vector<bool> needed = f.needed();
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      const graph_node& n = g_[int(i)];
-      if (!needed[i]) {
-        continue;
-      }
-      if (n.what == operation::number) {
-        x_[i] = n.number;
-      } else if (n.what == operation::variable) {
-        x_[i] = inputs[std::size_t(n.index)];
-      } else if (is_condition(n.what)) {
-        compare(n, i);
-      } else {
-        compute(n, i);
-      }
-    }
-  }
-  [[nodiscard]] const real_50& value(int node) const { return x_[std::size_t(node)]; }
-  [[nodiscard]] const real_50& error(int node) const { return error_[std::size_t(node)]; }
-
-private:
-  void compare(const graph_node& n, std::size_t i) {
-    const std::size_t a = std::size_t(n.operands[0]);
-    const std::size_t b = std::size_t(std::max(n.operands[1], 0));
-    switch (n.what) {
-    case operation::less:
-    case operation::less_equal:
-    case operation::equal: {
-      holds_[i] = n.what == operation::less         ? x_[a] < x_[b]
-                  : n.what == operation::less_equal ? x_[a] <= x_[b]
-                                                    : x_[a] == x_[b];
-      const real_50 gap = abs(x_[a] - x_[b]);
-      error_[i] = gap <= error_[a] + error_[b] && error_[a] + error_[b] > 0 ? infinity() : 0;
-      return;
-    }
-    case operation::is_finite:
-      holds_[i] = isfinite(x_[a]);
-      return;
-    case operation::is_nan:
-      holds_[i] = isnan(x_[a]);
-      return;
-    case operation::is_negative:
-      holds_[i] = signbit(x_[a]);
-      return;
-    case operation::no:
-      holds_[i] = !holds_[a];
-      error_[i] = error_[a];
-      return;
-    default:
-      holds_[i] = n.what == operation::both ? holds_[a] && holds_[b] : holds_[a] || holds_[b];
-      error_[i] = error_[a] + error_[b];
-    }
-  }
-  void compute(const graph_node& n, std::size_t i) {
-    const auto operand = [&](int k) { return std::size_t(n.operands[std::size_t(k)]); };
-    if (n.what == operation::select) {
-      const std::size_t chosen = operand(holds_[operand(0)] ? 1 : 2);
-      x_[i] = x_[chosen];
-      error_[i] = error_[chosen] + error_[operand(0)];
-      return;
-    }
-    std::array<real_50, 3> x;
-    const int count = operand_count(n.what);
-    for (int k = 0; k < count; ++k) {
-      x[std::size_t(k)] = x_[operand(k)];
-    }
-    const auto value = [&] {
-      return n.what == operation::fma ? real_50(x[0] * x[1] + x[2])
-             : count == 2             ? detail::function_value<real_50>(n.what, x[0], x[1])
-                                      : detail::function_value<real_50>(n.what, n.index, x[0]);
-    };
-    x_[i] = value();
-    error_[i] = abs(x_[i]) * round_off;
-    for (int k = 0; k < count; ++k) {
-      const real_50& error = error_[operand(k)];
-      if (error > 0) {
-        x[std::size_t(k)] += error;
-        const real_50 change = abs(value() - x_[i]);
-        error_[i] += isnan(change) ? infinity() : change;
-        x[std::size_t(k)] = x_[operand(k)];
-      }
-    }
-  }
-  [[nodiscard]] static real_50 infinity() { return std::numeric_limits<real_50>::infinity(); }
-
-  const graph& g_;
-  std::vector<real_50> x_, error_;
-  std::vector<bool> holds_;
-};
 
 // Inputs.
 
@@ -307,7 +211,7 @@ struct side_value {
   bool is_finite = true;
 
   side_value(const formula_graph& f, const std::vector<real_50>& input) {
-    const bounded_values values(f, input);
+    const detail::bounded_values<real_50> values(f, input, round_off);
     for (const int node : f.outputs()[0].nodes) {
       numbers.push_back(values.value(node));
       is_finite = is_finite && isfinite(numbers.back());

@@ -100,6 +100,13 @@ TEST_CASE("is_equal proves no equality that does not hold everywhere") {
   DUET_VERDICT(unknown, 0.1 * x + 0.2 * x, 0.3 * x); // as numbers they differ
 }
 
+TEST_CASE("is_equal: round-off refutes nothing") {
+  DUET_VERDICT(proved, cosh(10 * x) * cosh(10 * x) - sinh(10 * x) * sinh(10 * x), 1 + 0 * x);
+  DUET_VERDICT(proved, (1e9 + x) * (1e9 + x) - 1e18 - 2e9 * x, x * x);
+  DUET_VERDICT(unknown, 1e16 * asin(sin(x / 9)) - 1e16 * (x / 9) + x, x); // by no relation
+  DUET_VERDICT(refuted, 1e5 * asin(sin(x / 9)) - 1e5 * (x / 9) + x, 2 * x);
+}
+
 TEST_CASE("is_equal: choices whose branches are equal where they are taken") {
   DUET_VERDICT(unknown,
                duet::select(
@@ -182,6 +189,14 @@ TEST_CASE("is_equal: rotations") {
   const std::string message =
       duet_test::message_of<duet::invalid_input>([&] { (void)is_equal(norm, product); });
   CHECK(message.find("other inputs or outputs") != std::string::npos);
+  formula_graph one_vector, two_numbers;
+  one_vector.add_output({.name = "x",
+                         .kind = duet::expression::shape::matrix,
+                         .rows = 2,
+                         .nodes = std::vector<int>(2, one_vector.operations().number(1))});
+  two_numbers.add_output({.name = "x", .nodes = {two_numbers.operations().number(1)}});
+  two_numbers.add_output({.name = "y", .nodes = {two_numbers.operations().number(1)}});
+  CHECK_THROWS_AS((void)is_equal(one_vector, two_numbers), duet::invalid_input);
 }
 
 #undef DUET_VERDICT

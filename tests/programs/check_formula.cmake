@@ -59,6 +59,7 @@ run(0 "^agrees" "cos(x + pi/2)" --equals "-sin(x)")
 run(0 "^agrees" "0.1x + 0.2x" --equals "0.3x")
 run(0 "^agrees" "sqrt(2)*sin(x + pi/4)" --equals "sin(x) + cos(x)")
 run(0 "hidden by round-off" "cosh(x)^2 - sinh(x)^2" --equals 1)
+run(0 "^agrees" "atan2(y^2 + y, -x^2)" --equals "atan2(y*(y + 1), -x^2)") # 0 and -0 at y = -1
 run(1 "^disagrees" "x + 1e-20" --equals "x")
 run(0 "^agrees.*such as x = 0, where the claim has no value" "x/x" --equals 1)
 run(0 "the claim loses more than half of the digits at x = 1e-08" "(1 - cos(x))/x^2" --equals "2 sin(x/2)^2/x^2")

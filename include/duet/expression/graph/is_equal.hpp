@@ -4,8 +4,8 @@
 #include <duet/core/errors.hpp>
 #include <duet/core/random_source.hpp>
 #include <duet/expression/graph/algebra.hpp>
+#include <duet/expression/graph/bounded_values.hpp>
 #include <duet/expression/graph/canonical_form.hpp>
-#include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_graph.hpp>
 
 #include <algorithm>
@@ -81,8 +81,12 @@ inline void add_sample(const named_value& x, const assumptions& known, random_so
 /// \throws invalid_input if the formulas have other inputs, or outputs of other sizes
 [[nodiscard]] inline equality_result is_equal(const formula_graph& f, const formula_graph& g,
                                               const assumptions& known = {}) {
+  const auto have_equal_size = [](const named_value& x, const named_value& y) {
+    return x.nodes.size() == y.nodes.size();
+  };
   duet::detail::require(f.inputs().size() == g.inputs().size() &&
-                            f.input_size() == g.input_size() && f.output_size() == g.output_size(),
+                            f.input_size() == g.input_size() &&
+                            std::ranges::equal(f.outputs(), g.outputs(), have_equal_size),
                         "duet: is_equal: the formulas have other inputs or outputs");
   // The numbers of g's inputs in the order of f's.
   std::vector<std::size_t> indices;
@@ -104,11 +108,15 @@ inline void add_sample(const named_value& x, const assumptions& known, random_so
     for (const std::size_t k : indices) {
       inputs_of_g.push_back(inputs[k]);
     }
-    const std::vector<double> a = evaluate(f, inputs), b = evaluate(g, inputs_of_g);
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      const double size = std::max(std::abs(a[k]), std::abs(b[k]));
-      if (std::isfinite(size) && size < 1e6 && std::abs(a[k] - b[k]) > 1e-6 * (1 + size)) {
-        return {equality::refuted, inputs, a[k], b[k]};
+    const detail::bounded_values<double> a(f, inputs, 0x1p-50), b(g, inputs_of_g, 0x1p-50);
+    for (std::size_t k = 0; k < f.outputs().size(); ++k) {
+      for (std::size_t i = 0; i < f.outputs()[k].nodes.size(); ++i) {
+        const int m = f.outputs()[k].nodes[i], n = g.outputs()[k].nodes[i];
+        const double x = a.value(m), y = b.value(n), size = std::max(std::abs(x), std::abs(y)),
+                     error = 10 * (a.error(m) + b.error(n));
+        if (std::isfinite(size) && size < 1e6 && std::abs(x - y) > 1e-6 * (1 + size) + error) {
+          return {equality::refuted, inputs, x, y};
+        }
       }
     }
   }
