@@ -407,6 +407,17 @@ TEST_CASE("bounds hold, and the others are at their minimum given them") {
   const auto inside = nonlinear_least_squares(f, std::tuple(1., 3., 0.), options);
   const auto free = nonlinear_least_squares(f, std::tuple(1., 3., 0.));
   CHECK(std::get<1>(inside.estimate) == doctest::Approx(std::get<1>(free.estimate)).epsilon(1e-12));
+  // Bounds are reached exactly, also where start + (bound - start) is another number.
+  for (const double start : {.7, .9, 3.3}) {
+    const auto distance = [](const auto& x) { return x * x + 1; };
+    const auto up =
+        nonlinear_least_squares(distance, start, {.lower = Eigen::VectorXd::Constant(1, .1)});
+    CHECK(up.estimate == .1);
+    CHECK(up.covariance(0) == 0);
+    const auto down =
+        nonlinear_least_squares(distance, -start, {.upper = Eigen::VectorXd::Constant(1, -.1)});
+    CHECK(down.estimate == -.1);
+  }
 }
 
 TEST_CASE("chain of poses in a vector") {

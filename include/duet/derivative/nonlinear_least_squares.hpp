@@ -403,7 +403,14 @@ private:
 
   /// The estimate after the step.
   [[nodiscard]] X moved() const {
-    X result = set::at(x_, 0, [&](double value, Eigen::Index k) { return value + step_[k]; });
+    X result = set::at(x_, 0, [&](double value, Eigen::Index k) {
+      for (const double bound : {lower_[k], upper_[k]}) {
+        if (step_[k] == bound - value) {
+          return bound; // exactly, which the sum need not be
+        }
+      }
+      return value + step_[k];
+    });
     normalise(result);
     return result;
   }
@@ -531,6 +538,11 @@ private:
         free.push_back(k);
       }
     }
+    result.degrees_of_freedom = int(residuals_.size());
+    result.covariance = matrix::Zero(size_, size_);
+    if (free.empty()) {
+      return;
+    }
     const Eigen::Index n = Eigen::Index(free.size());
     vector units(n);
     for (Eigen::Index k = 0; k < n; ++k) {
@@ -540,7 +552,7 @@ private:
     Eigen::ColPivHouseholderQR<matrix> qr(r_.rows(), n);
     qr.setThreshold(1e3 * double(n) * std::numeric_limits<double>::epsilon());
     qr.compute(r_(Eigen::all, free) * units.asDiagonal());
-    const Eigen::Index rank = n > 0 ? qr.rank() : 0;
+    const Eigen::Index rank = qr.rank();
     const auto position = qr.colsPermutation().indices();
     const auto top =
         qr.matrixQR().topLeftCorner(rank, rank).template triangularView<Eigen::Upper>();
@@ -575,7 +587,6 @@ private:
       inverse *= gradient_bias_.factor(double(rank));
     }
     result.degrees_of_freedom = int(freedom);
-    result.covariance = matrix::Zero(size_, size_);
     result.covariance(kept, kept) = scale.asDiagonal() * inverse * scale.asDiagonal();
     for (Eigen::Index k = 0; k < n; ++k) {
       if (is_undetermined[std::size_t(k)]) {
