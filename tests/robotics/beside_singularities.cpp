@@ -92,12 +92,12 @@ skew_elbow with_skew_elbow(duet_test::random_source& random, double miss, double
 
 /// The arm from its tip to its base: coordinates are in reverse order, with opposite signs.
 std::array<dh_row<>, 6> mirrored(const std::array<dh_row<>, 6>& rows) {
-  std::array<dh_row<>, 6> result;
+  std::array<dh_row<>, 6> mirror;
   for (std::size_t i = 0; i < 6; ++i) {
     const dh_row<> before = i < 5 ? rows[4 - i] : dh_row<>{};
-    result[i] = {.a = -before.a, .d = -rows[5 - i].d, .alpha = -before.alpha};
+    mirror[i] = {.a = -before.a, .d = -rows[5 - i].d, .alpha = -before.alpha};
   }
-  return result;
+  return mirror;
 }
 
 int count_of(const result& found) {

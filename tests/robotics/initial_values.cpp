@@ -118,7 +118,7 @@ bool is_initialized() {
 template <class... T>
 void check() {
   const auto check_one = []<class U>(const U*) {
-    INFO(__PRETTY_FUNCTION__);
+    INFO(static_cast<const char*>(__PRETTY_FUNCTION__));
     CHECK(is_initialized<U>());
   };
   (check_one(static_cast<const T*>(nullptr)), ...);
