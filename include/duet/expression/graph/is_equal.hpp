@@ -86,7 +86,8 @@ inline void add_sample(const named_value& x, const assumptions& known, random_so
   };
   duet::detail::require(f.inputs().size() == g.inputs().size() &&
                             f.input_size() == g.input_size() &&
-                            std::ranges::equal(f.outputs(), g.outputs(), have_equal_size),
+                            std::equal(f.outputs().begin(), f.outputs().end(), g.outputs().begin(),
+                                       g.outputs().end(), have_equal_size),
                         "duet: is_equal: the formulas have other inputs or outputs");
   // The numbers of g's inputs in the order of f's.
   std::vector<std::size_t> indices;
