@@ -40,46 +40,58 @@ struct traced_curve {
   int kernel = 1; ///< dimension of the Jacobian's null space at almost all points
 };
 
-/// Tolerances for the self-motion set of one arm at one goal.
-struct self_motion_tolerance {
-  static constexpr double on_set = 1e-12;    ///< error of the pose on the set
-  static constexpr double singular = 1e-5;   ///< singular value, relative to the largest
-  static constexpr double same = 1e-6;       ///< distance of coinciding points of regular curves
-  static constexpr double same_rough = 1e-4; ///< distance where the Jacobian is singular
-};
-
-/// Self-motion set M = {θ : the tip is at the goal} of an arm of seven joints, with angles modulo
-/// full turns.
+/// Collects the components of the self-motion set M = {θ : the tip is at the goal} of one arm of
+/// seven joints at one goal, with angles modulo full turns.
 ///
 /// At a regular point M is a curve along the Jacobian's null space. If the null space has more
 /// dimensions, M may still be a curve (two that coincide, as for a straight elbow), curves that
 /// cross, an isolated point, or have as many dimensions: neighbouring points of M decide.
-class self_motion_set {
+///
+/// Curves are followed by predictor–corrector continuation: steps along the Jacobian's null space,
+/// or along the projection of the previous step onto it where it has more dimensions, and
+/// projections back onto the set. On components of two and more dimensions walks lead to samples.
+class component_search {
 public:
-  using null_space = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, 7>;
-
-  self_motion_set(const chain_view& chain, const dual_quaternion<double>& goal)
+  component_search(const chain_view& chain, const dual_quaternion<double>& goal, double resolution)
       : chain_(chain), model_(chain), goal_(to_tip_pose(goal)),
-        scaled_goal_(model_.scaled_pose(goal)), unit_(model_.unit.head<7>()) {}
+        scaled_goal_(model_.scaled_pose(goal)), unit_(model_.unit.head<7>()),
+        resolution_(resolution) {}
+
+  [[nodiscard]] std::vector<traced_curve> operator()() {
+    add_slices();
+    // Points of components on which no joint can be fixed alone, from random configurations.
+    const int random_points = is_degenerate_ || seeds_[1].empty() ? 256 : 0;
+    for (int k = 0; k < random_points; ++k) {
+      if (const auto x = any_point()) {
+        add_seed(*x);
+      }
+    }
+    // Seeds with the smallest null spaces first: almost all points of a component have a null space
+    // of the same dimension, some have larger ones.
+    for (std::size_t kernel = 1; kernel < seeds_.size(); ++kernel) {
+      for (const seven_coordinates& x : seeds_[kernel]) {
+        add(x, int(kernel));
+      }
+    }
+    return std::move(components_);
+  }
+
+private:
+  using null_space = Eigen::Matrix<double, 7, Eigen::Dynamic, Eigen::ColMajor, 7, 7>;
+  using square = Eigen::Matrix<double, 7, 7>;
+  using decomposition = Eigen::JacobiSVD<square>;
+
+  // Points of the set.
 
   [[nodiscard]] bool is_revolute(int joint) const {
     return model_.is_rotational[std::size_t(joint)];
   }
-  /// All solutions of the other six joints with one joint fixed, and whether there are no others.
-  [[nodiscard]] solution_list slice(int fixed, double value) const {
-    const chain_screws axes(chain_, seven_coordinates(value * seven_coordinates::Unit(fixed)),
-                            fixed);
-    const loop_solution_set all = solutions_of(axes.loop_to(goal_));
-    solution_list result{{}, all.is_complete};
-    for (const loop_solution& x : all.solutions) {
-      seven_coordinates theta;
-      for (int i = 0, k = 0; i < 7; ++i) {
-        theta[i] = i == fixed ? value : x.theta[k] * (is_revolute(i) ? 1 : axes.size);
-        k += i != fixed;
-      }
-      result.joints.emplace_back(theta);
-    }
-    return result;
+  /// State of the chain, with lengths relative to the arm's size.
+  [[nodiscard]] chain_state<8> at(const seven_coordinates& x) const {
+    return model_.at(model_.joints(x));
+  }
+  [[nodiscard]] small_twist tip_error(const chain_state<8>& state) const {
+    return error_twist(state.tip, scaled_goal_);
   }
 
   /// Difference b − a, rotation angles by the shorter arc; lengths relative to the arm's size.
@@ -97,11 +109,6 @@ public:
     return x + d.cwiseProduct(unit_);
   }
 
-  [[nodiscard]] double error(const seven_coordinates& x) const {
-    seven_columns j;
-    return tip_error(x, j).norm();
-  }
-
   /// Point of M that damped least squares (Levenberg–Marquardt) leads to from an initial guess. If
   /// the Jacobian is singular on M convergence is linear, with a factor of one half per step.
   ///
@@ -115,10 +122,10 @@ public:
     seven_coordinates x = from, best = from;
     double min_error = std::numeric_limits<double>::infinity();
     int since = 0; // steps since the error last fell
-    for (int k = 0; k < iterations && since < (min_error < self_motion_tolerance::on_set ? 2 : 8);
-         ++k) {
-      seven_columns j;
-      const six_coordinates e = tip_error(x, j);
+    for (int k = 0; k < iterations && since < (min_error < max_error ? 2 : 8); ++k) {
+      const chain_state<8> state = at(x);
+      const seven_columns j = state.jacobian;
+      const small_twist e = tip_error(state);
       const double size = e.norm();
       ++since;
       if (size < .9 * min_error) {
@@ -138,13 +145,12 @@ public:
         return {};
       }
     }
-    return min_error < self_motion_tolerance::on_set ? std::optional(best) : std::nullopt;
+    return min_error < max_error ? std::optional(best) : std::nullopt;
   }
 
   /// Orthonormal basis of the Jacobian's null space.
-  [[nodiscard]] null_space kernel(const seven_coordinates& x) const {
-    seven_columns j;
-    static_cast<void>(tip_error(x, j));
+  [[nodiscard]] null_space null_space_at(const seven_coordinates& x) const {
+    const seven_columns j = at(x).jacobian;
     // The product of the singular values gives a bound on the smallest: the mean square of the
     // others is not below their geometric mean. If it is far from 0 normal equations suffice.
     constexpr double regular = 1e-3;
@@ -163,20 +169,19 @@ public:
     const decomposition svd(rows, Eigen::ComputeFullV);
     const auto& sizes = svd.singularValues();
     Eigen::Index rank = 0;
-    while (rank < 6 && sizes[rank] > self_motion_tolerance::singular * sizes[0]) {
+    while (rank < 6 && sizes[rank] > singular_ratio * sizes[0]) {
       ++rank;
     }
     return svd.matrixV().rightCols(7 - rank);
   }
 
   /// Random unit vector of a null space.
-  [[nodiscard]] static seven_coordinates any_direction(const null_space& kernel,
-                                                       splitmix64& random) {
+  [[nodiscard]] seven_coordinates any_direction(const null_space& basis) {
     seven_coordinates result;
     do {
       result.setZero();
-      for (Eigen::Index k = 0; k < kernel.cols(); ++k) {
-        result += (2 * random() - 1) * kernel.col(k);
+      for (Eigen::Index k = 0; k < basis.cols(); ++k) {
+        result += (2 * random_() - 1) * basis.col(k);
       }
     } while (!(result.norm() > .1));
     return result.normalized();
@@ -185,8 +190,8 @@ public:
   /// Dimension of M at a point, from the projections of points at a distance `step` in
   /// directions of the Jacobian's null space. (At crossings: the dimension of the span of all
   /// curves that meet there.)
-  [[nodiscard]] int dimension(const seven_coordinates& x, double step, splitmix64& random) const {
-    const null_space basis = kernel(x);
+  [[nodiscard]] int dimension_at(const seven_coordinates& x, double step) {
+    const null_space basis = null_space_at(x);
     if (basis.cols() == 1) {
       return 1;
     }
@@ -194,7 +199,7 @@ public:
     square spread = square::Zero();
     const int count = 4 * int(basis.cols());
     for (int k = 0; k < count; ++k) {
-      const auto point = neighbour(x, step, basis, random);
+      const auto point = neighbour_of(x, step, basis);
       if (point) {
         const seven_coordinates d = difference(*point, x) / step;
         spread += d * d.transpose() / count;
@@ -206,84 +211,44 @@ public:
 
   /// Neighbouring point of M at about the distance `step`, or nearer; empty if
   /// the projection fails.
-  [[nodiscard]] std::optional<seven_coordinates> neighbour(const seven_coordinates& x, double step,
-                                                           const null_space& basis,
-                                                           splitmix64& random) const {
-    return projected(moved(x, step * any_direction(basis, random)), 3 * step);
+  [[nodiscard]] std::optional<seven_coordinates>
+  neighbour_of(const seven_coordinates& x, double step, const null_space& basis) {
+    return projected(moved(x, step * any_direction(basis)), 3 * step);
   }
 
   /// Random point of M; empty if the search from a random configuration fails.
-  [[nodiscard]] std::optional<seven_coordinates> any_point(splitmix64& random) const {
+  [[nodiscard]] std::optional<seven_coordinates> any_point() {
     seven_coordinates x;
     for (int i = 0; i < 7; ++i) {
-      const double part = 2 * random() - 1;
+      const double part = 2 * random_() - 1;
       x[i] = part * (is_revolute(i) ? std::numbers::pi : unit_[i]);
     }
     return projected(x, std::numeric_limits<double>::infinity());
   }
 
-private:
-  using square = Eigen::Matrix<double, 7, 7>;
-  using decomposition = Eigen::JacobiSVD<square>;
+  // Components.
 
-  /// Pose error of the tip, and the Jacobian; lengths relative to the arm's size.
-  [[nodiscard]] six_coordinates tip_error(const seven_coordinates& x,
-                                          seven_columns& jacobian) const {
-    const auto state = model_.at(model_.joints(x));
-    jacobian = state.jacobian;
-    return error_twist(state.tip, scaled_goal_);
-  }
-
-  known_size_view<7> chain_;
-  planning_model<8> model_;
-  tip_pose goal_, scaled_goal_;
-  seven_coordinates unit_; ///< 1 for angles, the arm's size for lengths
-};
-
-/// Collects the components of the self-motion set of one redundant arm at one goal.
-///
-/// Curves are followed by predictor–corrector continuation: steps along the Jacobian's null space,
-/// or along the projection of the previous step onto it where it has more dimensions, and
-/// projections back onto the set. On components of two and more dimensions walks lead to samples.
-class component_search {
-public:
-  component_search(const self_motion_set& set, double resolution)
-      : set_(set), resolution_(resolution) {}
-
-  [[nodiscard]] std::vector<traced_curve> operator()() {
-    add_slices();
-    // Points of components on which no joint can be fixed alone, from random configurations.
-    const int random_points = is_degenerate_ || seeds_[1].empty() ? 256 : 0;
-    for (int k = 0; k < random_points; ++k) {
-      if (const auto x = set_.any_point(random_)) {
-        add_seed(*x);
-      }
-    }
-    // Seeds with the smallest null spaces first: almost all points of a component have a null space
-    // of the same dimension, some have larger ones.
-    for (std::size_t kernel = 1; kernel < seeds_.size(); ++kernel) {
-      for (const seven_coordinates& x : seeds_[kernel]) {
-        add(x, int(kernel));
-      }
-    }
-    return std::move(components_);
-  }
-
-private:
   /// Adds all solutions of the other six joints with one joint fixed, for each joint at values one
   /// resolution apart.
   void add_slices() {
     const int count = int(std::ceil(2 * std::numbers::pi / resolution_));
     for (int fixed = 0; fixed < 7; ++fixed) {
-      for (int k = 0; k < count && set_.is_revolute(fixed); ++k) {
+      for (int k = 0; k < count && is_revolute(fixed); ++k) {
         // not at round numbers from tables, where arms are singular
-        const auto all =
-            set_.slice(fixed, 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi);
-        for (const Eigen::VectorXd& theta : all.joints) {
+        const double value = 2 * std::numbers::pi * (k + .37) / count - std::numbers::pi;
+        const chain_screws axes(chain_, seven_coordinates(value * seven_coordinates::Unit(fixed)),
+                                fixed);
+        const loop_solution_set all = solutions_of(axes.loop_to(goal_));
+        for (const loop_solution& solution : all.solutions) {
           // If other joints can move while this one is fixed, its value is singular, or the set has
           // more dimensions.
           is_degenerate_ = is_degenerate_ || !all.is_complete;
-          if (const auto on_set = set_.projected(theta, .1)) {
+          seven_coordinates theta;
+          for (int i = 0, other = 0; i < 7; ++i) {
+            theta[i] =
+                i == fixed ? value : solution.theta[other++] * (is_revolute(i) ? 1 : axes.size);
+          }
+          if (const auto on_set = projected(theta, .1)) {
             add_seed(*on_set);
           }
         }
@@ -292,7 +257,7 @@ private:
   }
 
   void add_seed(const seven_coordinates& x) {
-    const auto kernel = std::size_t(set_.kernel(x).cols());
+    const auto kernel = std::size_t(null_space_at(x).cols());
     is_degenerate_ = is_degenerate_ || kernel > 1;
     seeds_[kernel].push_back(x);
   }
@@ -309,8 +274,8 @@ private:
       return;
     }
     if (kernel == 1) {
-      components_.push_back(trace(x, set_.kernel(x).col(0), 1));
-    } else if (set_.dimension(x, start_step, random_) == 0) {
+      components_.push_back(trace(x, null_space_at(x).col(0), 1));
+    } else if (dimension_at(x, start_step) == 0) {
       components_.push_back({{x}, false, 0, kernel});
     } else {
       add_near(x);
@@ -323,12 +288,12 @@ private:
       seven_coordinates x;
       int kernel;
     };
-    const auto basis = set_.kernel(singular);
+    const auto basis = null_space_at(singular);
     std::vector<neighbour> neighbours;
     for (int k = 0; k < 4 * basis.cols(); ++k) {
-      const auto x = set_.neighbour(singular, start_step, basis, random_);
-      if (x && set_.difference(*x, singular).norm() > small_step) {
-        neighbours.push_back({*x, int(set_.kernel(*x).cols())});
+      const auto x = neighbour_of(singular, start_step, basis);
+      if (x && difference(*x, singular).norm() > small_step) {
+        neighbours.push_back({*x, int(null_space_at(*x).cols())});
       }
     }
     std::sort(neighbours.begin(), neighbours.end(),
@@ -337,12 +302,11 @@ private:
       if (is_known(x, kernel)) {
         continue;
       }
-      const int dimension = std::min(set_.dimension(x, small_step, random_),
-                                     set_.dimension(x, small_step / 8, random_));
+      const int dimension = std::min(dimension_at(x, small_step), dimension_at(x, small_step / 8));
       if (dimension > 1) {
         components_.push_back(sample(x, dimension, kernel));
       } else if (dimension == 1) {
-        const seven_coordinates along = set_.difference(x, singular).normalized();
+        const seven_coordinates along = difference(x, singular).normalized();
         components_.push_back(trace(x, along, kernel));
       }
     }
@@ -357,7 +321,7 @@ private:
   [[nodiscard]] traced_curve trace(const seven_coordinates& start, const seven_coordinates& leaving,
                                    int kernel) const {
     traced_curve result{{start}, false, 1, kernel};
-    const auto first = direction(set_.kernel(start), leaving);
+    const auto first = direction(null_space_at(start), leaving);
     if (!first || follow(result, *first)) {
       return result;
     }
@@ -371,13 +335,12 @@ private:
   /// \param kernel  dimension of the Jacobian's null space at x
   [[nodiscard]] bool is_on_curve(const traced_curve& curve, const seven_coordinates& x,
                                  int kernel) const {
-    const double same = curve.kernel == 1 && kernel == 1 ? self_motion_tolerance::same
-                                                         : self_motion_tolerance::same_rough;
+    const double same = curve.kernel == 1 && kernel == 1 ? same_regular : same_rough;
     const std::size_t n = curve.points.size(), segments = curve.is_closed ? n : n - 1;
     for (std::size_t k = 0; k < segments; ++k) {
       const seven_coordinates& a = curve.points[k];
-      const seven_coordinates to_x = set_.difference(x, a),
-                              chord = set_.difference(curve.points[(k + 1) % n], a);
+      const seven_coordinates to_x = difference(x, a),
+                              chord = difference(curve.points[(k + 1) % n], a);
       if (to_x.squaredNorm() > 4 * chord.squaredNorm()) {
         continue;
       }
@@ -385,18 +348,18 @@ private:
       // found along the chord.
       double fraction = std::clamp(to_x.dot(chord) / chord.squaredNorm(), 0., 1.);
       for (int round = 0; round < 8 && fraction > -.5 && fraction < 1.5; ++round) {
-        const auto between = set_.projected(set_.moved(a, fraction * chord), resolution_);
+        const auto between = projected(moved(a, fraction * chord), resolution_);
         if (!between) {
           break;
         }
-        const seven_coordinates residual = set_.difference(x, *between);
+        const seven_coordinates residual = difference(x, *between);
         if (residual.norm() < same) {
           return true;
         }
         fraction += residual.dot(chord) / chord.squaredNorm();
       }
     }
-    return set_.difference(x, curve.points.front()).norm() < same;
+    return difference(x, curve.points.front()).norm() < same;
   }
 
   struct continuation_step {
@@ -407,8 +370,8 @@ private:
 
   /// Unit vector of a null space that is nearest to the direction of the previous step; empty if
   /// that is nearly orthogonal to it.
-  [[nodiscard]] static std::optional<seven_coordinates>
-  direction(const self_motion_set::null_space& basis, const seven_coordinates& before) {
+  [[nodiscard]] static std::optional<seven_coordinates> direction(const null_space& basis,
+                                                                  const seven_coordinates& before) {
     const seven_coordinates along = basis * (basis.transpose() * before);
     const double size = along.norm();
     return size > .1 ? std::optional<seven_coordinates>(along / size) : std::nullopt;
@@ -418,12 +381,12 @@ private:
   [[nodiscard]] std::optional<continuation_step> take_step(const seven_coordinates& x,
                                                            const seven_coordinates& along,
                                                            double step, int kernel) const {
-    const auto next = set_.projected(set_.moved(x, step * along), resolution_);
+    const auto next = projected(moved(x, step * along), resolution_);
     if (!next) {
       return {};
     }
-    const seven_coordinates displacement = set_.difference(*next, x);
-    const auto basis = set_.kernel(*next);
+    const seven_coordinates displacement = difference(*next, x);
+    const auto basis = null_space_at(*next);
     const auto ahead = direction(basis, basis.cols() == 1 ? along : displacement.normalized());
     if (basis.cols() < kernel || !ahead || displacement.norm() > resolution_) {
       return {};
@@ -468,7 +431,7 @@ private:
       if (crossing > max_crossing) {
         return false; // it has reached a component of more dimensions
       }
-      const seven_coordinates back = set_.difference(start, last);
+      const seven_coordinates back = difference(start, last);
       const double remaining = back.dot(along);
       const bool is_back = curve.points.size() > 3 && remaining > 0 && remaining <= 1.5 * step &&
                            back.norm() < std::min(2 * remaining, resolution_) &&
@@ -496,9 +459,7 @@ private:
       for (int failed = 0; failed < tries && points.size() < count; ++failed) {
         const auto& from = points[std::size_t(random_() * double(points.size()))];
         const auto end = wander(from, std::numbers::pi * random_());
-        const auto is_near = [&](const auto& p) {
-          return set_.difference(end, p).norm() < separation;
-        };
+        const auto is_near = [&](const auto& p) { return difference(end, p).norm() < separation; };
         if (std::none_of(points.begin(), points.end(), is_near)) {
           points.push_back(end);
           failed = 0;
@@ -524,7 +485,7 @@ private:
     constexpr std::size_t max_count = 8;
     std::vector<seven_coordinates> nearest = component.points;
     std::sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) {
-      return set_.difference(a, x).norm() < set_.difference(b, x).norm();
+      return difference(a, x).norm() < difference(b, x).norm();
     });
     nearest.resize(std::min(max_count, nearest.size()));
     return std::any_of(nearest.begin(), nearest.end(),
@@ -536,35 +497,35 @@ private:
   [[nodiscard]] bool is_straight(const seven_coordinates& x, const seven_coordinates& end) const {
     constexpr std::array parts{.07, .19, .31, .5, .62, .74, .83, .93};
     constexpr double close = 1e-7;
-    const seven_coordinates direction = set_.difference(end, x);
+    const seven_coordinates direction = difference(end, x);
     return std::all_of(parts.begin(), parts.end(), [&](double part) {
-      return set_.error(set_.moved(x, part * direction)) < close;
+      return tip_error(at(moved(x, part * direction))).norm() < close;
     });
   }
 
   /// Step on the component in a direction; empty if no step stays on it.
   [[nodiscard]] std::optional<seven_coordinates>
   walked(const seven_coordinates& x, const seven_coordinates& direction, double max_length) const {
-    const auto basis = set_.kernel(x);
+    const auto basis = null_space_at(x);
     const seven_coordinates along = basis * (basis.transpose() * direction);
     const double size = along.norm();
     if (!(size > .1 * direction.norm())) {
       return {};
     }
-    return set_.projected(set_.moved(x, std::min(1., max_length / size) * along), 2 * stride);
+    return projected(moved(x, std::min(1., max_length / size) * along), 2 * stride);
   }
 
   /// True if a walk towards `end` reaches it.
   [[nodiscard]] bool leads(seven_coordinates x, const seven_coordinates& end) const {
     constexpr int steps = 100;
     for (int k = 0; k < steps; ++k) {
-      const seven_coordinates direction = set_.difference(end, x);
+      const seven_coordinates direction = difference(end, x);
       const double remaining = direction.norm();
-      if (remaining < self_motion_tolerance::same_rough) {
+      if (remaining < same_rough) {
         return true;
       }
       const auto next = walked(x, direction, stride);
-      if (!next || !(set_.difference(end, *next).norm() < .95 * remaining)) {
+      if (!next || !(difference(end, *next).norm() < .95 * remaining)) {
         return false;
       }
       x = *next;
@@ -574,15 +535,15 @@ private:
 
   /// End of a walk of a given length in a random direction.
   [[nodiscard]] seven_coordinates wander(seven_coordinates x, double length) {
-    seven_coordinates direction = self_motion_set::any_direction(set_.kernel(x), random_);
+    seven_coordinates direction = any_direction(null_space_at(x));
     for (; length > 0; length -= stride) {
       const auto next = walked(x, direction, std::min(length, stride));
-      const seven_coordinates moved = next ? set_.difference(*next, x) : seven_coordinates::Zero();
-      if (!(moved.norm() > 0)) {
+      const seven_coordinates step = next ? difference(*next, x) : seven_coordinates::Zero();
+      if (!(step.norm() > 0)) {
         break;
       }
       x = *next;
-      direction = moved.normalized();
+      direction = step.normalized();
     }
     return x;
   }
@@ -591,7 +552,15 @@ private:
                           small_step = .005; ///< steps from a singular point to others
   static constexpr double stride = .2;       ///< length of a step of a walk
 
-  const self_motion_set& set_;
+  static constexpr double max_error = 1e-12;     ///< error of the pose on the set
+  static constexpr double singular_ratio = 1e-5; ///< singular value, relative to the largest
+  static constexpr double same_regular = 1e-6; ///< distance of coinciding points of regular curves
+  static constexpr double same_rough = 1e-4;   ///< distance where the Jacobian is singular
+
+  known_size_view<7> chain_;
+  planning_model<8> model_;
+  tip_pose goal_, scaled_goal_;
+  seven_coordinates unit_; ///< 1 for angles, the arm's size for lengths
   double resolution_;
   splitmix64 random_{1};
   bool is_degenerate_ = false; ///< true if the tip pose is known to be singular
@@ -612,9 +581,9 @@ std::vector<self_motion_curve> self_motion_curves(const chain_view& chain,
   detail::require_pose(goal, "self_motion_curves", "the goal");
   detail::require_option("self_motion_curves", "resolution", options.resolution,
                          options.resolution > 0 && options.resolution <= 1, "within (0, 1]");
-  const detail::self_motion_set set(chain, normalized(goal));
+  detail::component_search search(chain, normalized(goal), options.resolution);
   std::vector<self_motion_curve> result;
-  for (const detail::traced_curve& curve : detail::component_search(set, options.resolution)()) {
+  for (const detail::traced_curve& curve : search()) {
     result.push_back(
         {{curve.points.begin(), curve.points.end()}, curve.is_closed, curve.dimension});
   }
