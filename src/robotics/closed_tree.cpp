@@ -231,13 +231,6 @@ closed_chain_mechanism::closed_chain_mechanism(kinematic_tree tree, loop_constra
   }
 }
 
-Eigen::VectorXd closed_chain_mechanism::residuals(const Eigen::VectorXd& q) const {
-  return residuals_at(q);
-}
-Eigen::MatrixXd closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
-  return jacobian_at(q);
-}
-
 Eigen::VectorXd closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
                                                  const std::vector<int>& fixed) const {
   detail::require(guess.allFinite(),
@@ -250,6 +243,13 @@ Eigen::VectorXd closed_chain_mechanism::assemble(const Eigen::VectorXd& guess,
         {guess.begin(), guess.end()}));
   }
   return solver.coordinates();
+}
+
+Eigen::VectorXd closed_chain_mechanism::residuals(const Eigen::VectorXd& q) const {
+  return residuals<Eigen::VectorXd>(q);
+}
+Eigen::MatrixXd closed_chain_mechanism::constraint_jacobian(const Eigen::VectorXd& q) const {
+  return constraint_jacobian<Eigen::VectorXd>(q);
 }
 
 std::vector<int> closed_chain_mechanism::independent_coordinates(const Eigen::VectorXd& q) const {

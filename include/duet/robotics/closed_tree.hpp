@@ -156,7 +156,14 @@ public:
   /// \throws invalid_input if the number of coordinates differs from `size()`
   template <VectorLike X>
   [[nodiscard]] auto residuals(const X& q) const {
-    return residuals_at(q);
+    using S = detail::tree_scalar<X>;
+    Eigen::Matrix<S, Eigen::Dynamic, 1> result(rows_);
+    Eigen::Index row = 0;
+    for (const detail::loop_equations& each : equations_) {
+      each.residuals(tree_.pose(q, each.frames), length_, result.segment(row, each.size()));
+      row += each.size();
+    }
+    return result;
   }
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& q) const;
 
@@ -166,7 +173,15 @@ public:
   /// \return a matrix with a row for each equation and a column for each coordinate
   template <VectorLike X>
   [[nodiscard]] auto constraint_jacobian(const X& q) const {
-    return jacobian_at(q);
+    using S = detail::tree_scalar<X>;
+    Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> result(rows_, size());
+    Eigen::Index row = 0;
+    for (const detail::loop_equations& each : equations_) {
+      const auto both = pose_and_jacobian(tree_, q, frame::hybrid, each.frames);
+      each.jacobian(both.value, both.jacobian, length_, result.middleRows(row, each.size()));
+      row += each.size();
+    }
+    return result;
   }
   [[nodiscard]] Eigen::MatrixXd constraint_jacobian(const Eigen::VectorXd& q) const;
 
@@ -198,29 +213,6 @@ public:
   [[nodiscard]] const Eigen::VectorXd& units() const { return units_; }
 
 private:
-  template <class X>
-  [[nodiscard]] auto residuals_at(const X& q) const {
-    using S = detail::tree_scalar<X>;
-    Eigen::Matrix<S, Eigen::Dynamic, 1> result(rows_);
-    Eigen::Index row = 0;
-    for (const detail::loop_equations& each : equations_) {
-      each.residuals(tree_.pose(q, each.frames), length_, result.segment(row, each.size()));
-      row += each.size();
-    }
-    return result;
-  }
-  template <class X>
-  [[nodiscard]] auto jacobian_at(const X& q) const {
-    using S = detail::tree_scalar<X>;
-    Eigen::Matrix<S, Eigen::Dynamic, Eigen::Dynamic> result(rows_, size());
-    Eigen::Index row = 0;
-    for (const detail::loop_equations& each : equations_) {
-      const auto both = pose_and_jacobian(tree_, q, frame::hybrid, each.frames);
-      each.jacobian(both.value, both.jacobian, length_, result.middleRows(row, each.size()));
-      row += each.size();
-    }
-    return result;
-  }
   [[nodiscard]] attached_frame<double> frame(std::size_t i, const constraint_frame& at) const;
   void measure();
 
