@@ -98,11 +98,6 @@ template <class C, class Start, class Objective, class Scene>
   return result;
 }
 
-template <class Goals>
-[[nodiscard]] std::vector<goal_view> views_of(const Goals& goals) {
-  return {std::ranges::begin(goals), std::ranges::end(goals)};
-}
-
 DUET_ABI_END
 } // namespace detail
 
@@ -167,36 +162,25 @@ inverse_kinematics(const C& chain, const G& goal, const Start& start,
   return detail::solve_one(chain, goal, start, options, objective, around);
 }
 
-/// Inverse kinematics of many partial goals: out[i] = inverse_kinematics(chain, goals[i], start,
-/// options, objective, around), with identical results for any number of threads.
+/// Inverse kinematics of many goals: out[i] = inverse_kinematics(chain, goals[i], start, options,
+/// objective, around), with identical results for any number of threads.
 ///
-/// \param goals      all of one type, in a vector, an array or a span
+/// \param goals      poses, or partial goals of one type, in a vector, an array or a span
 /// \param objective  as for one goal; with several threads it, and `constraint` of a user-defined
 /// goal, is called concurrently
-/// \throws invalid_input if the sizes differ, for the first goal that contains no pose, and as
-/// above
+/// \throws invalid_input if the sizes differ, for the first goal that is not a pose or contains
+/// none, and as above
 /// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
 template <SerialChain C, std::ranges::contiguous_range Goals, VectorLike Start,
           class Objective = no_objective, class Scene = no_scene>
-  requires TipGoal<std::ranges::range_value_t<Goals>>
+  requires TipGoal<std::ranges::range_value_t<Goals>> ||
+      std::same_as<std::ranges::range_value_t<Goals>, dual_quaternion<double>>
 void inverse_kinematics(const C& chain, const Goals& goals, const Start& start,
                         std::span<inverse_kinematics_result> out,
                         const inverse_kinematics_options& options = {}, execution how = one_core,
                         const Objective& objective = {}, const Scene& around = {}) {
-  detail::solve_many(chain, detail::views_of(goals), start, out, options, how, objective, around);
-}
-
-/// Inverse kinematics of many poses: out[i] = inverse_kinematics(chain, goals[i], start, options,
-/// objective, around), with identical results for any number of threads.
-///
-/// \throws invalid_input if the sizes differ, for the first goal that is not a pose, and as above
-/// \throws cancelled if `how.report` requests it, see `parallel_for_blocks`
-template <SerialChain C, VectorLike Start, class Objective = no_objective, class Scene = no_scene>
-void inverse_kinematics(const C& chain, std::span<const dual_quaternion<double>> goals,
-                        const Start& start, std::span<inverse_kinematics_result> out,
-                        const inverse_kinematics_options& options = {}, execution how = one_core,
-                        const Objective& objective = {}, const Scene& around = {}) {
-  detail::solve_many(chain, detail::views_of(goals), start, out, options, how, objective, around);
+  const std::vector<detail::goal_view> views(std::ranges::begin(goals), std::ranges::end(goals));
+  detail::solve_many(chain, views, start, out, options, how, objective, around);
 }
 
 DUET_ASKS_FOR_ONE_CONFIGURATION(inverse_kinematics, inverse_kinematics_result)
