@@ -382,7 +382,8 @@ public:
         known = solutions_within_limits(model_.chain(), *of.pose, options_.tolerance);
       }
     }
-    const bool is_choosy = !preferences_.is_empty() && !goal.is_beyond(model_.reach, tolerance_);
+    const bool is_choosy = (preferences_.objective || preferences_.around != nullptr) &&
+                           !goal.is_beyond(model_.reach, tolerance_);
     const attempt x = is_choosy ? preferred(goal, known) : nearest_attempt(goal);
     if (is_choosy || of.pose == nullptr) {
       require_numbers(x, name);

@@ -128,16 +128,10 @@ private:
   std::function<void(const joints_view&, Eigen::Ref<Eigen::VectorXd>)> gradient_;
 };
 
-/// The scene that is passed, or null.
-[[nodiscard]] inline const scene* scene_of(const scene& around) { return &around; }
-[[nodiscard]] inline const scene* scene_of(const no_scene&) { return nullptr; }
-
 /// Preferences among solutions: an objective, and clearance of obstacles.
 struct solution_preferences {
   objective_view objective;
   const scene* around = nullptr; ///< null without obstacles
-
-  [[nodiscard]] bool is_empty() const { return !objective && around == nullptr; }
 };
 
 /// Preferences from an objective and a scene. (The return type is deduced, so that messages on
@@ -151,7 +145,11 @@ template <class C, class Objective, class Scene>
   static_assert(std::same_as<Scene, scene> || std::same_as<Scene, no_scene>,
                 "duet: the argument after the objective is not a scene; pass obstacles as a scene");
   require_objective(objective, chain.size());
-  return solution_preferences{objective_view::of<C::joints>(objective), scene_of(around)};
+  solution_preferences result{objective_view::of<C::joints>(objective)};
+  if constexpr (std::same_as<Scene, scene>) {
+    result.around = &around;
+  }
+  return result;
 }
 
 DUET_ABI_END
