@@ -157,10 +157,10 @@ TEST_CASE("bounding_capsule: few, collinear, coplanar and repeated points are ac
   const auto square =
       bounding_capsule(std::vector<point>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5, .5, 0}});
   CHECK(volume_of(square) < 1.001 * volume_of(bounding_capsule(collision_box{{1, 1, 0}})));
-  CHECK_THROWS_WITH_AS((void)bounding_capsule(std::vector<point>{}),
-                       "duet: bounding_capsule: the list of points is empty", invalid_input);
-  CHECK_THROWS_WITH_AS((void)bounding_capsule(std::vector<point>{x, point(0, NAN, 0)}),
-                       "duet: bounding_capsule: point 1 is not finite", invalid_input);
+  DUET_CHECK_REFUSED("duet: bounding_capsule: the list of points is empty",
+                     bounding_capsule(std::vector<point>{}));
+  DUET_CHECK_REFUSED("duet: bounding_capsule: point 1 is not finite",
+                     bounding_capsule(std::vector<point>{x, point(0, NAN, 0)}));
 }
 
 TEST_CASE("volume_of: closed meshes of either orientation have their volume, open ones nan") {

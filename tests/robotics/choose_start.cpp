@@ -270,22 +270,17 @@ TEST_CASE("find_start_configuration: invalid options, intervals and postures are
   const chain arm = robots::ur5e().table();
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   const auto path = [&](double) { return arm.pose(theta); };
-  CHECK_THROWS_WITH_AS((void)find_start_configuration(arm, path, 1, 1),
-                       "duet: find_start_configuration: the parameter of the path goes from 1 to 1 "
-                       "(expected an increasing, finite interval)",
-                       invalid_input);
-  CHECK_THROWS_WITH_AS(
-      (void)find_start_configuration(arm, path, 0, 1, {.max_starts = 0}),
-      "duet: find_start_configuration: max_starts is 0 (expected a positive number)",
-      invalid_input);
-  CHECK_THROWS_WITH_AS((void)find_start_configuration(arm, path, 0, 1, {.sampling = 2}),
-                       "duet: find_start_configuration: sampling is 2 (expected within (0, 1])",
-                       invalid_input);
+  DUET_CHECK_REFUSED("duet: find_start_configuration: the parameter of the path goes from 1 to 1 "
+                     "(expected an increasing, finite interval)",
+                     find_start_configuration(arm, path, 1, 1));
+  DUET_CHECK_REFUSED("duet: find_start_configuration: max_starts is 0 (expected a positive number)",
+                     find_start_configuration(arm, path, 0, 1, {.max_starts = 0}));
+  DUET_CHECK_REFUSED("duet: find_start_configuration: sampling is 2 (expected within (0, 1])",
+                     find_start_configuration(arm, path, 0, 1, {.sampling = 2}));
   const preferred_posture few{vector(vector::Zero(5))};
   const char* const what = "duet: preferred_posture: 5 coordinates (expected 6, one per joint)";
-  CHECK_THROWS_WITH_AS((void)find_start_configuration(arm, path, 0, 1, {}, few), what,
-                       invalid_input);
-  CHECK_THROWS_WITH_AS((void)follow_path(arm, theta, path, 0, 1, {}, few), what, invalid_input);
+  DUET_CHECK_REFUSED(what, find_start_configuration(arm, path, 0, 1, {}, few));
+  DUET_CHECK_REFUSED(what, follow_path(arm, theta, path, 0, 1, {}, few));
 }
 
 } // namespace

@@ -238,21 +238,18 @@ TEST_CASE("closed_chain_mechanism: errors name the constraint, the frame and the
   infinite.offset.translation[1] = std::numeric_limits<double>::infinity();
   CHECK(message({constraint_kind::spherical, infinite, rocker}) ==
         "duet: closed_chain_mechanism: loop 0, spherical: the frame on \"coupler\" is not finite");
-  CHECK(message_of([] {
-          (void)frame_with_z_axis({0, 0, 0}, {0, 0, 0});
-        }) == "duet: frame_with_z_axis: the direction (0, 0, 0) is zero or not finite");
+  DUET_CHECK_REFUSED("duet: frame_with_z_axis: the direction (0, 0, 0) is zero or not finite",
+                     frame_with_z_axis({0, 0, 0}, {0, 0, 0}));
   const closed_chain_mechanism mechanism = four_bar(.2, .5, .4, .55);
-  CHECK(message_of([&] {
-          (void)mechanism.assemble(vector_of({0, 0, 0}), {3});
-        }) == "duet: closed_chain_mechanism: coordinate 3 does not exist, the mechanism has 3");
-  CHECK(message_of([&] {
-          (void)mechanism.assemble(vector_of({0, 0, std::nan("")}));
-        }) == "duet: closed_chain_mechanism: the initial guess is not finite");
-  CHECK(message_of([&] {
-          (void)mechanism.assemble(vector_of({0, 0}));
-        }) == "duet: kinematic_tree: 2 coordinates (expected 3)");
-  CHECK(message_of([&] { (void)find_assembly_configurations(mechanism, {0}, VectorXd()); }) ==
-        "duet: find_assembly_configurations: 0 values for 1 fixed coordinates");
+  DUET_CHECK_REFUSED(
+      "duet: closed_chain_mechanism: coordinate 3 does not exist, the mechanism has 3",
+      mechanism.assemble(vector_of({0, 0, 0}), {3}));
+  DUET_CHECK_REFUSED("duet: closed_chain_mechanism: the initial guess is not finite",
+                     mechanism.assemble(vector_of({0, 0, std::nan("")})));
+  DUET_CHECK_REFUSED("duet: kinematic_tree: 2 coordinates (expected 3)",
+                     mechanism.assemble(vector_of({0, 0})));
+  DUET_CHECK_REFUSED("duet: find_assembly_configurations: 0 values for 1 fixed coordinates",
+                     find_assembly_configurations(mechanism, {0}, VectorXd()));
 }
 
 TEST_CASE("frame_with_z_axis: the z axis has any direction, also at extreme magnitudes") {

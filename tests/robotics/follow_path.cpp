@@ -123,42 +123,37 @@ TEST_CASE("follow_path: an objective that is nan at the start is rejected") {
   };
   const char* const what = "duet: follow_path: the objective is nan at the start, joints "
                            "(0, -0.75, 0, -2.5, 0, 1.5, 0.75)";
-  CHECK_THROWS_WITH_AS((void)follow_path(arm, start, path, 0, 1, {}, nowhere), what, invalid_input);
-  CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, path(1), {}, nowhere), what,
-                       invalid_input);
+  DUET_CHECK_REFUSED(what, follow_path(arm, start, path, 0, 1, {}, nowhere));
+  DUET_CHECK_REFUSED(what, plan_screw_motion(arm, start, path(1), {}, nowhere));
 }
 
 TEST_CASE("follow_path: invalid paths and starts are rejected") {
   const vector start = gripper_down();
   const auto first = arm.pose(start);
   const auto still = [&](double) { return first; };
-  CHECK_THROWS_WITH_AS((void)follow_path(arm, start, poses{}),
-                       "duet: follow_path: the list of poses is empty", invalid_input);
-  CHECK_THROWS_WITH_AS(
-      (void)follow_path(arm, start, poses{first, first * 2.0}),
+  DUET_CHECK_REFUSED("duet: follow_path: the list of poses is empty",
+                     follow_path(arm, start, poses{}));
+  DUET_CHECK_REFUSED(
       doctest::Contains(
           "duet: follow_path: pose 1 is not a unit dual quaternion: |p|^2 = 4, p.q = "),
-      invalid_input);
-  CHECK_THROWS_WITH_AS(
-      (void)follow_path(arm, start,
-                        poses{pose(quaternion<double>(1), Eigen::Vector3d(0, 0, .5)) * first}),
+      follow_path(arm, start, poses{first, first * 2.0}));
+  DUET_CHECK_REFUSED(
       doctest::Contains("duet: follow_path: the path begins 0.5 units of length and "),
-      invalid_input);
-  CHECK_THROWS_WITH_AS((void)follow_path(arm, start, still, 1, 1),
-                       "duet: follow_path: the parameter of the path goes from 1 to 1 "
-                       "(expected an increasing, finite interval)",
-                       invalid_input);
+      follow_path(arm, start,
+                  poses{pose(quaternion<double>(1), Eigen::Vector3d(0, 0, .5)) * first}));
+  DUET_CHECK_REFUSED("duet: follow_path: the parameter of the path goes from 1 to 1 "
+                     "(expected an increasing, finite interval)",
+                     follow_path(arm, start, still, 1, 1));
   CHECK_THROWS_AS((void)follow_path(arm, start, still, 0, INFINITY), invalid_input);
-  CHECK_THROWS_WITH_AS(
-      (void)follow_path(
-          arm, start, [&](double u) { return u > .5 ? first * std::nan("") : first; }, 0, 1),
-      doctest::Contains("is not finite: (nan, nan, nan, nan)"), invalid_input);
+  DUET_CHECK_REFUSED(
+      doctest::Contains("is not finite: (nan, nan, nan, nan)"),
+      follow_path(
+          arm, start, [&](double u) { return u > .5 ? first * std::nan("") : first; }, 0, 1));
   vector outside = start;
   outside[5] = 4;
-  CHECK_THROWS_WITH_AS((void)follow_path(arm, outside, poses{first}),
-                       "duet: follow_path: joint 5 of the start is 4 (expected a finite number "
-                       "from -0.0175 to 3.7525)",
-                       invalid_input);
+  DUET_CHECK_REFUSED("duet: follow_path: joint 5 of the start is 4 (expected a finite number "
+                     "from -0.0175 to 3.7525)",
+                     follow_path(arm, outside, poses{first}));
   CHECK_THROWS_AS((void)follow_path(arm, Eigen::VectorXd(Eigen::VectorXd::Zero(6)), poses{first}),
                   invalid_input);
 }

@@ -89,10 +89,9 @@ TEST_CASE("mobility: a stretched frame is first-order flexible and rigid") {
   CHECK(m.instantaneous == 1);
   CHECK(m.evidence == mobility_evidence::second_order_rigid);
   CHECK(m.is_singular());
-  CHECK_THROWS_WITH_AS(driven_motion(shaky, vector_of({0, 0}), {0}),
-                       "duet: driven_motion: a rate of first satisfies the equations to first "
-                       "order only: the mechanism does not move",
-                       invalid_input);
+  DUET_CHECK_REFUSED("duet: driven_motion: a rate of first satisfies the equations to first "
+                     "order only: the mechanism does not move",
+                     driven_motion(shaky, vector_of({0, 0}), {0}));
 
   // Closer pins: rigid to first order.
   const closed_chain_mechanism rigid(

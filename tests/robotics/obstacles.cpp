@@ -100,17 +100,16 @@ TEST_CASE("plan_screw_motion: limits are not reported as obstacles; invalid scen
   CHECK(stayed.joints.size() == 1);
   CHECK(stayed.smallest_clearance == clearance(arm, start, wall).distance);
 
-  CHECK_THROWS_WITH_AS(
-      (void)plan_screw_motion(arm, start, far, {}, {}, arm_among({half_space<>{{0, 0, 1}, .6}})),
-      doctest::Contains("from obstacle 0, closer than the margin of 0.01"), invalid_input);
+  DUET_CHECK_REFUSED(
+      doctest::Contains("from obstacle 0, closer than the margin of 0.01"),
+      plan_screw_motion(arm, start, far, {}, {}, arm_among({half_space<>{{0, 0, 1}, .6}})));
   scene bad = wall;
   bad.margin = -1;
-  CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, far, {}, {}, bad),
-                       "duet: the margin of a scene is -1 (expected a non-negative number)",
-                       invalid_input);
+  DUET_CHECK_REFUSED("duet: the margin of a scene is -1 (expected a non-negative number)",
+                     plan_screw_motion(arm, start, far, {}, {}, bad));
   bad = arm_among({half_space<>{{0, 0, 2}, 0}});
-  CHECK_THROWS_WITH_AS((void)plan_screw_motion(arm, start, far, {}, {}, bad),
-                       "duet: the normal of obstacle 0 is not a unit vector", invalid_input);
+  DUET_CHECK_REFUSED("duet: the normal of obstacle 0 is not a unit vector",
+                     plan_screw_motion(arm, start, far, {}, {}, bad));
 }
 
 } // namespace

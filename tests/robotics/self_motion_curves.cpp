@@ -171,12 +171,10 @@ TEST_CASE("self_motion_curves: Panda in its zero configuration has two curves an
 TEST_CASE("self_motion_curves: other chains and invalid resolutions are rejected") {
   const chain arm = robots::panda().table();
   const auto goal = arm.pose(vector::Zero().eval());
-  CHECK_THROWS_WITH_AS((void)self_motion_curves(robots::ur5e().table(), goal),
-                       "duet: self_motion_curves: the chain has 6 moving joints (expected 7)",
-                       invalid_input);
-  CHECK_THROWS_WITH_AS((void)self_motion_curves(arm, goal, {.resolution = 0}),
-                       "duet: self_motion_curves: resolution is 0 (expected within (0, 1])",
-                       invalid_input);
+  DUET_CHECK_REFUSED("duet: self_motion_curves: the chain has 6 moving joints (expected 7)",
+                     self_motion_curves(robots::ur5e().table(), goal));
+  DUET_CHECK_REFUSED("duet: self_motion_curves: resolution is 0 (expected within (0, 1])",
+                     self_motion_curves(arm, goal, {.resolution = 0}));
 }
 
 } // namespace

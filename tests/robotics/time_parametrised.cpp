@@ -297,7 +297,7 @@ TEST_CASE("time_optimal_trajectory: plans and plans of zero length are accepted,
   const vector v(1, 1, 1), a(1, 1, 1);
   const auto q = time_optimal_trajectory(plan, v, a);
   CHECK(q.duration() == doctest::Approx(2).epsilon(1e-4));
-  CHECK_THROWS_WITH_AS((void)q(3), doctest::Contains("t is 3 (expected 0 to "), invalid_input);
+  DUET_CHECK_REFUSED(doctest::Contains("t is 3 (expected 0 to "), q(3));
   CHECK_THROWS_AS((void)q(std::nan("")), invalid_input);
 
   // A time beyond an end by round-off counts as the end.
@@ -319,19 +319,16 @@ TEST_CASE("time_optimal_trajectory: plans and plans of zero length are accepted,
   CHECK(still.times() == std::vector<double>{0, 0});
 
   plan.joints.clear();
-  CHECK_THROWS_WITH_AS(
-      (void)time_optimal_trajectory(plan, v, a),
-      "duet: time_optimal_trajectory: there are no waypoints (expected at least 1)", invalid_input);
+  DUET_CHECK_REFUSED("duet: time_optimal_trajectory: there are no waypoints (expected at least 1)",
+                     time_optimal_trajectory(plan, v, a));
   plan.joints = {vector(0, 1, 2), vector(0, std::nan(""), 2)};
-  CHECK_THROWS_WITH_AS(
-      (void)time_optimal_trajectory(plan, v, a),
+  DUET_CHECK_REFUSED(
       "duet: time_optimal_trajectory: waypoint 1 is not finite or has another size than waypoint 0",
-      invalid_input);
+      time_optimal_trajectory(plan, v, a));
   plan.joints.pop_back();
-  CHECK_THROWS_WITH_AS((void)time_optimal_trajectory(plan, v, vector(1, 0, 1)),
-                       "duet: time_optimal_trajectory: the acceleration limit of joint 1 is 0 "
-                       "(expected positive and finite)",
-                       invalid_input);
+  DUET_CHECK_REFUSED("duet: time_optimal_trajectory: the acceleration limit of joint 1 is 0 "
+                     "(expected positive and finite)",
+                     time_optimal_trajectory(plan, v, vector(1, 0, 1)));
   CHECK_THROWS_AS((void)time_optimal_trajectory(plan, v, vector(1, INFINITY, 1)), invalid_input);
   CHECK_THROWS_AS((void)time_optimal_trajectory(plan, vector(1, 1, -1), a), invalid_input);
   CHECK_THROWS_AS((void)time_optimal_trajectory(plan, v, a, {.min_intervals = 0}), invalid_input);
@@ -444,21 +441,18 @@ TEST_CASE(
     // v² = 2 a s
     CHECK(.9 * part == doctest::Approx(std::sqrt(2 * 2 * .02)).epsilon(1e-3));
   }
-  CHECK_THROWS_WITH_AS(
-      (void)time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {1, 2}}),
+  DUET_CHECK_REFUSED(
       "duet: time_optimal_trajectory: 2 initial velocities (expected 3, one per joint)",
-      invalid_input);
-  CHECK_THROWS_WITH_AS(
-      (void)time_optimal_trajectory(waypoints, v, a, {.final_velocities = {1, 2, NAN}}),
-      "duet: time_optimal_trajectory: the final velocities are not finite", invalid_input);
+      time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {1, 2}}));
+  DUET_CHECK_REFUSED("duet: time_optimal_trajectory: the final velocities are not finite",
+                     time_optimal_trajectory(waypoints, v, a, {.final_velocities = {1, 2, NAN}}));
   const std::vector<vector> still{vector(0, 0, 0), vector(0, 0, 0)};
   CHECK_THROWS_AS((void)time_optimal_trajectory(still, v, a, {.initial_velocities = {1, 2, 3}}),
                   invalid_input);
   // Faster than the velocity limit of a joint.
-  CHECK_THROWS_WITH_AS(
-      (void)time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {2, 0, 0}}),
+  DUET_CHECK_REFUSED(
       doctest::Contains("the initial velocities are infeasible (expected at most 0."),
-      invalid_input);
+      time_optimal_trajectory(waypoints, v, a, {.initial_velocities = {2, 0, 0}}));
 }
 
 TEST_CASE("slopes_within_ranges: a natural cubic spline stays within the ranges of its waypoints") {
