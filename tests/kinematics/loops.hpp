@@ -57,6 +57,20 @@ four_bar(double crank, double coupler, double rocker, double ground,
       {{{kind, {"coupler", at_point(coupler, 0)}, {"rocker", at_point(rocker, 0)}}}});
 }
 
+/// Two cranks about (∓foot, 0), two couplers that meet in a revolute joint.
+inline duet::closed_chain_mechanism five_bar(double foot, double crank, double coupler) {
+  duet::robot_description robot;
+  robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
+  robot.joints = {revolute_joint("left", "ground", at_point(-foot, 0)),
+                  revolute_joint("left_coupler", "left", at_point(crank, 0)),
+                  revolute_joint("right", "ground", at_point(foot, 0)),
+                  revolute_joint("right_coupler", "right", at_point(crank, 0))};
+  return duet::closed_chain_mechanism(duet::kinematic_tree(robot),
+                                      {{{duet::constraint_kind::revolute,
+                                         {"left_coupler", at_point(coupler, 0)},
+                                         {"right_coupler", at_point(coupler, 0)}}}});
+}
+
 /// One loop of revolute joints with the link lengths and twists of Denavit and Hartenberg and no
 /// offsets, cut at the last joint.
 inline duet::closed_chain_mechanism ring(const std::vector<std::array<double, 2>>& links) {

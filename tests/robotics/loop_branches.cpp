@@ -80,14 +80,21 @@ VectorXd some_position(const closed_chain_mechanism& mechanism, duet::random_sou
   }
 }
 
+/// Trace of a motion, checked to close and to have a number of branch points.
+motion_trace closed_trace(const driven_motion& motion, std::size_t branch_points,
+                          const trace_options& options = {}) {
+  motion_trace result = trace(motion, 0, options);
+  CHECK(result.is_closed);
+  CHECK(!result.stopped_early);
+  REQUIRE(result.branch_points.size() == branch_points);
+  return result;
+}
+
 TEST_CASE("trace: a flat parallelogram continues as parallelogram or antiparallelogram") {
   const std::array bar{.3, .8, .3, .8};
   const driven_motion motion(bars(bar), Vector3d(1, -1, 1), {0});
-  const motion_trace straight = trace(motion);
-  CHECK(straight.is_closed);
-  CHECK(!straight.stopped_early);
+  const motion_trace straight = closed_trace(motion, 2);
   CHECK(straight.dead_points.empty());
-  REQUIRE(straight.branch_points.size() == 2);
   for (const VectorXd& q : straight.positions) {
     CHECK(std::abs(q[0] - q[2]) < 1e-12);
   }
@@ -103,9 +110,8 @@ TEST_CASE("trace: a flat parallelogram continues as parallelogram or antiparalle
   }
 
   for (const std::size_t tangent : {1, 2}) {
-    const motion_trace other = trace(motion, 0, {.branches = {tangent}});
-    CHECK(other.is_closed);
-    REQUIRE(other.branch_points.size() == 3); // back through the first one
+    const motion_trace other =
+        closed_trace(motion, 3, {.branches = {tangent}}); // back through the first one
     CHECK(other.branch_points[0].chosen == tangent);
     CHECK(other.branch_points[1].chosen == 0);
     int crossed = 0;
@@ -143,10 +149,7 @@ TEST_CASE("trace: tangents at branch points of random foldable four-bars agree w
     }
     mechanism = closed_chain_mechanism(kinematic_tree(robot), {mechanism.loops()});
     const driven_motion motion(mechanism, some_position(mechanism, random), {0});
-    const motion_trace complete = trace(motion);
-    CHECK(complete.is_closed);
-    CHECK(!complete.stopped_early);
-    REQUIRE(complete.branch_points.size() == 2); // once on each branch
+    const motion_trace complete = closed_trace(motion, 2); // once on each branch
     for (const branch_point& at : complete.branch_points) {
       check_crossing(bar, at);
     }
@@ -198,9 +201,7 @@ TEST_CASE("trace: tangents at branch points of random foldable four-bars agree w
 TEST_CASE("trace: a kite and a five-bar have their branch points") {
   const std::array bar{.8, .5, .5, .8};
   const driven_motion motion(bars(bar), Vector3d(1, 2, 2), {0});
-  const motion_trace complete = trace(motion);
-  CHECK(complete.is_closed);
-  REQUIRE(complete.branch_points.size() == 2);
+  const motion_trace complete = closed_trace(motion, 2);
   for (const branch_point& at : complete.branch_points) {
     check_crossing(bar, at);
     CHECK(std::abs(at.tangents[1][0]) < 1e-14); // coupler and rocker rotate together
@@ -210,20 +211,10 @@ TEST_CASE("trace: a kite and a five-bar have their branch points") {
   CHECK(std::abs(folded.positions.back()[0]) < 1e-12);
 
   // A five-bar whose right crank is fixed with its end one crank length from the left pivot.
-  robot_description robot;
-  robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
-  robot.joints = {revolute_joint("left", "ground", at_point(-.3, 0)),
-                  revolute_joint("left_coupler", "left", at_point(.5, 0)),
-                  revolute_joint("right", "ground", at_point(.3, 0)),
-                  revolute_joint("right_coupler", "right", at_point(.5, 0))};
-  const closed_chain_mechanism five_bar(kinematic_tree(robot),
-                                        {{{constraint_kind::revolute,
-                                           {"left_coupler", at_point(.7, 0)},
-                                           {"right_coupler", at_point(.7, 0)}}}});
   const double fixed = std::acos(-.6); // from (.3, 0) by .5 to the point above (0, 0)
   VectorXd guess(4);
   guess << 2, -1, fixed, 1;
-  const motion_trace five = trace(driven_motion(five_bar, guess, {0, 2}));
+  const motion_trace five = trace(driven_motion(duet_test::five_bar(.3, .5, .7), guess, {0, 2}));
   CHECK(five.is_closed);
   REQUIRE(!five.branch_points.empty());
   int cranks_meet = 0;
@@ -246,10 +237,7 @@ TEST_CASE("trace: nearly foldable four-bars have no branch point") {
       const double a = flat[0], b = flat[1], c = flat[2], d = flat[3];
       const closed_chain_mechanism mechanism = four_bar(a, b + miss, c, d);
       const motion_trace complete =
-          trace(driven_motion(mechanism, some_position(mechanism, random), {0}));
-      CHECK(complete.branch_points.empty());
-      CHECK(complete.is_closed);
-      CHECK(!complete.stopped_early);
+          closed_trace(driven_motion(mechanism, some_position(mechanism, random), {0}), 0);
       for (const dead_point& each : complete.dead_points) {
         if (each.coordinate == 0) { // coupler and rocker in a row
           const double theta = std::abs(std::remainder(each.coordinates[0], 2 * pi));
@@ -279,9 +267,7 @@ TEST_CASE("trace: two coupled parallelograms have four branches in a kernel of d
   for (const double start : {.8, 1., 1.234, 1.7}) {
     VectorXd q(5);
     q << start, -start, start, -start, start;
-    const motion_trace complete = trace(driven_motion(both, q, {0}));
-    CHECK(complete.is_closed);
-    REQUIRE(complete.branch_points.size() == 2);
+    const motion_trace complete = closed_trace(driven_motion(both, q, {0}), 2);
     for (const branch_point& at : complete.branch_points) {
       REQUIRE(at.tangents.size() == 8);
       for (const VectorXd& tangent : at.tangents) {
@@ -310,9 +296,8 @@ TEST_CASE("trace: two coupled parallelograms have four branches in a kernel of d
       kinematic_tree(robot),
       {{{constraint_kind::revolute, {"coupler", at_point(.8, 0)}, {"rocker", at_point(.3, 0)}},
         {constraint_kind::revolute, {"coupler", at_point(.5, 0)}, {"third", at_point(.3, 0)}}}});
-  const motion_trace complete = trace(driven_motion(three, Eigen::Vector4d(1, -1, 1, 1), {0}));
-  CHECK(complete.is_closed);
-  REQUIRE(complete.branch_points.size() == 2);
+  const motion_trace complete =
+      closed_trace(driven_motion(three, Eigen::Vector4d(1, -1, 1, 1), {0}), 2);
   for (const branch_point& at : complete.branch_points) {
     REQUIRE(at.tangents.size() == 2);
     CHECK((at.tangents[0] - Eigen::Vector4d(.5, -.5, .5, .5)).norm() < 1e-13);
@@ -333,9 +318,7 @@ TEST_CASE("trace: branch points of slider-cranks in both units and of a spherica
         kinematic_tree(robot),
         {{{constraint_kind::revolute, {"coupler", at_point(r, 0)}, {"slide", {}}}}});
     const motion_trace complete =
-        trace(driven_motion(mechanism, Vector3d(1, -2, 2 * r * std::cos(1)), {0}));
-    CHECK(complete.is_closed);
-    REQUIRE(complete.branch_points.size() == 2);
+        closed_trace(driven_motion(mechanism, Vector3d(1, -2, 2 * r * std::cos(1)), {0}), 2);
     for (const branch_point& at : complete.branch_points) {
       const double sine = std::sin(at.coordinates[0]);
       CHECK(std::abs(std::abs(sine) - 1) < 1e-15);
@@ -357,9 +340,7 @@ TEST_CASE("trace: branch points of slider-cranks in both units and of a spherica
       find_assembly_configurations(sphere, {0}, VectorXd::Constant(1, .8), {.random_starts = 60});
   REQUIRE(result.positions.size() == 2);
   for (const assembly_configuration& each : result.positions) {
-    const motion_trace complete = trace(driven_motion(sphere, each.coordinates, {0}));
-    CHECK(complete.is_closed);
-    REQUIRE(complete.branch_points.size() == 2);
+    const motion_trace complete = closed_trace(driven_motion(sphere, each.coordinates, {0}), 2);
     for (const branch_point& at : complete.branch_points) {
       REQUIRE(at.tangents.size() == 4);
       const bool first_is_straight = std::cos(at.coordinates[0]) > 0;
@@ -391,9 +372,7 @@ TEST_CASE("trace: tangents that are not isolated are omitted") {
         {constraint_kind::revolute, {"d", at_point(.3, 0)}, {"slide", {}}}}});
   VectorXd start(5);
   start << 1, -2, -1, 2, .6 * std::cos(1);
-  const motion_trace complete = trace(driven_motion(mechanism, start, {0}));
-  CHECK(complete.is_closed);
-  REQUIRE(complete.branch_points.size() == 4);
+  const motion_trace complete = closed_trace(driven_motion(mechanism, start, {0}), 4);
   for (std::size_t i = 0; i < 4; ++i) {
     const branch_point& at = complete.branch_points[i];
     if (i % 2 == 0) { // both are folded
@@ -409,16 +388,10 @@ TEST_CASE("trace: tangents that are not isolated are omitted") {
 TEST_CASE("trace: starts near a branch point and large steps find both branch points") {
   const closed_chain_mechanism mechanism = bars({.3, .8, .3, .8});
   for (const double start : {1e-2, 2e-3, 1e-3, 5e-4, 1e-4, 1e-5}) {
-    const motion_trace complete =
-        trace(driven_motion(mechanism, Vector3d(start, -start, start), {0}));
-    CHECK(complete.is_closed);
-    CHECK(complete.branch_points.size() == 2);
+    closed_trace(driven_motion(mechanism, Vector3d(start, -start, start), {0}), 2);
   }
   for (const double step : {.03, .5, 1.5}) {
-    const motion_trace complete =
-        trace(driven_motion(mechanism, Vector3d(1, -1, 1), {0}), 0, {.largest_step = step});
-    CHECK(complete.is_closed);
-    CHECK(complete.branch_points.size() == 2);
+    closed_trace(driven_motion(mechanism, Vector3d(1, -1, 1), {0}), 2, {.largest_step = step});
   }
 }
 

@@ -12,6 +12,7 @@ namespace {
 
 using namespace duet;
 using duet_test::at_point;
+using duet_test::five_bar;
 using duet_test::four_bar;
 using duet_test::max_abs_difference;
 using duet_test::real_100;
@@ -34,20 +35,6 @@ T freudenstein(double a, double b, double c, double d, const T& theta, double si
   const T k = a * cos(theta) - d, s = a * sin(theta);
   const T q = (T(c) * c + k * k + s * s - T(b) * b) / (2 * T(c));
   return atan2(s, k) + side * atan2(sqrt(T(k * k + s * s - q * q)), q);
-}
-
-/// Two cranks about (∓foot, 0), two couplers that meet in a revolute joint.
-closed_chain_mechanism five_bar(double foot, double crank, double coupler) {
-  robot_description robot;
-  robot.links = {{"ground"}, {"left"}, {"left_coupler"}, {"right"}, {"right_coupler"}};
-  robot.joints = {revolute_joint("left", "ground", at_point(-foot, 0)),
-                  revolute_joint("left_coupler", "left", at_point(crank, 0)),
-                  revolute_joint("right", "ground", at_point(foot, 0)),
-                  revolute_joint("right_coupler", "right", at_point(crank, 0))};
-  return closed_chain_mechanism(kinematic_tree(robot),
-                                {{{constraint_kind::revolute,
-                                   {"left_coupler", at_point(coupler, 0)},
-                                   {"right_coupler", at_point(coupler, 0)}}}});
 }
 
 /// Upper intersection of the circles about the ends of the cranks.
