@@ -2,6 +2,8 @@
 
 #include "../../src/robotics/branches/chain_loop.hpp"
 #include "../../src/robotics/branches/loop_equation.hpp"
+#include "robotics/limits.hpp"
+#include "robotics/singular_problems.hpp"
 #include "support/random.hpp"
 #include "support/samples.hpp"
 #include "support/test.hpp"
@@ -20,6 +22,8 @@ using std::numbers::pi;
 using chain = bounded_chain<16>;
 using vector = detail::joint_vector<double, -16>;
 using result = all_inverse_kinematics_result;
+
+const chain puma = singular_problems::six_joints()[1].chain;
 
 struct arm_kind {
   const char* name;
@@ -125,6 +129,16 @@ void check_solutions(const chain& arm, const result& found, const dual_quaternio
                                                found.solutions[other].joints.end()));
     }
   }
+}
+
+/// Checks that the result at θ is complete and contains θ, and all of its solutions.
+result check_complete(const chain& arm, const vector& theta) {
+  const auto goal = arm.pose(theta);
+  const result found = all_inverse_kinematics(arm, goal);
+  CHECK(found.is_complete);
+  CHECK(contains(arm, found, theta));
+  check_solutions(arm, found, goal);
+  return found;
 }
 
 /// The arm of R. Manseur and K. L. Doty, A robot manipulator with 16 real inverse kinematic
@@ -248,11 +262,7 @@ TEST_CASE(
   const chain arm = serial_chain<6>(joints);
   vector theta(6);
   theta << .3, -1.1, .4, -.5, .9, .2;
-  const auto goal = arm.pose(theta);
-  const result found = all_inverse_kinematics(arm, goal);
-  CHECK(found.is_complete);
-  CHECK(contains(arm, found, theta));
-  check_solutions(arm, found, goal);
+  check_complete(arm, theta);
 }
 
 /// Only the tool has a length.
@@ -353,13 +363,7 @@ TEST_CASE("all_inverse_kinematics: clustered zeros in one order of the joints lo
                           {a, -d, 0}};
       theta[Eigen::Index(i)] = each.theta[i];
     }
-    const chain arm = bounded_chain<16>(joints);
-    const auto goal = arm.pose(theta);
-    const result found = all_inverse_kinematics(arm, goal);
-    CHECK(found.is_complete);
-    CHECK(found.solutions.size() == 8);
-    CHECK(contains(arm, found, theta));
-    check_solutions(arm, found, goal);
+    CHECK(check_complete(chain(joints), theta).solutions.size() == 8);
   }
 }
 
@@ -381,12 +385,7 @@ TEST_CASE("all_inverse_kinematics: solutions that share angles are all found") {
   const auto check = [](const chain& arm, const std::array<double, 6>& at, double unit,
                         std::size_t count) {
     const vector theta = unit * vector(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(at.data()));
-    const auto goal = arm.pose(theta);
-    const result found = all_inverse_kinematics(arm, goal);
-    CHECK(found.is_complete);
-    CHECK(found.solutions.size() == count);
-    CHECK(contains(arm, found, theta));
-    check_solutions(arm, found, goal);
+    CHECK(check_complete(arm, theta).solutions.size() == count);
   };
   check(a, {1, 2, -1, 2, 2, 1}, q, 10);
   check(b, {2, 1, 1, 2, -1, -1}, q, 6);
@@ -526,21 +525,10 @@ TEST_CASE("all_inverse_kinematics: closed forms and elimination agree") {
   CHECK(both == all);
 }
 
-/// PUMA 560 of Unimation, in metres.
-chain puma() {
-  const std::array<dh_row<>, 6> rows{{{.alpha = pi / 2},
-                                      {.a = .4318},
-                                      {.a = .0203, .d = .15005, .alpha = -pi / 2},
-                                      {.d = .4318, .alpha = pi / 2},
-                                      {.alpha = -pi / 2},
-                                      {.d = .1}}};
-  return from_dh(rows);
-}
-
 /// The outer joints of a straight wrist have a self-motion.
 TEST_CASE("all_inverse_kinematics: a straight wrist yields a singular solution and an incomplete "
           "result") {
-  const chain arm = puma();
+  const chain arm = puma;
   vector theta(6);
   theta << .3, .4, -.7, .6, 0, .5;
   const auto goal = arm.pose(theta);
@@ -563,7 +551,7 @@ TEST_CASE(
     "all_inverse_kinematics: near singularities a result with missing solutions is not complete") {
   const chain ur5e = robots::ur5e().table();
   duet_test::random_source random(4);
-  for (const chain& arm : {ur5e, puma()}) {
+  for (const chain& arm : {ur5e, puma}) {
     for (int k = 0; k < 10; ++k) {
       vector theta = configuration(arm, random);
       for (const int joint : {2, 4}) { // elbow and wrist
@@ -636,11 +624,7 @@ TEST_CASE(
   const result found = all_inverse_kinematics(arm, goal);
   int inside = 0;
   for (const auto& s : found.solutions) {
-    bool is_inside = true;
-    for (int i = 0; i < 6; ++i) {
-      is_inside =
-          is_inside && s.joints[i] >= arm.limits(i).lower && s.joints[i] <= arm.limits(i).upper;
-    }
+    const bool is_inside = duet_test::is_within_limits(arm, s.joints);
     CHECK(s.within_limits == is_inside);
     inside += is_inside;
   }
@@ -655,7 +639,7 @@ TEST_CASE(
                      all_inverse_kinematics(chain(robots::panda().table()), goal));
   DUET_CHECK_REFUSED("duet: all_inverse_kinematics: the goal is not a unit dual quaternion: "
                      "|p|^2 = 4, p.q = 0 (expected 1 and 0)",
-                     all_inverse_kinematics(puma(), 2 * goal));
+                     all_inverse_kinematics(puma, 2 * goal));
   duet_test::random_source random(1);
   DUET_CHECK_REFUSED(
       "duet: all_inverse_kinematics: the chain has 4 prismatic joints (expected at most 3)",

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kinematics/arms.hpp"
+#include "robotics/limits.hpp"
 #include "support/test.hpp"
 
 /// \file
@@ -40,14 +41,6 @@ inline any_joints configuration(const any_chain& arm, random_source& random) {
   return theta;
 }
 
-inline bool is_within_limits(const any_chain& arm, const any_joints& theta) {
-  bool is_inside = theta.size() == arm.size();
-  for (int i = 0; i < arm.size(); ++i) {
-    is_inside = is_inside && arm.limits(i).lower <= theta[i] && theta[i] <= arm.limits(i).upper;
-  }
-  return is_inside;
-}
-
 /// Arm with a prismatic third joint, with a metre of `unit` units.
 inline duet::serial_chain<6> stanford_arm(double unit) {
   using std::numbers::pi;
@@ -58,6 +51,15 @@ inline duet::serial_chain<6> stanford_arm(double unit) {
        {.alpha = -pi / 2, .limits = {-2.9, 2.9}},
        {.alpha = pi / 2, .limits = {-1.5, 1.5}},
        {.d = .263 * unit, .limits = {-2.9, 2.9}}}});
+}
+
+/// Three revolute joints with parallel axes and a prismatic one.
+inline any_chain scara() {
+  return duet::from_dh(
+      std::array<duet::dh_row<>, 4>{{{.a = .4, .d = .2},
+                                     {.a = .3, .alpha = std::numbers::pi},
+                                     {.limits = {0, .2}, .kind = duet::joint_kind::prismatic},
+                                     {}}});
 }
 
 } // namespace duet_test

@@ -14,7 +14,14 @@ using namespace duet;
 using chain = duet_test::any_chain;
 using vector = duet_test::any_joints;
 using duet_test::configuration;
-using std::numbers::pi;
+
+const chain ur5e = robots::ur5e().table();
+const vector bent = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
+
+/// The tip's path upwards from its pose at `bent`.
+dual_quaternion<double> rising(double u) {
+  return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * ur5e.pose(bent);
+}
 
 /// True if it is a plan along the complete path, from a start within limits.
 template <class Path>
@@ -27,14 +34,9 @@ bool is_complete_plan(const chain& arm, const start_search_result& found, const 
   }
   for (std::size_t k = 0; k < plan.joints.size(); ++k) {
     const auto deviation = pose_error_between(arm.pose(plan.joints[k]), path(plan.tau[k]));
-    if (deviation.translation > 1e-5 || deviation.rotation > 1e-5) {
+    if (deviation.translation > 1e-5 || deviation.rotation > 1e-5 ||
+        !duet_test::is_within_limits(arm, plan.joints[k])) {
       return false;
-    }
-    for (int i = 0; i < arm.size(); ++i) {
-      const double x = plan.joints[k][i];
-      if (x < arm.limits(i).lower || x > arm.limits(i).upper) {
-        return false;
-      }
     }
   }
   return true;
@@ -60,40 +62,34 @@ TEST_CASE("find_start_configuration: finds a start for every path of a known joi
 }
 
 TEST_CASE("find_start_configuration: finds the only feasible branch and full turn") {
-  const chain arm = robots::ur5e().table();
   // The last joint rotates by two and a half full turns, so it must begin near a limit.
   const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, -6).finished();
   const auto path = [&](double u) {
     vector x = theta;
     x[5] += 11 * u;
-    return arm.pose(x);
+    return ur5e.pose(x);
   };
-  const auto found = find_start_configuration(arm, path, 0, 1);
-  CHECK(is_complete_plan(arm, found, path, 0, 1));
+  const auto found = find_start_configuration(ur5e, path, 0, 1);
+  CHECK(is_complete_plan(ur5e, found, path, 0, 1));
   CHECK(found.plan.joints.front()[5] < -4);
   // A further two and a half full turns do not fit into the limits.
   const auto more = [&](double u) {
     vector x = theta;
     x[5] += 14 * u;
-    return arm.pose(x);
+    return ur5e.pose(x);
   };
-  const auto stuck = find_start_configuration(arm, more, 0, 1);
+  const auto stuck = find_start_configuration(ur5e, more, 0, 1);
   CHECK(stuck.reason == stop_reason::joint_limit);
   CHECK(!stuck.unsolved); // each pose has solutions, the path has none
   CHECK(stuck.plan.tau.back() > .8);
 }
 
 TEST_CASE("find_start_configuration: the start with the lowest objective is tried first") {
-  const chain arm = robots::ur5e().table();
-  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
-  const auto path = [&](double u) {
-    return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * arm.pose(theta);
-  };
-  const auto all = all_inverse_kinematics(arm, path(0));
+  const auto all = all_inverse_kinematics(ur5e, rising(0));
   REQUIRE(all.solutions.size() == 8);
   for (const auto& branch : all.solutions) {
     const auto found =
-        find_start_configuration(arm, path, 0, 1, {}, preferred_posture{branch.joints});
+        find_start_configuration(ur5e, rising, 0, 1, {}, preferred_posture{branch.joints});
     CHECK(found.reason == stop_reason::reached);
     CHECK(found.starts == 1);
     CHECK((found.plan.joints.front() - branch.joints).norm() < 1e-9);
@@ -102,12 +98,7 @@ TEST_CASE("find_start_configuration: the start with the lowest objective is trie
 
 TEST_CASE(
     "find_start_configuration: starts with a nan objective are skipped; nan at all is an error") {
-  const chain arm = robots::ur5e().table();
-  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
-  const auto path = [&](double u) {
-    return pose(quaternion<double>(1), vector3<double>(0, 0, .05 * u)) * arm.pose(theta);
-  };
-  for (const auto& branch : all_inverse_kinematics(arm, path(0)).solutions) {
+  for (const auto& branch : all_inverse_kinematics(ur5e, rising(0)).solutions) {
     const auto only = [&](const auto& x) {
       using std::sqrt;
       auto sum = 1e-6 - (x[0] - branch.joints[0]) * (x[0] - branch.joints[0]);
@@ -116,42 +107,40 @@ TEST_CASE(
       }
       return sqrt(sum);
     };
-    const auto found = find_start_configuration(arm, path, 0, 1, {}, only);
+    const auto found = find_start_configuration(ur5e, rising, 0, 1, {}, only);
     CHECK((found.plan.joints.front() - branch.joints).norm() < 1e-9);
   }
   const auto nowhere = [](const auto& x) { return 0 * x[0] + std::nan(""); };
   CHECK(duet_test::message_of<invalid_input>(
-            [&] { (void)find_start_configuration(arm, path, 0, 1, {}, nowhere); })
+            [&] { (void)find_start_configuration(ur5e, rising, 0, 1, {}, nowhere); })
             .starts_with("duet: find_start_configuration: the objective is nan at all starts, for "
                          "example at the joints ("));
 }
 
 TEST_CASE("find_start_configuration: reports the first pose without a solution and the reason") {
-  const chain arm = robots::ur5e().table();
-  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
-  const auto start = arm.pose(theta);
+  const auto start = ur5e.pose(bent);
   const auto out = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(2 * u, 0, 0)) * start;
   };
-  const auto far = find_start_configuration(arm, out, 0, 1);
+  const auto far = find_start_configuration(ur5e, out, 0, 1);
   REQUIRE(far.unsolved);
   CHECK(far.is_certain);
   CHECK((far.reason == stop_reason::out_of_reach || far.reason == stop_reason::no_solution));
   // At this parameter the pose is just out of reach.
-  CHECK(all_inverse_kinematics(arm, out(*far.unsolved)).solutions.empty());
-  CHECK(!all_inverse_kinematics(arm, out(*far.unsolved - 2e-6)).solutions.empty());
+  CHECK(all_inverse_kinematics(ur5e, out(*far.unsolved)).solutions.empty());
+  CHECK(!all_inverse_kinematics(ur5e, out(*far.unsolved - 2e-6)).solutions.empty());
   CHECK(far.plan.tau.back() > .9 * *far.unsolved);
   // At this first pose there is no solution at all.
-  const auto none = find_start_configuration(arm, out, .9, 1);
+  const auto none = find_start_configuration(ur5e, out, .9, 1);
   REQUIRE(none.unsolved);
   CHECK(*none.unsolved == .9);
   CHECK(none.reason == stop_reason::out_of_reach);
   CHECK(none.plan.joints.empty());
 
   // Limits: the base rotates by at most 1 rad, and the wrist cannot reach its other solution.
-  auto limited = arm;
+  auto limited = ur5e;
   for (int i = 0; i < 6; ++i) {
-    limited = with_limits(limited, i, {theta[i] - .5, theta[i] + .5});
+    limited = with_limits(limited, i, {bent[i] - .5, bent[i] + .5});
   }
   const auto rotating = [&](double u) {
     return pose(exp(vector3<double>(0, 0, u / 2)), vector3<double>(0, 0, 0)) * start;
@@ -171,7 +160,7 @@ TEST_CASE("find_start_configuration: reports the first pose without a solution a
   const auto down = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(0, 0, -.35 * u)) * start;
   };
-  const auto blocked = find_start_configuration(arm, down, 0, 1, {}, no_objective{}, around);
+  const auto blocked = find_start_configuration(ur5e, down, 0, 1, {}, no_objective{}, around);
   REQUIRE(blocked.unsolved);
   CHECK(blocked.reason == stop_reason::obstacle);
   CHECK(*blocked.unsolved > .3);
@@ -179,28 +168,26 @@ TEST_CASE("find_start_configuration: reports the first pose without a solution a
 }
 
 TEST_CASE("find_start_configuration: follows a spline of poses over its whole domain") {
-  const chain arm = robots::ur5e().table();
-  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
   std::vector<double> u;
   std::vector<dual_quaternion<double>> poses;
   for (int i = 0; i < 5; ++i) {
-    vector x = theta;
+    vector x = bent;
     x[0] += .2 * i;
     x[3] -= .1 * i;
     u.push_back(2 + i);
-    poses.push_back(arm.pose(x));
+    poses.push_back(ur5e.pose(x));
   }
   const auto curve = interpolate<rotation_vector_spline<dual<double, 1, screw_tag>>>(u, poses);
-  const auto found = find_start_configuration(arm, curve);
-  CHECK(is_complete_plan(arm, found, curve, 2, 6));
+  const auto found = find_start_configuration(ur5e, curve);
+  CHECK(is_complete_plan(ur5e, found, curve, 2, 6));
   // Every knot is a waypoint.
   for (const double each : u) {
     CHECK(std::find(found.plan.tau.begin(), found.plan.tau.end(), each) != found.plan.tau.end());
   }
   // The objective says which start, as of other paths.
-  for (const auto& branch : all_inverse_kinematics(arm, curve(2)).solutions) {
+  for (const auto& branch : all_inverse_kinematics(ur5e, curve(2)).solutions) {
     const auto preferred =
-        find_start_configuration(arm, curve, {}, preferred_posture{branch.joints});
+        find_start_configuration(ur5e, curve, {}, preferred_posture{branch.joints});
     CHECK((preferred.reason != stop_reason::reached || preferred.starts > 1 ||
            (preferred.plan.joints.front() - branch.joints).norm() < 1e-9));
   }
@@ -208,9 +195,7 @@ TEST_CASE("find_start_configuration: follows a spline of poses over its whole do
 
 /// The flange's body is kept apart from the upper arm's: of the elbow's two ways one is too near.
 TEST_CASE("inverse kinematics and starts respect self-collision pairs") {
-  const chain arm = robots::ur5e().table();
-  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
-  const auto all = all_inverse_kinematics(arm, arm.pose(theta));
+  const auto all = all_inverse_kinematics(ur5e, ur5e.pose(bent));
   REQUIRE(all.solutions.size() == 8);
   scene around;
   around.bodies = {{2, {vector3<double>(0, 0, .1), vector3<double>(-.4, 0, .1), .05}},
@@ -218,34 +203,34 @@ TEST_CASE("inverse kinematics and starts respect self-collision pairs") {
   around.pairs = {{0, 1}};
   std::vector<double> distances;
   for (const auto& branch : all.solutions) {
-    distances.push_back(clearance(arm, branch.joints, around).distance);
+    distances.push_back(clearance(ur5e, branch.joints, around).distance);
   }
   const auto [nearest_pair, farthest_pair] =
       std::minmax_element(distances.begin(), distances.end());
   REQUIRE(*farthest_pair > *nearest_pair + .02);
   around.margin = (*nearest_pair + *farthest_pair) / 2;
   const vector too_near = all.solutions[std::size_t(nearest_pair - distances.begin())].joints;
-  const auto goal = arm.pose(theta);
+  const auto goal = ur5e.pose(bent);
   // Without pairs the solution at the start is the one; with them it is another.
-  const auto free = inverse_kinematics(arm, goal, too_near);
+  const auto free = inverse_kinematics(ur5e, goal, too_near);
   CHECK((free.joints - too_near).norm() < 1e-9);
-  const auto separated = inverse_kinematics(arm, goal, too_near, {}, no_objective{}, around);
+  const auto separated = inverse_kinematics(ur5e, goal, too_near, {}, no_objective{}, around);
   REQUIRE(separated.reason == stop_reason::reached);
-  CHECK(clearance(arm, separated.joints, around).distance >= around.margin - 1e-6);
+  CHECK(clearance(ur5e, separated.joints, around).distance >= around.margin - 1e-6);
 
   const auto path = [&](double u) {
     return pose(quaternion<double>(1), vector3<double>(0, 0, .02 * u)) * goal;
   };
   const preferred_posture preference{too_near};
-  CHECK((find_start_configuration(arm, path, 0, 1, {}, preference).plan.joints.front() - too_near)
+  CHECK((find_start_configuration(ur5e, path, 0, 1, {}, preference).plan.joints.front() - too_near)
             .norm() < 1e-9);
-  const auto found = find_start_configuration(arm, path, 0, 1, {}, preference, around);
-  REQUIRE(is_complete_plan(arm, found, path, 0, 1));
+  const auto found = find_start_configuration(ur5e, path, 0, 1, {}, preference, around);
+  REQUIRE(is_complete_plan(ur5e, found, path, 0, 1));
   CHECK(found.plan.smallest_clearance >= around.margin - 1e-6);
   // No configuration keeps this distance.
   around.margin = *farthest_pair + .3;
   around.influence_distance_offset = 1;
-  const auto none = find_start_configuration(arm, path, 0, 1, {}, preference, around);
+  const auto none = find_start_configuration(ur5e, path, 0, 1, {}, preference, around);
   CHECK(none.reason == stop_reason::obstacle);
   REQUIRE(none.unsolved);
   CHECK(*none.unsolved == 0);
@@ -267,20 +252,18 @@ TEST_CASE(
 }
 
 TEST_CASE("find_start_configuration: invalid options, intervals and postures are rejected") {
-  const chain arm = robots::ur5e().table();
-  const vector theta = (vector(6) << .3, -1.1, 1.4, -.5, .9, .2).finished();
-  const auto path = [&](double) { return arm.pose(theta); };
+  const auto path = [&](double) { return ur5e.pose(bent); };
   DUET_CHECK_REFUSED("duet: find_start_configuration: the parameter of the path goes from 1 to 1 "
                      "(expected an increasing, finite interval)",
-                     find_start_configuration(arm, path, 1, 1));
+                     find_start_configuration(ur5e, path, 1, 1));
   DUET_CHECK_REFUSED("duet: find_start_configuration: max_starts is 0 (expected a positive number)",
-                     find_start_configuration(arm, path, 0, 1, {.max_starts = 0}));
+                     find_start_configuration(ur5e, path, 0, 1, {.max_starts = 0}));
   DUET_CHECK_REFUSED("duet: find_start_configuration: sampling is 2 (expected within (0, 1])",
-                     find_start_configuration(arm, path, 0, 1, {.sampling = 2}));
+                     find_start_configuration(ur5e, path, 0, 1, {.sampling = 2}));
   const preferred_posture few{vector(vector::Zero(5))};
   const char* const what = "duet: preferred_posture: 5 coordinates (expected 6, one per joint)";
-  DUET_CHECK_REFUSED(what, find_start_configuration(arm, path, 0, 1, {}, few));
-  DUET_CHECK_REFUSED(what, follow_path(arm, theta, path, 0, 1, {}, few));
+  DUET_CHECK_REFUSED(what, find_start_configuration(ur5e, path, 0, 1, {}, few));
+  DUET_CHECK_REFUSED(what, follow_path(ur5e, bent, path, 0, 1, {}, few));
 }
 
 } // namespace

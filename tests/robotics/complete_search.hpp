@@ -3,6 +3,8 @@
 
 #include "../../src/robotics/tip_pose.hpp"
 
+#include "robotics/limits.hpp"
+
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/motion_plan.hpp>
@@ -68,9 +70,7 @@ public:
   /// Exact configuration at u nearest to an approximate one; nothing if none is within limits.
   [[nodiscard]] std::optional<joints> exact(double u, const joints& x) const {
     const joints y = at(u, x);
-    const auto deviation = duet::pose_error_between(arm_.pose(y), path_(u));
-    return std::max(deviation.translation, deviation.rotation) < 1e-12 && (y - x).norm() < .01 &&
-                   is_within_limits(y)
+    return deviation(y, path_(u)) < 1e-12 && (y - x).norm() < .01 && is_within_limits(arm_, y, 1e-9)
                ? std::optional(y)
                : std::nullopt;
   }
@@ -78,26 +78,34 @@ public:
 private:
   static constexpr double near_offset = 1e-4, fibre_step = .02;
 
-  [[nodiscard]] bool is_within_limits(const joints& x) const {
-    for (int i = 0; i < 6; ++i) {
-      if (!(x[i] >= arm_.limits(i).lower - 1e-9 && x[i] <= arm_.limits(i).upper + 1e-9)) {
-        return false;
-      }
-    }
-    return true;
+  /// Larger one of the errors of the tip in length and angle.
+  [[nodiscard]] double deviation(const joints& x, const duet::dual_quaternion<double>& pose) const {
+    const auto error = duet::pose_error_between(arm_.pose(x), pose);
+    return std::max(error.translation, error.rotation);
   }
 
-  /// Configuration at u by Newton's method.
-  [[nodiscard]] joints at(double u, joints x) const {
-    const auto current = duet::detail::to_tip_pose(path_(u));
+  using decomposition = Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>>;
+  [[nodiscard]] decomposition jacobian_at(const joints& x) const {
+    return decomposition(duet::jacobian(arm_, x, duet::frame::hybrid),
+                         Eigen::ComputeFullU | Eigen::ComputeFullV);
+  }
+
+  /// Configuration at a pose by Newton's method.
+  ///
+  /// \param singular  singular value, relative to the largest, that counts as zero; or nothing
+  [[nodiscard]] joints solved(const duet::dual_quaternion<double>& pose, joints x,
+                              std::optional<double> singular = {}) const {
     for (int round = 0; round < 5; ++round) {
-      const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)), current);
-      const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
-          duet::jacobian(arm_, x, duet::frame::hybrid), Eigen::ComputeFullU | Eigen::ComputeFullV);
-      x += svd.solve(e);
+      decomposition svd = jacobian_at(x);
+      if (singular) {
+        svd.setThreshold(*singular);
+      }
+      x += svd.solve(duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(x)),
+                                               duet::detail::to_tip_pose(pose)));
     }
     return x;
   }
+  [[nodiscard]] joints at(double u, const joints& x) const { return solved(path_(u), x); }
 
   /// All solutions at u, each moved next to x by full turns, and the result of Newton's method from
   /// x: `all_inverse_kinematics` may miss solutions that are singular up to round-off.
@@ -117,8 +125,7 @@ private:
       }
     }
     const joints nearby = at(u, x);
-    const auto deviation = duet::pose_error_between(arm_.pose(nearby), path_(u));
-    if (std::max(deviation.translation, deviation.rotation) < 1e-12) {
+    if (deviation(nearby, path_(u)) < 1e-12) {
       add(result, nearby);
     }
     return result;
@@ -129,9 +136,7 @@ private:
       return false;
     }
     for (const double part : {.5, .25, .75}) {
-      const auto off = duet::pose_error_between(arm_.pose(joints((1 - part) * x + part * y)),
-                                                path_((1 - part) * u + part * v));
-      if (std::max(off.translation, off.rotation) > 1e-5) {
+      if (deviation((1 - part) * x + part * y, path_((1 - part) * u + part * v)) > 1e-5) {
         return false;
       }
     }
@@ -161,7 +166,7 @@ private:
         if (!is_link(x, a, y, b)) {
           continue;
         }
-        if (!is_within_limits(y)) {
+        if (!is_within_limits(arm_, y, 1e-9)) {
           goes_beyond = true;
           continue;
         }
@@ -240,7 +245,7 @@ private:
         for (const joints& y : solutions(u + near_offset, x)) {
           const bool is_near = (y - x).norm() < fibre_step;
           is_any = is_any || is_near;
-          if (is_near && is_within_limits(y)) {
+          if (is_near && is_within_limits(arm_, y, 1e-9)) {
             add(result, y);
           }
         }
@@ -264,28 +269,16 @@ private:
     for (const double side : {1., -1.}) {
       joints x = from, direction = joints::Zero();
       for (int k = 0; k < 2000; ++k) {
-        const Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> svd(
-            duet::jacobian(arm_, x, duet::frame::hybrid),
-            Eigen::ComputeFullU | Eigen::ComputeFullV);
+        const decomposition svd = jacobian_at(x);
         const joints along = svd.matrixV().col(5);
         if (svd.singularValues()[5] > 1e-4) {
           break;
         }
         direction =
             k == 0 ? joints(side * along) : joints(along.dot(direction) < 0 ? -along : along);
-        joints y = x + fibre_step * direction;
-        for (int round = 0; round < 5; ++round) {
-          const auto e = duet::detail::error_twist(duet::detail::to_tip_pose(arm_.pose(y)),
-                                                   duet::detail::to_tip_pose(pose));
-          Eigen::JacobiSVD<Eigen::Matrix<double, 6, 6>> current(
-              duet::jacobian(arm_, y, duet::frame::hybrid),
-              Eigen::ComputeFullU | Eigen::ComputeFullV);
-          current.setThreshold(1e-4);
-          y += current.solve(e);
-        }
-        const auto off = duet::pose_error_between(arm_.pose(y), pose);
-        if (std::max(off.translation, off.rotation) > 1e-9 ||
-            (y - x).dot(direction) < .7 * fibre_step || (keeps_limits && !is_within_limits(y))) {
+        const joints y = solved(pose, x + fibre_step * direction, 1e-4);
+        if (deviation(y, pose) > 1e-9 || (y - x).dot(direction) < .7 * fibre_step ||
+            (keeps_limits && !is_within_limits(arm_, y, 1e-9))) {
           break;
         }
         result.push_back(y);

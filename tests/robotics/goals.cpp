@@ -273,11 +273,7 @@ TEST_CASE("inverse_kinematics: unreachable partial goals report the reason") {
   CHECK(inverse_kinematics(panda, box, centre).reason == stop_reason::out_of_reach);
 
   // A prismatic joint whose range is too short for the height.
-  const std::array<dh_row<>, 4> rows{{{.a = .4, .d = .2},
-                                      {.a = .3, .alpha = pi},
-                                      {.limits = {0, .2}, .kind = joint_kind::prismatic},
-                                      {}}};
-  const chain scara = from_dh(rows);
+  const chain scara = duet_test::scara();
   const vector start = vector::Constant(4, .05);
   CHECK(inverse_kinematics(scara, position_goal({.4, .2, .1}), start).reason ==
         stop_reason::reached);

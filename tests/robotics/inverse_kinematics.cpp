@@ -219,11 +219,7 @@ TEST_CASE("inverse_kinematics: unreachable goals report the reason") {
   const auto rotated = inverse_kinematics(ur5e, at(.85, .2, .1, {0, -pi / 2, 0}), zero);
   CHECK(rotated.reason == stop_reason::singular);
 
-  const std::array<dh_row<>, 4> rows{{{.a = .4, .d = .2},
-                                      {.a = .3, .alpha = pi},
-                                      {.limits = {0, .2}, .kind = joint_kind::prismatic},
-                                      {}}};
-  const chain scara = from_dh(rows);
+  const chain scara = duet_test::scara();
   vector theta(4);
   theta << .3, .9, .1, -2;
   const vector start = vector::Constant(4, .05);

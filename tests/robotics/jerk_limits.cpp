@@ -51,6 +51,11 @@ double max_fraction(const Trajectory& q, const V& v, const V& a, const V& j, int
   return result;
 }
 
+vector limits(duet_test::random_source& random, double from, double to) {
+  const auto any = [&] { return random.log_uniform(from, to); };
+  return {any(), any(), any()};
+}
+
 std::vector<double> numbers(const vector& x) { return {x.begin(), x.end()}; }
 
 /// Random waypoints with, by `kind`: steps of all joints, of one joint at a time, of very different
@@ -122,12 +127,8 @@ TEST_CASE(
   for (int k = 0; k < 120; ++k) {
     CAPTURE(k);
     const auto waypoints = random_waypoints(random, k % 4);
-    const auto limits = [&](double from, double to) {
-      return vector(random.log_uniform(from, to), random.log_uniform(from, to),
-                    random.log_uniform(from, to));
-    };
-    const vector v = limits(.3, 3), a = limits(.5, 20);
-    vector j = limits(1, 500);
+    const vector v = limits(random, .3, 3), a = limits(random, .5, 20);
+    vector j = limits(random, 1, 500);
     if (k % 7 == 0) {
       j[k % 3] = infinity;
     }
@@ -211,11 +212,7 @@ TEST_CASE(
   duet_test::random_source random(9);
   for (int k = 0; k < 24; ++k) {
     CAPTURE(k);
-    const auto limits = [&](double from, double to) {
-      return vector(random.log_uniform(from, to), random.log_uniform(from, to),
-                    random.log_uniform(from, to));
-    };
-    const vector v = limits(.3, 3), a = limits(.5, 20), j = limits(1, 500);
+    const vector v = limits(random, .3, 3), a = limits(random, .5, 20), j = limits(random, 1, 500);
     const auto waypoints = random_waypoints(random, k % 4);
     const time_parametrisation_options options{.min_intervals = 120, .jerk = numbers(j)};
     auto problem = detail::validated_input(detail::waypoints_of(waypoints), v, a, options);

@@ -5,6 +5,8 @@
 
 #include "robotics/complete_search.hpp"
 
+#include "robotics/limits.hpp"
+
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/jacobian.hpp>
 #include <duet/kinematics/motion_plan.hpp>
@@ -86,15 +88,6 @@ private:
     std::vector<joints> isolated; ///< reached configurations on no component with points
   };
 
-  [[nodiscard]] bool is_within_limits(const joints& x) const {
-    for (int i = 0; i < 7; ++i) {
-      if (!(x[i] >= arm_.limits(i).lower - 1e-9 && x[i] <= arm_.limits(i).upper + 1e-9)) {
-        return false;
-      }
-    }
-    return true;
-  }
-
   [[nodiscard]] layer layer_at(double u) const {
     layer result;
     result.u = u;
@@ -106,7 +99,7 @@ private:
           const double centre = (arm_.limits(i).lower + arm_.limits(i).upper) / 2;
           x[i] = centre + std::remainder(x[i] - centre, 2 * std::numbers::pi);
         }
-        const bool is_inside = is_within_limits(x);
+        const bool is_inside = is_within_limits(arm_, x, 1e-9);
         if (result.points.size() > first && curve.dimension == 1) {
           result.points.back().next = std::ptrdiff_t(result.points.size());
         }

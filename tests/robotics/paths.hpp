@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kinematics/arms.hpp"
+#include "robotics/limits.hpp"
 #include "support/test.hpp"
 
 #include <duet/dual_quaternion/screw.hpp>
@@ -30,11 +31,8 @@ double largest_deviation(const Chain& chain, const Plan& plan, const Path& path)
     for (int part = 1; part <= 10; ++part) {
       const double x = part / 10.0;
       const auto theta = ((1 - x) * plan.joints[k - 1] + x * plan.joints[k]).eval();
-      for (int i = 0; i < chain.size(); ++i) {
-        const auto& limits = chain.limits(i);
-        if (!(theta[i] >= limits.lower - 1e-15 && theta[i] <= limits.upper + 1e-15)) {
-          return std::numeric_limits<double>::infinity();
-        }
+      if (!is_within_limits(chain, theta, 1e-15)) {
+        return std::numeric_limits<double>::infinity();
       }
       const auto d = duet::pose_error_between(chain.pose(theta),
                                               path((1 - x) * plan.tau[k - 1] + x * plan.tau[k]));
@@ -42,6 +40,14 @@ double largest_deviation(const Chain& chain, const Plan& plan, const Path& path)
     }
   }
   return result;
+}
+
+/// The largest deviation of a plan from the screw to a goal.
+template <class Chain, class Plan>
+double deviation_from_screw(const Chain& chain, const Plan& plan,
+                            const duet::dual_quaternion<double>& goal) {
+  return largest_deviation(chain, plan,
+                           [&](double tau) { return sclerp(plan.poses[0], goal, tau); });
 }
 
 /// Checks that a plan keeps to the screw, the limits and the margin, also between waypoints.
@@ -52,10 +58,7 @@ void check_clear_screw(const Chain& arm, const Plan& plan,
     for (int part = 1; part <= 2; ++part) {
       const double x = part / 2.0;
       const auto theta = ((1 - x) * plan.joints[k - 1] + x * plan.joints[k]).eval();
-      for (int i = 0; i < arm.size(); ++i) {
-        CHECK(theta[i] >= arm.limits(i).lower);
-        CHECK(theta[i] <= arm.limits(i).upper);
-      }
+      CHECK(is_within_limits(arm, theta));
       const double tau = (1 - x) * plan.tau[k - 1] + x * plan.tau[k];
       const auto d = duet::pose_error_between(arm.pose(theta), sclerp(plan.poses[0], goal, tau));
       CHECK(d.translation < 1e-5);

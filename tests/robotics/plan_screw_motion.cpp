@@ -17,10 +17,8 @@ using vector = duet_test::coordinates<7>;
 
 const auto arm = robots::panda().table();
 
-template <class Plan>
-double worst(const Plan& plan, const dual_quaternion<double>& goal) {
-  return duet_test::largest_deviation(arm, plan,
-                                      [&](double tau) { return sclerp(plan.poses[0], goal, tau); });
+double worst(const motion_plan& plan, const dual_quaternion<double>& goal) {
+  return duet_test::deviation_from_screw(arm, plan, goal);
 }
 
 struct problem {

@@ -4,6 +4,7 @@
 #include "robotics/chains.hpp"
 #include "robotics/complete_search.hpp"
 #include "robotics/paths.hpp"
+#include "robotics/singular_problems.hpp"
 
 #include <duet/kinematics/adapted.hpp>
 #include <duet/kinematics/chain_parameters.hpp>
@@ -15,18 +16,13 @@ namespace {
 using namespace duet;
 using chain = serial_chain<6>;
 using vector = duet_test::coordinates<6>;
-using plan_of_six = motion_plan;
+using singular_problems::screw;
 
-constexpr double pi = 3.14159265358979324;
 const chain ur5e = robots::ur5e().table();
 
-/// Unimation's PUMA 560, in metres, without limits.
-const chain puma = from_dh(std::array<dh_row<>, 6>{{{.alpha = pi / 2},
-                                                    {.a = .4318},
-                                                    {.a = .0203, .d = .15005, .alpha = -pi / 2},
-                                                    {.d = .4318, .alpha = pi / 2},
-                                                    {.alpha = -pi / 2},
-                                                    {.d = .1}}});
+const chain limited_puma = singular_problems::six_joints()[1].chain;
+const vector unlimited = vector::Constant(std::numeric_limits<double>::infinity());
+const chain puma = with_limits(limited_puma, vector(-unlimited), unlimited);
 
 vector configuration(duet_test::random_source& random, double max_angle) {
   vector theta;
@@ -40,28 +36,24 @@ vector nearby(const vector& theta, duet_test::random_source& random, double max_
 }
 
 /// Along the screw to the pose of `end`.
-plan_of_six plan_to(const chain& arm, const vector& start, const vector& end) {
+motion_plan plan_to(const chain& arm, const vector& start, const vector& end) {
   return plan_screw_motion(arm, start, arm.pose(end));
 }
-double worst(const chain& arm, const plan_of_six& plan, const vector& end) {
-  const auto goal = arm.pose(end);
-  return duet_test::largest_deviation(arm, plan,
-                                      [&](double tau) { return sclerp(plan.poses[0], goal, tau); });
+double worst(const chain& arm, const motion_plan& plan, const vector& end) {
+  return duet_test::deviation_from_screw(arm, plan, arm.pose(end));
 }
-void check_reached(const chain& arm, const vector& start, const vector& end) {
-  const auto plan = plan_to(arm, start, end);
+
+/// Checks that the screw from one configuration's pose to that of another is followed.
+template <int N>
+void check_reached(const serial_chain<N>& arm, const duet_test::coordinates<N>& start,
+                   const duet_test::coordinates<N>& end) {
+  const auto plan = plan_screw_motion(arm, start, arm.pose(end));
   CHECK(plan.reason == stop_reason::reached);
   CHECK(plan.joints.front() == start);
   CHECK(std::is_sorted(plan.tau.begin(), plan.tau.end()));
   CHECK(plan.tau.back() == 1);
-  CHECK(worst(arm, plan, end) < 1.1e-5);
+  CHECK(duet_test::largest_deviation(arm, plan, screw{arm.pose(start), arm.pose(end)}) < 1.1e-5);
 }
-
-/// The shorter screw from pose to pose.
-struct screw_path {
-  dual_quaternion<double> first, last;
-  dual_quaternion<double> operator()(double u) const { return sclerp(first, last, u); }
-};
 
 double smallest_singular_value(const chain& arm, const vector& theta) {
   const detail::planning_model<8> model(arm);
@@ -102,9 +94,7 @@ TEST_CASE("plans leave a stretched elbow inwards and not outwards") {
     const auto inwards = plan_screw_motion(ur5e, start, goal);
     CHECK(inwards.reason == stop_reason::reached);
     CHECK(std::abs(inwards.joints.back()[2]) > .1);
-    CHECK(duet_test::largest_deviation(ur5e, inwards, [&](double tau) {
-            return sclerp(inwards.poses[0], goal, tau);
-          }) < 1.1e-5);
+    CHECK(duet_test::deviation_from_screw(ur5e, inwards, goal) < 1.1e-5);
     const auto outwards = plan_screw_motion(
         ur5e, start,
         pose(quaternion<double>(1), Eigen::Vector3d(-displacement)) * ur5e.pose(start));
@@ -237,7 +227,7 @@ TEST_CASE("the UR5e passes its wrist singularity by a rapid reorientation") {
     start[4] = random.uniform(.3, 1.5);
     vector end = nearby(start, random, k % 2 == 0 ? 1e-3 : 1e-4);
     end[4] = -start[4];
-    const screw_path path{ur5e.pose(start), ur5e.pose(end)};
+    const screw path{ur5e.pose(start), ur5e.pose(end)};
     const auto verdict = duet_test::complete_search(ur5e, path)(start);
     const auto plan = plan_to(ur5e, start, end);
     CHECK((plan.reason == stop_reason::reached) == (verdict.why == stop_reason::reached));
@@ -263,7 +253,7 @@ TEST_CASE("plans stop only where all solutions end, with the same reason") {
       } else if (k % 3 == 1) {
         start[2] = arm.limits(2).upper > 3 ? 0 : start[2]; // the UR5e's elbow is stretched
       }
-      const screw_path path{arm.pose(start), arm.pose(end)};
+      const screw path{arm.pose(start), arm.pose(end)};
       const auto verdict = duet_test::complete_search(arm, path)(start);
       const auto plan = plan_to(arm, start, end);
       CAPTURE(k);
@@ -334,53 +324,28 @@ TEST_CASE("orientation: is constant along a self-motion curve") {
   }
 }
 
-template <int N>
-void check_is_planned(const serial_chain<N>& arm, const duet_test::coordinates<N>& start,
-                      const duet_test::coordinates<N>& end) {
-  const screw_path path{arm.pose(start), arm.pose(end)};
-  const auto plan = plan_screw_motion(arm, start, path.last);
-  CHECK(plan.reason == stop_reason::reached);
-  CHECK(plan.joints.front() == start);
-  CHECK(plan.tau.back() == 1);
-  CHECK(duet_test::largest_deviation(arm, plan, path) < 1.1e-5);
-}
-
 /// Each problem has a solution, by Newton's method from its end and a self-motion to its start.
 TEST_CASE("seven joints stay on their self-motion curve where another comes near") {
   const auto panda = robots::panda().table(), iiwa = robots::iiwa14().table(),
              baxter = robots::baxter_left().table();
-  seven start, end;
-  start << 2.094, .452, -1.599, -2.326, -1.616, 3.068, -1.331;
-  end << 1.786, -.452, -1.55, -2.82, -1.93, 3.377, -1.477;
-  check_is_planned(panda, start, end);
-  start << 2.28538, -1.22115, -1.159, -.80361, -2.1876, 3.10306, .66382;
-  end << 2.28549, 1.22115, -1.15898, -.80359, -2.18752, 3.10312, .66381;
-  check_is_planned(panda, start, end);
-  start << 1.8445, -.7148, .9794, -.8978, 1.6857, .7854, 1.8321;
-  end << 1.8442, -.7148, .9796, -.8983, 1.6854, -.7854, 1.832;
-  check_is_planned(iiwa, start, end);
-  start << .45, -.13, -.94, .7, 1.49, -.68, -1.7;
-  end << .45, -.13, -.94, .7, 1.49, .68, -1.7;
-  check_is_planned(baxter, start, end);
+  check_reached(panda, seven(2.094, .452, -1.599, -2.326, -1.616, 3.068, -1.331),
+                seven(1.786, -.452, -1.55, -2.82, -1.93, 3.377, -1.477));
+  check_reached(panda, seven(2.28538, -1.22115, -1.159, -.80361, -2.1876, 3.10306, .66382),
+                seven(2.28549, 1.22115, -1.15898, -.80359, -2.18752, 3.10312, .66381));
+  check_reached(iiwa, seven(1.8445, -.7148, .9794, -.8978, 1.6857, .7854, 1.8321),
+                seven(1.8442, -.7148, .9796, -.8983, 1.6854, -.7854, 1.832));
+  check_reached(baxter, seven(.45, -.13, -.94, .7, 1.49, -.68, -1.7),
+                seven(.45, -.13, -.94, .7, 1.49, .68, -1.7));
 }
 
 /// By a complete search each problem has a solution with the elbow on one side only.
 TEST_CASE("plans leave a stretched elbow near the wrist singularity on the feasible side") {
-  const auto degrees = [](std::array<double, 6> x) {
-    return vector(Eigen::Map<const vector>(x.data()) * (pi / 180));
-  };
-  const chain limited = with_limits(puma, degrees({-160, -225, -225, -110, -100, -266}),
-                                    degrees({160, 45, 45, 170, 100, 266}));
-  vector start, end;
-  start << -.45793, -.9896, -1.52382, -.53564, -.07137, 1.25488;
-  end << -.27789, -1.37498, -1.56042, -.86047, .16358, .91994;
-  check_is_planned(limited, start, end);
-  start << -.99518, -1.36755, -1.52382, -.98997, -.11179, 2.14885;
-  end << -.70383, -1.57117, -1.38841, -.54673, .13715, 2.33595;
-  check_is_planned(limited, start, end);
-  start << 1.9469, -2.4579, -1.5238, -1.0966, .1102, -2.5373;
-  end << 1.9115, -2.4834, -1.1631, -.8743, -.2154, -2.6595;
-  check_is_planned(limited, start, end);
+  check_reached(limited_puma, vector(-.45793, -.9896, -1.52382, -.53564, -.07137, 1.25488),
+                vector(-.27789, -1.37498, -1.56042, -.86047, .16358, .91994));
+  check_reached(limited_puma, vector(-.99518, -1.36755, -1.52382, -.98997, -.11179, 2.14885),
+                vector(-.70383, -1.57117, -1.38841, -.54673, .13715, 2.33595));
+  check_reached(limited_puma, vector(1.9469, -2.4579, -1.5238, -1.0966, .1102, -2.5373),
+                vector(1.9115, -2.4834, -1.1631, -.8743, -.2154, -2.6595));
 }
 
 /// Both verdicts are checked: a path with a continuation and one without.
