@@ -273,7 +273,8 @@ private:
         nearby = solution.joints;
         return true;
       }
-      return is_solved_otherwise(path_(u));
+      // The iterative search may miss solutions that are in the complete set of six joints.
+      return is_algebraic(chain_, 6) && !solutions_at(path_(u)).empty();
     };
     const int count = int(std::ceil(1 / options_.sampling));
     const auto at = [&](int i) { return i == count ? last : first + (last - first) * i / count; };
@@ -292,12 +293,6 @@ private:
     }
   }
 
-  /// True if the complete solution set of six joints contains a solution that the iterative search
-  /// missed.
-  [[nodiscard]] bool is_solved_otherwise(const dual_quaternion<double>& pose) const {
-    return is_algebraic(chain_, 6) && !solutions_at(pose).empty();
-  }
-
   void explain(choice& result, const dual_quaternion<double>& pose) const {
     const auto solution = solution_from(centre(), pose, 100);
     result.is_certain = solution.reason == stop_reason::out_of_reach;
@@ -311,11 +306,9 @@ private:
       result.reason = all.solutions.empty() ? stop_reason::no_solution : stop_reason::joint_limit;
       return;
     }
-    bounded_chain<max_capacity> without_limits(chain_);
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < chain_.size(); ++i) {
-      without_limits.set_limits(i, {-infinity, infinity, infinity});
-    }
+    const joints upper = joints::Constant(chain_.size(), std::numeric_limits<double>::infinity());
+    const auto without_limits =
+        with_limits(bounded_chain<max_capacity>(chain_), joints(-upper), upper);
     const auto beyond =
         inverse_kinematics(without_limits, pose, centre(), {.tolerance = options_.plan.tolerance});
     result.reason =

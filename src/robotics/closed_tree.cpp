@@ -158,7 +158,7 @@ public:
     const Eigen::MatrixXd kernel = a.kernel();
     const std::vector<Eigen::MatrixXd> forms = quadratic_forms(of_, q, a.cokernel(), kernel);
     for (int start = 0; start < 20; ++start) {
-      if (common_zero(forms, direction(kernel.cols()), 1e-7)) {
+      if (common_zero(forms, random_direction(random_, kernel.cols()), 1e-7)) {
         return true;
       }
     }
@@ -195,11 +195,10 @@ public:
   }
 
 private:
-  [[nodiscard]] Eigen::VectorXd direction(Eigen::Index n) { return random_direction(random_, n); }
   /// Closes the loops from a distance along a random direction of the kernel.
   [[nodiscard]] loop_closure_solver closed_near(const Eigen::VectorXd& q,
                                                 const Eigen::MatrixXd& kernel, double distance) {
-    const Eigen::VectorXd displacement = kernel * direction(kernel.cols());
+    const Eigen::VectorXd displacement = kernel * random_direction(random_, kernel.cols());
     return {of_, q + distance * displacement.cwiseProduct(of_.units()), all_but(of_.size(), {})};
   }
 

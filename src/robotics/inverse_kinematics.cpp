@@ -453,7 +453,7 @@ private:
         return best;
       }
       ++since;
-      theta = within_limits(theta + step(current, damping(current)).step);
+      theta = within_limits(theta + step(current).step);
     }
   }
 
@@ -461,7 +461,7 @@ private:
   [[nodiscard]] stop_reason reason_without_progress(const vector& theta,
                                                     const scaled_goal& goal) const {
     const equations current = equations_at(theta, goal);
-    if (step(current, damping(current)).is_bounded) {
+    if (step(current).is_bounded) {
       return stop_reason::joint_limit;
     }
     gram_matrix gram = gram_of(current.at.jacobian);
@@ -601,14 +601,11 @@ private:
     return result;
   }
 
-  /// Levenberg–Marquardt (damped least squares) step.
-  [[nodiscard]] bounded_step_result<Capacity> step(const equations& x, double lambda) const {
+  /// Levenberg–Marquardt (damped least squares) step, with a damping that grows with the error.
+  [[nodiscard]] bounded_step_result<Capacity> step(const equations& x) const {
+    const double lambda = std::min(.02 * x.e.squaredNorm(), .08) + 1e-9;
     return bounded_step(x.at.jacobian, x.e, model_.lower - x.at.theta - beyond_,
                         model_.upper - x.at.theta + beyond_, {0, lambda});
-  }
-  /// Damping, which grows with the error.
-  [[nodiscard]] static double damping(const equations& x) {
-    return std::min(.02 * x.e.squaredNorm(), .08) + 1e-9;
   }
 
   /// Nearest pose from a start on: minimum of the squared distance of the origins plus |ω|², by

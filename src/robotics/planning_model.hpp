@@ -47,6 +47,19 @@ inline void require_positive(const char* caller, const char* name, const pose_to
   }
 }
 
+/// Throws an error for an input that is nan, with the joint coordinates at which it is.
+///
+/// \param what  beginning of the message, as "duet: follow_path: the objective is nan at the
+/// start,"
+/// \throws invalid_input
+[[noreturn]] inline void fail_not_a_number(const std::string& what, const Eigen::VectorXd& joints) {
+  std::string text;
+  for (const double x : joints) {
+    text += (text.empty() ? "" : ", ") + message(x);
+  }
+  raise(invalid_input(what + " joints (" + text + ")"));
+}
+
 /// Largest number of joints of a chain.
 inline constexpr int max_capacity = 100;
 

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <concepts>
 #include <functional>
-#include <string>
 
 /// \file
 /// Null-space (secondary) objectives: functions of the joint coordinates that are minimised in the
@@ -67,20 +66,6 @@ void require_objective(const preferred_posture<V>& preferred, int joints) {
   }
   require(std::isfinite(preferred.weight), "duet: preferred_posture: weight is ", preferred.weight,
           " (expected a finite number)");
-}
-
-/// Throws an error for an input that is nan, with the joint coordinates at which it is.
-///
-/// \param what  beginning of the message, as "duet: follow_path: the objective is nan at the
-/// start,"
-/// \throws invalid_input
-template <class X>
-[[noreturn]] DUET_COLD void fail_not_a_number(const std::string& what, const X& joints) {
-  std::string text;
-  for (Eigen::Index i = 0; i < joints.size(); ++i) {
-    text += (i == 0 ? "" : ", ") + message(joints[i]);
-  }
-  raise(invalid_input(what + " joints (" + text + ")"));
 }
 
 /// View of an objective of any type, which it calls with vectors of the type that the chain has;
