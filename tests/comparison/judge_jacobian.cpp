@@ -421,6 +421,98 @@ TEST_CASE("an accelerometer: terms with constants that the function has captured
               {{1, 2}, {2, 3}, {5, 0}});
 }
 
+TEST_CASE("constants: arguments without columns, named in chains and as axes of joints") {
+  const auto project = [](const auto& a, const auto& p, const auto& c, const auto& focal) {
+    const auto z = rotate(c, vector3<scalar_t<std::decay_t<decltype(transform_point(a, p))>>>(
+                                 transform_point(conj(a), p)));
+    return Eigen::Matrix<std::decay_t<decltype(focal * z[0])>, 2, 1>(focal * z[0] / z[2],
+                                                                     focal * z[1] / z[2]);
+  };
+  const auto cameras = sampler(rigid_motions{}, vectors<3>{2}, rotations{}, real_numbers{1, 3})
+                           .named("T", "p", "C", "f0")
+                           .where([](const auto& a, const auto& p, const auto& c, double) {
+                             const vector3<double> y(transform_point(conj(a), p));
+                             return std::abs(rotate(c, y)[2]) > .2 && std::abs(y[2]) > .1;
+                           });
+  const auto camera = [&](slip s, std::size_t constants) {
+    return judge_jacobian(
+        "camera", project,
+        [s](const pose_type& a, const Vector3d& p, const rotation_type& c, double focal) {
+          const Matrix3d back = rotation_matrix(rotation(a)).transpose(), r = rotation_matrix(c);
+          const Vector3d y = transform_point(conj(a), p), z = s == 1 ? y : Vector3d(r * y);
+          Eigen::Matrix<double, 2, 3> by_point;
+          by_point << focal / z[2], 0, (s == 2 ? 1 : -1) * focal * z[0] / (z[2] * z[2]), 0,
+              (s == 3 ? 1 : focal) / z[2], -focal * z[1] / (z[2] * z[2]);
+          Eigen::Matrix<double, 3, 9> by_all;
+          by_all << -Matrix3d::Identity(), hat(y), back;
+          return Eigen::MatrixXd(by_point *
+                                 (s == 4   ? Matrix3d(Matrix3d::Identity())
+                                  : s == 5 ? r.transpose()
+                                           : r) *
+                                 by_all);
+        },
+        cameras, {.samples = 20, .constants = constants});
+  };
+  check_slips([&](slip s) { return camera(s, 2); },
+              {{1, "in those of C^-1", "d f / d (T^-1 p)"},
+               {2, "sign", "entry (0, 2) of d f / d (C (T^-1 p))"},
+               {3, "scaled by f0^-1", "entry (1, 1) of d f / d (C (T^-1 p))"},
+               {4, "multiplied by Ad(C)^-1", "d f / d (T^-1 p)"},
+               {5, "multiplied by Ad(C)^-2", "d f / d (T^-1 p)"}},
+              {{2, 4}, {2, 3}});
+  CHECK_THROWS_WITH_AS(
+      (void)camera({}, 1),
+      "duet: judge_jacobian: the Jacobian is 2 x 9 (expected 2 x 12, or 14 columns "
+      "for stored numbers; constants have none)",
+      invalid_input);
+  CHECK_THROWS_WITH_AS((void)camera({}, 4),
+                       "duet: judge_jacobian: 4 constants (expected less than the 4 arguments)",
+                       invalid_input);
+
+  const auto tip = [](const auto& a, const auto& b, const auto& p, const auto& m, const auto& n,
+                      const auto& d) {
+    using S = std::decay_t<decltype(a * p[0])>;
+    const auto by = [](const auto& t, const auto& axis) {
+      return from_rotation_vector(vector3<S>(t * axis[0], t * axis[1], t * axis[2]));
+    };
+    const auto x = rotate(by(b, n), vector3<S>(p[0], p[1], p[2]));
+    return rotate(by(a, m), vector3<S>(x[0] + d[0], x[1] + d[1], x[2] + d[2]));
+  };
+  const auto arm = [&](slip s) {
+    return judge_jacobian(
+        "arm", tip,
+        [s](double a, double b, const Vector3d& p, const Vector3d& m, const Vector3d& n,
+            const Vector3d& d) {
+          const Matrix3d first = rotation_matrix(from_rotation_vector(vector3<double>(a * m))),
+                         both =
+                             first * rotation_matrix(from_rotation_vector(vector3<double>(b * n)));
+          const Vector3d elbow = first * d, x = elbow + both * p,
+                         axis = s == 1 ? n : Vector3d(first * n);
+          Eigen::Matrix<double, 3, 5> j;
+          j << m.cross(x),
+              axis.cross(x - (s == 2   ? 0
+                              : s == 3 ? -1
+                                       : 1) *
+                                 elbow),
+              s == 4 ? first : both;
+          j.leftCols<2>() *= s == 5 ? 57.29577951308232 : 1;
+          return j;
+        },
+        sampler(real_numbers{-3, 3}, real_numbers{-3, 3}, vectors<3>{1}, vectors<3>{1},
+                vectors<3>{1}, vectors<3>{1})
+            .named("a", "b", "p", "m", "n", "d"),
+        {.samples = 20, .constants = 3});
+  };
+  check_slips(arm,
+              {{1, "Ad(exp(m a) exp(n b))^-1 from the left", "d (exp(n b)) / d b"},
+               {2, "(exp(m a) n) x (exp(m a) d)", "d f / d b"},
+               {3, "(exp(m a) n) x (exp(m a) d)", "d f / d b"},
+               {4, "another rotation: that of exp(m a)", "d f / d p"},
+               {5, "degrees", "all of d / d a to b"},
+               {2, "another term instead: -1 f x n", "d f / d b", 1}},
+              {{2, 4}, {3, 5}});
+}
+
 TEST_CASE("a hand and an eye: sums of an identity matrix and an adjoint") {
   const auto f = [](const auto& x, const auto& a, const auto& b) { return conj(x * b) * (a * x); };
   const auto inputs =

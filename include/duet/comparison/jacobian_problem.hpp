@@ -16,6 +16,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 /// \file
@@ -62,19 +63,30 @@ using long_matrix = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
 struct jacobian_evaluation {
   Eigen::VectorXd value{}; ///< states of the results
   long_matrix jacobian{};
-  double error = 0; ///< estimated error of the derivative, not counting round-off
+  double error = 0;           ///< estimated error of the derivative, not counting round-off
+  long_matrix by_constants{}; ///< with a column for each tangent coordinate of a constant
 };
 
 /// A function, its handwritten Jacobian, and what their numbers mean.
 struct jacobian_problem {
   std::vector<jacobian_part> arguments{}, results{};
+  /// Further arguments, without columns: their tangent coordinates follow the others'.
+  std::vector<jacobian_part> constants{};
   std::function<jacobian_evaluation(const Eigen::VectorXd& state)> truth{};
   /// The handwritten matrix as it is returned: with columns for tangent coordinates, or for
   /// stored numbers (quaternions in `order`, poses as [t; q]).
   std::function<Eigen::MatrixXd(const Eigen::VectorXd& state)> written{};
   std::vector<jacobian_part> context{}; ///< further numbers of the state
+  /// Constant axes n and numbers t on which the function depends by exp(n t), as joints of an arm.
+  std::vector<std::pair<jacobian_part, jacobian_part>> joints{};
   perturbation side = perturbation::right;
   quaternion_order order = quaternion_order::wxyz;
+
+  [[nodiscard]] std::vector<jacobian_part> arguments_and_constants() const {
+    std::vector<jacobian_part> all = arguments;
+    all.insert(all.end(), constants.begin(), constants.end());
+    return all;
+  }
 };
 
 /// A function and its handwritten Jacobian at one input.

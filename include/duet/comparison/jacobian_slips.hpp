@@ -76,11 +76,19 @@ public:
           try_other_arms();
           try_axes_of_results();
         }
+        if (slips_.empty()) {
+          try_weights();
+        }
+        if (slips_.empty()) {
+          try_other_terms();
+        }
         for (const jacobian_slip& s : weak_) {
           if (!slips_.empty()) {
             accept(s.name, s.block);
           }
         }
+      } else if (!problem_.constants.empty() && slips_.empty()) {
+        try_chains(); // a constant may follow in the chain
       }
     }
     return std::move(slips_);
@@ -113,27 +121,28 @@ private:
     std::function<vector(vector, const vector&)> set; ///< a state that gives another value
     /// The rotated vector in a moved point, and the vector that is rotated.
     std::function<std::pair<Eigen::Vector3d, Eigen::Vector3d>(const vector&)> rotated{};
+    const jacobian_part* axis = nullptr; ///< of a joint: a constant
   };
 
   /// Points moved by rotations and poses and back, products of two rotations or poses, and
   /// rotations by vectors.
   [[nodiscard]] std::vector<intermediate> intermediates() const {
     std::vector<intermediate> list;
-    const Eigen::Index columns = tangent_size(problem_.arguments);
+    const Eigen::Index columns = tangent_size(inputs_);
     const bool is_right = problem_.side == perturbation::right;
     const auto rotation_of_part = [](const jacobian_part& m, const vector& x) {
       return Eigen::Matrix3d(rotation_matrix(rotation_at(m, x)));
     };
-    for (const jacobian_part& m : problem_.arguments) {
+    for (const jacobian_part& m : inputs_) {
       if (!m.is_motion()) {
         continue;
       }
-      for (const jacobian_part& v : problem_.arguments) {
+      for (const jacobian_part& v : inputs_) {
         if (v.type != kind::vector || v.dimension != 3) {
           continue;
         }
         std::vector<const jacobian_part*> offsets = {nullptr};
-        for (const jacobian_part& w : problem_.arguments) {
+        for (const jacobian_part& w : inputs_) {
           if (m.type == kind::rotation && &w != &v && w.type == kind::vector && w.dimension == 3) {
             offsets.push_back(&w);
           }
@@ -157,7 +166,7 @@ private:
                      : w != nullptr ? Eigen::Vector3d(x.segment<3>(w->state))
                                     : Eigen::Vector3d::Zero();
             };
-            z.evaluate = [=, &m, &v](const vector& x) {
+            z.evaluate = [=, this, &m, &v](const vector& x) {
               const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
               // By right perturbation: of R p + t, R, -R p^ and R; of R^T (p - t), -1, y^ and R^T.
               const Eigen::Matrix3d r = rotation_of_part(m, x), back = r.transpose();
@@ -180,7 +189,7 @@ private:
                     product_of(j.middleCols(m.first, m.dimension),
                                adjoint.bottomRightCorner(m.dimension, m.dimension));
               }
-              return jacobian_evaluation{value, j.template cast<long double>(), 0};
+              return evaluation_of(value, j);
             };
             z.rotated = [=, &m, &v](const vector& x) {
               const Eigen::Matrix3d r = rotation_of_part(m, x);
@@ -201,7 +210,7 @@ private:
           }
         }
       }
-      for (const jacobian_part& n : problem_.arguments) {
+      for (const jacobian_part& n : inputs_) {
         if (&n == &m || n.type != m.type) {
           continue;
         }
@@ -210,7 +219,7 @@ private:
           z.arguments = {&m, &n};
           z.part = {m.type, message(m.name, is_back ? "^-1 " : " ", n.name), 0, 0, m.dimension};
           const jacobian_part whole{m.type, "", 0, 0, m.dimension};
-          z.evaluate = [=, &m, &n](const vector& x) {
+          z.evaluate = [=, this, &m, &n](const vector& x) {
             // In body axes: of a^-1 b, -Ad(b^-1 a) and 1; of a b, Ad(b^-1) and 1. In fixed axes: of
             // a^-1 b, -Ad(a^-1) and Ad(a^-1); of a b, 1 and Ad(a).
             const auto a = pose_at(m, x), b = pose_at(n, x);
@@ -229,7 +238,7 @@ private:
             }
             vector value = vector::Zero(m.state_size());
             set_pose(value, whole, (is_back ? conj(a) : a) * b);
-            return jacobian_evaluation{value, j.template cast<long double>(), 0};
+            return evaluation_of(value, j);
           };
           z.set = [=, &m, &n](vector x, const vector& value) {
             const auto a = pose_at(m, x);
@@ -249,7 +258,7 @@ private:
   void add_increments(std::vector<intermediate>& list) const {
     const bool is_right = problem_.side == perturbation::right;
     std::vector<const jacobian_part*> vectors = {nullptr}, scalars = {nullptr};
-    for (const jacobian_part& a : problem_.arguments) {
+    for (const jacobian_part& a : inputs_) {
       if (a.type == kind::vector && a.dimension == 3) {
         vectors.push_back(&a);
       } else if (a.type == kind::number) {
@@ -259,10 +268,17 @@ private:
     for (const jacobian_part* v : vectors) {
       for (const jacobian_part* w : vectors) {
         for (const jacobian_part* t : scalars) {
-          if (v == nullptr || v == w) {
+          const bool is_joint =
+              w == nullptr && problem_.written &&
+              std::any_of(problem_.joints.begin(), problem_.joints.end(), [&](const auto& joint) {
+                return v != nullptr && t != nullptr && joint.first.state == v->state &&
+                       joint.second.state == t->state;
+              });
+          if (v == nullptr || v == w || !(has_columns(*v) || is_joint)) {
             continue;
           }
           intermediate z;
+          z.axis = is_joint ? v : nullptr;
           z.part = {kind::rotation,
                     message("exp(",
                             w != nullptr ? message("(", v->name, " - ", w->name, ")") : v->name,
@@ -281,7 +297,7 @@ private:
             const Eigen::Vector3d rate = x.segment<3>(v->state) - offset(x);
             const vector3<double> r = time(x) * rate;
             const Eigen::Matrix3d by_vector = is_right ? right_jacobian(r) : left_jacobian(r);
-            matrix j = matrix::Zero(3, tangent_size(problem_.arguments));
+            matrix j = matrix::Zero(3, tangent_size(inputs_));
             j.middleCols(v->first, 3) = time(x) * by_vector;
             if (w != nullptr) {
               j.middleCols(w->first, 3) = -time(x) * by_vector;
@@ -291,7 +307,7 @@ private:
             }
             vector value = vector::Zero(4);
             set_rotation(value, part, from_rotation_vector(r));
-            return jacobian_evaluation{value, j.template cast<long double>(), 0};
+            return evaluation_of(value, j);
           };
           z.set = [=, part = z.part](vector x, const vector& value) {
             x.segment<3>(v->state) =
@@ -360,7 +376,7 @@ private:
     }
     for (const intermediate& z : intermediates()) {
       for (const bool from_vector : {false, true}) {
-        if (z.rotated && slips_.empty()) {
+        if (z.rotated && has_columns(*z.arguments[0]) && slips_.empty()) {
           // Change of f with the norm of the quaternion: A times twice what is rotated, or twice
           // its difference to the vector before.
           try_continued(part, order, [&](const vector& x, const auto&, const matrix& exact) {
@@ -439,11 +455,22 @@ private:
     }
   }
 
+  /// \param j  with columns for arguments and constants
+  [[nodiscard]] jacobian_evaluation evaluation_of(const vector& value, const matrix& j) const {
+    const Eigen::Index columns = tangent_size(problem_.arguments);
+    const long_matrix all = j.template cast<long double>();
+    return {value, all.leftCols(columns), 0, all.rightCols(j.cols() - columns)};
+  }
+  [[nodiscard]] bool has_columns(const jacobian_part& part) const {
+    return part.first < tangent_size(problem_.arguments);
+  }
   /// True for the columns of the arguments that an intermediate result depends on.
   [[nodiscard]] std::vector<bool> columns_of(const intermediate& z) const {
     std::vector<bool> result(std::size_t(tangent_size(problem_.arguments)), false);
     for (const jacobian_part* a : z.arguments) {
-      std::fill_n(result.begin() + a->first, a->dimension, true);
+      if (has_columns(*a)) {
+        std::fill_n(result.begin() + a->first, a->dimension, true);
+      }
     }
     return result;
   }
@@ -469,6 +496,17 @@ private:
     return m;
   }
 
+  /// The matrix with the columns of the axis of a joint, too.
+  [[nodiscard]] static matrix with_axis(const matrix& m, const jacobian_evaluation& there,
+                                        const intermediate& z) {
+    if (z.axis == nullptr) {
+      return m;
+    }
+    matrix all(m.rows(), m.cols() + 3);
+    all << m, there.by_constants.middleCols(z.axis->first - m.cols(), 3).template cast<double>();
+    return all;
+  }
+
   /// Slips in one factor of a chain: the function depends on some arguments through an
   /// intermediate one, J = A Z, and the slip is in A or in Z.
   void try_chains() {
@@ -488,16 +526,22 @@ private:
         continue;
       }
       std::vector<jacobian_sample> inner, outer;
-      bool is_chain = true, has_outer = true;
+      bool is_chain = true;
+      bool has_outer = z.axis == nullptr; // one column does not determine it
       for (const jacobian_sample& s : samples_) {
         const jacobian_evaluation middle = z.evaluate(s.state);
         const matrix factor = middle.jacobian.template cast<double>();
         const matrix exact = in_columns(in_wrong_rows(s.exact), is_column),
                      written = in_columns(in_wrong_rows(s.written), is_column),
-                     used = in_columns(factor, is_used), a = divided(exact, factor),
+                     used = in_columns(factor, is_used),
+                     all = in_wrong_rows(with_axis(exact, s.truth, z)),
+                     all_factors = with_axis(factor, middle, z), a = divided(all, all_factors),
                      b = divided(written, used);
         is_chain =
-            is_chain && is_within(exact - product_of(a, factor), s.allowed, 1e-9, exact, exact);
+            is_chain && is_within(all - product_of(a, all_factors), s.allowed, 1e-9, all, all);
+        if (z.axis != nullptr && !is_invertible(product_of(all_factors, all_factors.transpose()))) {
+          continue; // no rotation, so that A is unknown
+        }
         for (Eigen::Index k = 0; k < exact.cols() && has_outer; ++k) {
           const double error = largest_entry(written.col(k) - product_of(b, used.col(k)));
           has_outer =
@@ -524,7 +568,7 @@ private:
         sample.truth = s.truth;
         outer.push_back(sample);
       }
-      if (!is_chain) {
+      if (!is_chain || inner.empty() || !inner[0].is_wrong) {
         continue;
       }
       jacobian_problem part = problem_;
@@ -545,9 +589,16 @@ private:
         part.arguments[0].name = "(" + z.part.name + ")";
         part.arguments[0].state = samples_[0].state.size();
         part.context = problem_.arguments;
+        for (const jacobian_part* a : z.arguments) {
+          if (!has_columns(*a)) {
+            part.context.push_back(*a);
+            std::erase_if(part.constants, [a](const auto& c) { return c.state == a->state; });
+          }
+        }
         append(jacobian_slip_search(part, outer).found());
       }
       part.arguments = problem_.arguments;
+      part.constants = problem_.constants;
       part.context.clear();
       part.results = {z.part};
       part.results[0].name = "(" + z.part.name + ")";

@@ -62,7 +62,7 @@ protected:
                         return state;
                       }});
     };
-    for (const jacobian_part& a : problem_.arguments) {
+    for (const jacobian_part& a : inputs_) {
       const Eigen::Index size = a.state_size();
       if (a.is_motion()) {
         const auto add_rotation = [&](const std::string& name, auto change) {
@@ -153,7 +153,7 @@ protected:
           }
         }
       }
-      for (const jacobian_part& b : problem_.arguments) {
+      for (const jacobian_part& b : inputs_) {
         if (&a == &b) {
           continue;
         }
@@ -196,7 +196,7 @@ protected:
       // Vectors and translations in the axes of another rotation, or from another point.
       if (a.vector_state() >= 0) {
         const std::string name = a.vector_name();
-        for (const jacobian_part& b : problem_.arguments) {
+        for (const jacobian_part& b : inputs_) {
           if (b.is_motion()) {
             add_other_axes(add, a, b);
           }
@@ -238,7 +238,7 @@ protected:
   /// Parts of a sum: what does not depend on an argument, what is odd and what is even in it; for
   /// single components of vectors what is odd and what is even.
   void try_parts_of_sums() {
-    for (const jacobian_part& a : problem_.arguments) {
+    for (const jacobian_part& a : inputs_) {
       if (a.is_motion()) {
         try_parts_by(a.name, [&](const vector& state, double factor) {
           vector x = state;
@@ -368,7 +368,7 @@ protected:
         }
       }
     };
-    add(problem_.arguments, s.state);
+    add(inputs_, s.state);
     add(problem_.results, s.truth.value);
     const std::vector<motion> all = motions();
     for (const motion& m : all) {
@@ -424,7 +424,7 @@ protected:
     // Two slips may vanish at the same inputs, so that one block must contain all that is wrong.
     const bool is_one_block =
         scopes_.front().argument != nullptr && scopes_.front().result != nullptr;
-    for (const jacobian_part& a : problem_.arguments) {
+    for (const jacobian_part& a : inputs_) {
       if (a.is_motion() && is_one_block && is_of_one_sheet(a)) {
         accept(message("right on one sheet of the double cover only: of ", a.name),
                scopes_.front().name);

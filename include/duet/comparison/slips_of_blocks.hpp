@@ -40,7 +40,7 @@ protected:
 
   /// \param samples  with at least one that is wrong; the wrong ones are searched first
   slips_of_blocks(const jacobian_problem& problem, const std::vector<jacobian_sample>& samples)
-      : problem_(problem) {
+      : problem_(problem), inputs_(problem.arguments_and_constants()) {
     for (const bool is_wrong : {true, false}) {
       std::copy_if(samples.begin(), samples.end(), std::back_inserter(samples_),
                    [&](const jacobian_sample& s) { return s.is_wrong == is_wrong; });
@@ -184,6 +184,16 @@ protected:
       }
       add_scope(message("all of d / d ", a.name), 0, rows, a.first, a.dimension, &a, nullptr);
     }
+    for (auto a = problem_.arguments.begin(); a != problem_.arguments.end(); ++a) {
+      const auto end = std::find_if(a, problem_.arguments.end(), [](const jacobian_part& part) {
+        return part.type != kind::number;
+      });
+      if (end - a > 1) {
+        add_scope(message("all of d / d ", a->name, " to ", (end - 1)->name), 0, rows, a->first,
+                  end - a, nullptr, nullptr);
+        a = end - 1;
+      }
+    }
     add_scope("the whole matrix", 0, rows, 0, columns, nullptr, nullptr);
   }
 
@@ -321,11 +331,7 @@ protected:
       }
     }
     attempt_change("Jacobian of the inverse", [&](const matrix& m) -> matrix {
-      const matrix inverse = is_square(m) ? inverse_of(m) : matrix();
-      const bool is_inverse =
-          is_square(m) && largest_entry(product_of(inverse, m) -
-                                        matrix::Identity(m.rows(), m.rows())) < 1 / most_condition;
-      return is_inverse ? inverse : matrix();
+      return is_square(m) && is_invertible(m) ? inverse_of(m) : matrix();
     });
     for (const bool is_by_columns : {true, false}) {
       attempt_change(is_by_columns ? "column-major data in a row-major array"
@@ -361,10 +367,16 @@ protected:
     try_factor("degrees: factor 180/pi", 1 / degree);
     // Numbers of the state; lengths of results, of vectors and of their differences.
     const auto try_powers = [&](const std::string& name, const auto& number) {
+      if (std::all_of(samples_.begin(), samples_.end(),
+                      [&](const jacobian_sample& s) { return number(s) == 0; })) {
+        return;
+      }
       for (const int power : {1, -1, 2, -2}) {
         attempt(name + (power == 1 ? "" : message("^", power)),
                 [&](const jacobian_sample& s, const scope& at) -> matrix {
-                  return std::pow(number(s), power) * of(s.exact, at);
+                  const bool is_undefined = number(s) == 0 && power < 0 && s.outer.size() == 0;
+                  return is_undefined ? of(s.written, at)
+                                      : matrix(std::pow(number(s), power) * of(s.exact, at));
                 });
       }
     };
@@ -418,9 +430,9 @@ protected:
     }
   }
 
-  /// Arguments, and further numbers of the state.
+  /// Arguments, constants, and further numbers of the state.
   [[nodiscard]] std::vector<jacobian_part> parts_of_state() const {
-    std::vector<jacobian_part> parts = problem_.arguments;
+    std::vector<jacobian_part> parts = inputs_;
     parts.insert(parts.end(), problem_.context.begin(), problem_.context.end());
     return parts;
   }
@@ -431,30 +443,25 @@ protected:
     const jacobian_part* part;            ///< of an argument or result
     const jacobian_part* other = nullptr; ///< the rotation relative to this one
     bool is_result = false;
-    bool is_alone = false; ///< the rotation of a pose alone
+    bool is_alone = false;                   ///< the rotation of a pose alone
+    std::size_t first_joint = 0, joints = 0; ///< a product of rotations by successive joints
   };
 
   /// \param with_vectors  also the rotations by vectors, and of poses alone
   [[nodiscard]] std::vector<motion> motions(bool with_vectors = false) const {
     std::vector<motion> list;
-    for (const jacobian_part& a : problem_.arguments) {
-      if (a.is_motion()) {
-        list.push_back({a.name, &a});
-      }
-    }
+    append_motions(list, inputs_);
     const std::size_t count = list.size();
-    for (const jacobian_part& r : problem_.results) {
-      if (r.is_motion()) {
-        list.push_back({r.name, &r, nullptr, true});
-      }
-    }
+    append_motions(list, problem_.context);
+    append_motions(list, problem_.results, true);
+    append_joints(list);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = i + 1; k < count; ++k) {
         list.push_back({list[i].name + "^-1 " + list[k].name, list[k].part, list[i].part});
       }
     }
     for (const bool is_result : {true, false}) {
-      for (const jacobian_part& v : is_result ? problem_.results : problem_.arguments) {
+      for (const jacobian_part& v : is_result ? problem_.results : inputs_) {
         if (with_vectors && v.type == kind::pose) {
           list.push_back({v.name + ".rotation", &v, nullptr, is_result, true});
         }
@@ -467,23 +474,51 @@ protected:
     return list;
   }
 
+  static void append_motions(std::vector<motion>& list, const std::vector<jacobian_part>& parts,
+                             bool is_result = false) {
+    for (const jacobian_part& a : parts) {
+      if (a.is_motion()) {
+        list.push_back({a.name, &a, nullptr, is_result});
+      }
+    }
+  }
+  void append_joints(std::vector<motion>& list) const {
+    for (std::size_t i = 0; i < problem_.joints.size(); ++i) {
+      std::string name;
+      for (std::size_t k = i; k < problem_.joints.size(); ++k) {
+        const auto& [axis, angle] = problem_.joints[k];
+        name += (k == i ? "exp(" : " exp(") + axis.name + " " + angle.name + ")";
+        list.push_back({name, &axis, nullptr, false, false, i, k + 1 - i});
+      }
+    }
+  }
+
   [[nodiscard]] static const vector& state_of(const jacobian_sample& s, const motion& m) {
     return m.is_result ? s.truth.value : s.state;
   }
 
-  [[nodiscard]] static dual_quaternion<double> pose_of(const jacobian_sample& s, const motion& m) {
+  [[nodiscard]] dual_quaternion<double> pose_of(const jacobian_sample& s, const motion& m) const {
+    if (m.joints > 0) {
+      quaternion<double> q(1);
+      for (std::size_t k = m.first_joint; k < m.first_joint + m.joints; ++k) {
+        const auto& [axis, angle] = problem_.joints[k];
+        q = q * from_rotation_vector(
+                    vector3<double>(s.state[angle.state] * s.state.segment<3>(axis.state)));
+      }
+      return dual_quaternion<double>(q);
+    }
     const auto a = pose_at(*m.part, state_of(s, m));
     return m.other != nullptr ? conj(pose_at(*m.other, s.state)) * a
            : m.is_alone       ? dual_quaternion<double>(rotation(a))
                               : a;
   }
-  [[nodiscard]] static Eigen::Matrix3d rotation_of(const jacobian_sample& s, const motion& m) {
+  [[nodiscard]] Eigen::Matrix3d rotation_of(const jacobian_sample& s, const motion& m) const {
     return rotation_matrix(rotation(pose_of(s, m)));
   }
 
   /// A power of the adjoint matrix of size 3 or 6; empty for other sizes.
-  [[nodiscard]] static matrix adjoint(const jacobian_sample& s, const motion& m, Eigen::Index size,
-                                      int power) {
+  [[nodiscard]] matrix adjoint(const jacobian_sample& s, const motion& m, Eigen::Index size,
+                               int power) const {
     if (size != 3 && size != 6) {
       return {};
     }
@@ -500,6 +535,11 @@ protected:
 
   [[nodiscard]] static matrix inverse_of(const matrix& m) {
     return divided(matrix::Identity(m.rows(), m.cols()), m);
+  }
+  /// True if a square matrix has an inverse with half of the digits at least.
+  [[nodiscard]] static bool is_invertible(const matrix& m) {
+    return largest_entry(product_of(inverse_of(m), m) - matrix::Identity(m.rows(), m.rows())) <
+           1 / most_condition;
   }
   void try_frames() {
     for (const motion& m : motions(true)) {
@@ -572,7 +612,7 @@ protected:
   void try_exponential_jacobians() {
     std::vector<motion> sources;
     for (const bool is_result : {false, true}) {
-      for (const jacobian_part& p : is_result ? problem_.results : problem_.arguments) {
+      for (const jacobian_part& p : is_result ? problem_.results : inputs_) {
         if (p.is_motion() || (p.type == kind::vector && (p.dimension == 3 || p.dimension == 6))) {
           sources.push_back({p.name, &p, nullptr, is_result});
         }
@@ -583,17 +623,25 @@ protected:
         for (const bool is_inverse : {false, true}) {
           for (const bool is_left : {false, true}) {
             // The square makes the inverse of one another's.
+            // Power 0: at another vector, or, for 0, the first two terms of the series.
             for (const auto& [half, power] :
-                 {std::pair(1., 1), std::pair(.5, 1), std::pair(1., 2)}) {
-              if (half == .5 && !from.part->is_motion()) {
+                 {std::pair(1., 1), std::pair(.5, 1), std::pair(1., 2), std::pair(.5, 0),
+                  std::pair(2., 0), std::pair(0., 0)}) {
+              if (half == .5 && power == 1 && !from.part->is_motion()) {
                 continue;
               }
+              const std::string which = message(sign > 0 ? "left" : "right", " Jacobian of exp",
+                                                is_inverse ? ", inverse," : "");
               const std::string name =
-                  message("right only at the identity of ", from.name, ": multiplied by the ",
-                          sign > 0 ? "left" : "right", " Jacobian of exp",
-                          is_inverse ? ", inverse," : "", half == 1 ? "" : " at half the angle",
-                          power == 1 ? "" : " twice (Jacobian for its inverse)", " from the ",
-                          is_left ? "left" : "right");
+                  power == 0
+                      ? message(half == 0  ? "only two terms"
+                                : half < 1 ? "half the angle"
+                                           : "twice the angle",
+                                " in the ", which, " at ", from.name)
+                      : message("right only at the identity of ", from.name, ": multiplied by the ",
+                                which, half == 1 ? "" : " at half the angle",
+                                power == 1 ? "" : " twice (Jacobian for its inverse)", " from the ",
+                                is_left ? "left" : "right");
               attempt(name,
                       [&, half = half, power = power](const jacobian_sample& s,
                                                       const scope& at) -> matrix {
@@ -606,9 +654,19 @@ protected:
                                  ? Eigen::Vector3d(rotation_vector(rotation_at(*from.part, state)))
                                  : Eigen::Vector3d(state.segment<3>(from.part->state +
                                                                     from.part->dimension - 3))) *
-                            sign * half;
-                        const matrix m =
-                            is_inverse ? left_jacobian_inverse(phi) : left_jacobian(phi);
+                            sign;
+                        const auto jacobian_at = [&](double factor, bool inverse) -> matrix {
+                          const Eigen::Vector3d x = factor * phi;
+                          return inverse ? left_jacobian_inverse(x) : left_jacobian(x);
+                        };
+                        const auto other = [&]() -> matrix {
+                          return half > 0 ? jacobian_at(half, is_inverse)
+                                          : matrix::Identity(3, 3) +
+                                                (is_inverse ? -.5 : .5) * cross_matrix(phi);
+                        };
+                        const matrix m = power == 0
+                                             ? product_of(jacobian_at(1, !is_inverse), other())
+                                             : jacobian_at(half, is_inverse);
                         return times(of(s.exact, at), power == 2 ? product_of(m, m) : m, is_left);
                       });
             }
@@ -656,18 +714,18 @@ protected:
     add(results, s.truth.value);
     add(parts, s.state);
     const std::size_t count = list.size();
-    for (const jacobian_part& m : parts) {
-      if (!m.is_motion()) {
-        continue;
-      }
-      const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, s.state));
+    std::vector<motion> rotations;
+    append_motions(rotations, parts);
+    append_joints(rotations);
+    for (const motion& m : rotations) {
+      const Eigen::Matrix3d r = rotation_of(s, m);
       for (std::size_t i = 0; i < count; ++i) {
         const named_vector v = list[i];
         list.push_back({"(" + m.name + " " + v.name + ")", product_of(r, v.value)});
         list.push_back({"(" + m.name + "^-1 " + v.name + ")", product_of(r.transpose(), v.value)});
         for (std::size_t k = first; k < count && with_points && i >= first; ++k) {
           const named_vector w = list[k];
-          if (k != i && (m.type == kind::rotation || w.name == m.name + ".translation")) {
+          if (k != i && (m.part->type == kind::rotation || w.name == m.name + ".translation")) {
             list.push_back({"(" + m.name + " " + v.name + " + " + w.name + ")",
                             product_of(r, v.value) + w.value});
             list.push_back({"(" + m.name + "^-1 (" + v.name + " - " + w.name + "))",
@@ -705,7 +763,7 @@ protected:
           const auto covers = [&](const scope& at) {
             return at.column == omega && at.columns == 3;
           };
-          for (const jacobian_part& arm : problem_.arguments) {
+          for (const jacobian_part& arm : inputs_) {
             if (arm.vector_state() < 0) {
               continue;
             }
@@ -826,6 +884,8 @@ protected:
   }
 
   const jacobian_problem& problem_;
+
+  const std::vector<jacobian_part> inputs_; ///< arguments and constants
 
   std::vector<jacobian_sample> samples_;
 

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <functional>
 #include <iterator>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -40,15 +41,23 @@ protected:
     };
     std::vector<Eigen::Index> from;
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Eigen::Index own = (is_columns ? at.column : at.row) + k;
+      const Eigen::Index begin = is_columns ? at.column : at.row, own = begin + k;
       Eigen::Index source = -1;
-      // First the line itself, then a column that follows the last source, then in order of
-      // distance.
-      const bool has_next = is_columns && k > 0;
-      for (Eigen::Index n = has_next ? -1 : 0; n < all && source < 0; ++n) {
-        const bool is_next = has_next && n == 0;
-        const Eigen::Index other =
-            (is_next ? from.back() + 1 : own + std::max<Eigen::Index>(n, 0)) % all;
+      // First the line itself, then one that contains it, then a column that follows the last
+      // source, then in order of distance.
+      std::vector<Eigen::Index> order = {own};
+      const auto partner = std::find(from.begin(), from.end(), own);
+      if (partner != from.end()) {
+        order.push_back(begin + (partner - from.begin()));
+      }
+      if (is_columns && k > 0) {
+        order.push_back((from.back() + 1) % all);
+      }
+      for (Eigen::Index n = 1; n < all; ++n) {
+        order.push_back((own + n) % all);
+      }
+      for (std::size_t n = 0; n < order.size() && source < 0; ++n) {
+        const Eigen::Index other = order[n];
         const bool is_source =
             std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
               const matrix exact = line(s.exact, other);
@@ -271,12 +280,11 @@ protected:
       if (used.size() < 4 || (at.rows * at.columns != 3 && !is_square)) {
         continue;
       }
-      std::vector<std::vector<term>> terms;
+      std::vector<std::vector<term>> terms(used.size()); // of the first samples, until one refutes
       std::vector<numbers> factors;
       std::vector<matrix> errors;
       bool is_of_all = true; // a multiple of the whole, and no term of it
       for (const jacobian_sample* s : used) {
-        terms.push_back(terms_of(*s, at));
         factors.push_back(numbers_of(*s, !is_square));
         errors.push_back(error_in(*s, at));
         const matrix all = effect_of(*s, at, of(s->exact, at));
@@ -292,16 +300,22 @@ protected:
             std::isnan(factor) ? coefficient(error_in(s, at), effect_of(s, at, value)) : factor;
         return fits(s, at, of(s.exact, at) + value, 1e-8);
       };
+      terms[0] = terms_of(*used[0], at);
+      const auto allowed_of = [&](std::size_t n) {
+        return 4 * used[n]->allowed + used[n]->little_error + 1e-9 * largest_entry(errors[n]);
+      };
       const auto is_found = [&](std::size_t t, std::size_t f, bool is_weighted) {
         double factor = NAN;
         bool is_lost = is_weighted; // the right matrix, in the round-off of the term
         for (std::size_t n = 0; n < used.size(); ++n) {
+          if (terms[n].empty()) {
+            terms[n] = terms_of(*used[n], at);
+          }
           const matrix value = effect_of(*used[n], at, terms[n][t].value * factors[n].values[f]);
           factor = n == 0 || is_weighted ? coefficient(errors[n], value) : factor;
           is_lost = is_lost && std::abs(factor) * largest_entry(terms[n][t].value) >
                                    most_condition * largest_entry(used[n]->exact);
-          if (!(largest_entry(errors[n] - factor * value) <=
-                4 * used[n]->allowed + used[n]->little_error + 1e-9 * largest_entry(errors[n]))) {
+          if (!(largest_entry(errors[n] - factor * value) <= allowed_of(n))) {
             return false;
           }
         }
@@ -312,6 +326,12 @@ protected:
       };
       for (const bool is_weighted : {false, true}) {
         for (std::size_t t = 0; t < terms[0].size(); ++t) {
+          // Whatever the number, the error of one sample must be a multiple of the term.
+          const matrix value = effect_of(*used[0], at, terms[0][t].value);
+          const double left = largest_entry(errors[0] - coefficient(errors[0], value) * value);
+          if (!(left <= allowed_of(0))) {
+            continue;
+          }
           const std::size_t count = is_weighted ? 1 : factors[0].values.size();
           for (std::size_t f = 0; f < count; ++f) {
             if ((!is_weighted || (terms[0][t].is_weighted && !is_of_all)) &&
@@ -384,6 +404,64 @@ protected:
       }
     }
     return false;
+  }
+
+  /// Another term instead of the right one. Few factors, as more explain two slips as well; no
+  /// a b^T, which few numbers make.
+  void try_other_terms() {
+    const std::vector<const jacobian_sample*> used = some_wrong_samples();
+    for (const scope& at : scopes_) {
+      const bool is_square = at.rows == 3 && at.columns == 3;
+      if (used.size() < 4 || (at.rows * at.columns != 3 && !is_square)) {
+        continue;
+      }
+      const std::vector<term> terms = terms_of(*used[0], at);
+      for (std::size_t t = 0; t < terms.size(); ++t) {
+        for (const double factor : {1., -1., 2., -2., .5, -.5}) {
+          if (!terms[t].name.ends_with("^T") && fits(*used[0], at, factor * terms[t].value) &&
+              std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+                return fits(s, at, factor * terms_of(s, at)[t].value);
+              })) {
+            accept(message("another term instead: ", to_text(float(factor)), " ", terms[t].name),
+                   at.name);
+            return;
+          }
+        }
+      }
+    }
+  }
+
+  /// A wrong weight: a block times a function of the arguments that are numbers.
+  void try_weights() {
+    std::vector<const jacobian_part*> variables;
+    std::string names;
+    for (const jacobian_part& a : inputs_) {
+      if (a.type == kind::number) {
+        names += (variables.empty() ? "" : ", ") + a.name;
+        variables.push_back(&a);
+      }
+    }
+    for (const scope& at : scopes_) {
+      if (at.argument == nullptr || at.result == nullptr || at.rows * at.columns < 9) {
+        continue;
+      }
+      std::map<std::vector<double>, double> factors;
+      const bool is_function =
+          std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+            std::vector<double> values;
+            for (const jacobian_part* a : variables) {
+              values.push_back(s.state[a->state]);
+            }
+            const matrix exact = of(s.exact, at);
+            const double factor = coefficient(of(s.written, at), exact);
+            return largest_entry(exact) == 0 ||
+                   fits(s, at, factors.emplace(values, factor).first->second * exact, 1e-8);
+          });
+      if (is_function && factors.size() < samples_.size()) { // equal ones confirm it
+        accept("wrong weight: scaled by a function of " + names, at.name);
+        return;
+      }
+    }
   }
 
   /// Columns for stored numbers that follow another convention.
