@@ -406,8 +406,8 @@ protected:
     return false;
   }
 
-  /// Another term instead of the right one. Few factors, as more explain two slips as well; no
-  /// a b^T, which few numbers make.
+  /// Another term instead of the right one. Few factors, and neither the identity matrix nor a b^T,
+  /// as these explain two slips as well.
   void try_other_terms() {
     const std::vector<const jacobian_sample*> used = some_wrong_samples();
     for (const scope& at : scopes_) {
@@ -418,7 +418,9 @@ protected:
       const std::vector<term> terms = terms_of(*used[0], at);
       for (std::size_t t = 0; t < terms.size(); ++t) {
         for (const double factor : {1., -1., 2., -2., .5, -.5}) {
-          if (!terms[t].name.ends_with("^T") && fits(*used[0], at, factor * terms[t].value) &&
+          const bool is_specific =
+              !terms[t].name.ends_with("^T") && terms[t].name != "the identity matrix";
+          if (is_specific && fits(*used[0], at, factor * terms[t].value) &&
               std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
                 return fits(s, at, factor * terms_of(s, at)[t].value);
               })) {
