@@ -480,6 +480,14 @@ TEST_CASE("undetermined parameters are named") {
       Eigen::Vector2d(0, 7));
   CHECK(one.undetermined == std::vector<std::string>{"[1]"});
   CHECK(one.estimate == Eigen::Vector2d(2.4, 7));
+  // Units do not matter.
+  const auto units = nonlinear_least_squares(
+      [](const auto& x) {
+        return std::array{1e12 * x[0] - 2, 1e-12 * x[1] + 1e12 * x[0] - 5};
+      },
+      Eigen::Vector2d(0, 0));
+  CHECK(units.undetermined.empty());
+  CHECK(units.estimate.isApprox(Eigen::Vector2d(2e-12, 3e12), 1e-14));
 }
 
 TEST_CASE("structured starts: the solution, its antipode, a half turn, a flat point") {

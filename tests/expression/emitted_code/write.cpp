@@ -130,6 +130,8 @@ std::vector<code_case> cases() {
                         },
                         u));
   add("arc", trace([](auto x, auto a, auto b) { return duet::slerp(a, b, x); }, u, q, p));
+  add("arc_alone",
+      trace([](auto x, auto y) { return duet::arc_ratio(x * x, 1 + y * y); }, u, lambda));
   add("logarithm", trace([](auto a) { return duet::log(a); }, A));
   add("sum_of_squares",
       reverse_gradient(trace([](auto a, auto x) { return a.dot(a) * x - sin(x * a[0]); }, w, u),
