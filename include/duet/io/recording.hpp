@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// \file
@@ -81,8 +82,8 @@ DUET_ABI_BEGIN
 /// row that is ragged or has cells that are not numbers
 template <class T>
 [[nodiscard]] recording<detail::table_numbers_t<T>> load_recording(const std::string& path,
-                                                                   const std::string& times = {}) {
-  return detail::loaded_recording<detail::table_numbers_t<T>>(path, times, {});
+                                                                   std::string_view times = {}) {
+  return detail::loaded_recording<detail::table_numbers_t<T>>(path, std::string(times), {});
 }
 
 /// Reads a recording whose columns are stated, as `load_table` with `table_columns`.

@@ -11,6 +11,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 /// \file
@@ -175,8 +176,8 @@ void save_table(const std::string& path, const lookup_table<T>& table,
 /// before
 template <class T>
 [[nodiscard]] lookup_table<detail::table_numbers_t<T>> load_table(const std::string& path,
-                                                                  const std::string& times = {}) {
-  return detail::loaded_table<detail::table_numbers_t<T>>(path, times, {});
+                                                                  std::string_view times = {}) {
+  return detail::loaded_table<detail::table_numbers_t<T>>(path, std::string(times), {});
 }
 
 /// Reads a lookup table whose columns are stated: by a header for a file without one, a prefix of
