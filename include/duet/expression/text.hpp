@@ -261,7 +261,8 @@ public:
 
 private:
   [[nodiscard]] static bool is_pi(const tape_entry& e) {
-    return e.code == tape_code::other && e.operation->id == &duet::detail::type_id<pi_node>;
+    return e.code == tape_code::other &&
+           duet::detail::is_same_type(e.operation->id, &duet::detail::type_id<pi_node>);
   }
   [[nodiscard]] printed text_of(int i) {
     const tape_builder tape(memory_);

@@ -10,9 +10,28 @@
 
 namespace duet::detail {
 
+/// The name of this function, of which each type has its own.
+template <class T>
+[[nodiscard]] constexpr const char* name_for_type() {
+  return __func__;
+}
+struct type_mark {
+  const char* name;
+};
 /// An object whose address identifies a type.
 template <class T>
-inline constexpr char type_id = 0;
+inline constexpr type_mark type_id = {name_for_type<T>()};
+
+/// True if both identify one type. (With -fsanitize=undefined, g++ compares no addresses of inline
+/// variables in constant expressions, but addresses of names of functions; linkers merge those.)
+[[nodiscard]] constexpr bool is_same_type(const type_mark* a, const type_mark* b) {
+#if defined(__GNUC__) && !defined(__clang__)
+  if (std::is_constant_evaluated()) {
+    return a->name == b->name;
+  }
+#endif
+  return a == b;
+}
 
 #ifdef __GNUC__
 #pragma GCC diagnostic push
@@ -20,7 +39,7 @@ inline constexpr char type_id = 0;
 #pragma GCC diagnostic ignored "-Wunknown-warning-option"
 #pragma GCC diagnostic ignored "-Wnon-template-friend"
 #endif
-template <const char* Id>
+template <const type_mark* Id>
 struct type_key {
   friend constexpr auto find_type(type_key<Id>); // defined by `registered_type`
 };
@@ -35,7 +54,7 @@ struct registered_type {
 };
 
 /// The registered type of an address.
-template <const char* Id>
+template <const type_mark* Id>
 using type_of_id = std::remove_pointer_t<decltype(find_type(type_key<Id>{}))>;
 
 } // namespace duet::detail

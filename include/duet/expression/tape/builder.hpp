@@ -55,7 +55,7 @@ using tape_print = printed (*)(notation style, const printed* x);
 
 /// Operation or leaf that the algebra does not know.
 struct tape_operation {
-  const char* id = nullptr;
+  const duet::detail::type_mark* id = nullptr;
   unsigned hash = 0;
   bool drops_dual = false; ///< true for parts of dual numbers, whose values are not dual
   int order = 0;           ///< number of times that rates can be made
@@ -79,7 +79,7 @@ struct tape_entry {
 /// A node of the written formula that is on the tape.
 struct tape_memo {
   unsigned hash;
-  const char* id;
+  const duet::detail::type_mark* id;
   int entry;
   int order; ///< number of times that its rates can be made
   int next;
@@ -478,15 +478,17 @@ public:
   }
 
   /// Entry of a node of the written formula, or −1 if it is not on the tape with rates of an order.
-  [[nodiscard]] constexpr int recalled(unsigned hash, const char* id, int order) const {
+  [[nodiscard]] constexpr int recalled(unsigned hash, const duet::detail::type_mark* id,
+                                       int order) const {
     for (int i = memos_[hash % unsigned(capacity_)].head - 1; i >= 0; i = memos_[i].next) {
-      if (memos_[i].hash == hash && memos_[i].id == id && memos_[i].order >= order) {
+      if (memos_[i].hash == hash && duet::detail::is_same_type(memos_[i].id, id) &&
+          memos_[i].order >= order) {
         return memos_[i].entry;
       }
     }
     return -1;
   }
-  constexpr int remember(unsigned hash, const char* id, int order, int entry) {
+  constexpr int remember(unsigned hash, const duet::detail::type_mark* id, int order, int entry) {
     if (counts_.memo_count == capacity_) {
       counts_.is_full = true;
       return entry;
@@ -585,7 +587,7 @@ private:
   [[nodiscard]] constexpr int add(tape_code code, kind k, int parameter, double number,
                                   const tape_operation* operation, const int* x, int count) {
     unsigned hash = (unsigned(code) * 31 + unsigned(k)) * 31 + unsigned(parameter) +
-                    (operation == nullptr ? 0 : operation->hash);
+                    (code == tape_code::other ? operation->hash : 0);
     if (code == tape_code::number) {
       const std::uint64_t bits = bits_of(number);
       hash += unsigned(bits >> 48);
@@ -597,7 +599,7 @@ private:
     for (int i = head - 1; i >= 0; i = entries_[i].next) {
       tape_entry& e = entries_[i];
       if (e.code == code && is_equal(e, k, parameter, number, operation, x, count)) {
-        if (operation != nullptr && operation->order > e.operation->order) {
+        if (code == tape_code::other && operation->order > e.operation->order) {
           e.operation = operation;
         }
         return i;
@@ -619,8 +621,9 @@ private:
                                         const tape_operation* operation, const int* x,
                                         int count) const {
     if (e.count != count || e.kind_of != k || e.parameter != parameter || e.number != number ||
-        (operation != nullptr &&
-         (e.operation->hash != operation->hash || e.operation->id != operation->id))) {
+        (e.code == tape_code::other &&
+         (e.operation->hash != operation->hash ||
+          !duet::detail::is_same_type(e.operation->id, operation->id)))) {
       return false;
     }
     for (int i = 0; i < count; ++i) {

@@ -260,7 +260,8 @@ struct recipe<rate_node<Node, Moving...>> {
   static constexpr unsigned hash = 31 * recipe<Node>::template hash<Held> + 1;
   template <class Use, class Held>
   static constexpr int add(tape_builder& tape) {
-    constexpr const char* id = &duet::detail::type_id<rate_node<Node, Moving...>>;
+    constexpr const duet::detail::type_mark* id =
+        &duet::detail::type_id<rate_node<Node, Moving...>>;
     const int known = tape.recalled(hash<Held>, id, Use::order);
     if (known >= 0) {
       return known;

@@ -263,10 +263,10 @@ struct frozen_program {
                        std::uint64_t(program.operand(k, 1)) << 32 |
                        std::uint64_t(program.operand(k, 2)) << 48;
   }
-  static consteval const char* id(int i) {
+  static consteval const duet::detail::type_mark* id(int i) {
     const int k = program.order[i];
-    return k < 0 || program.entries[k].operation == nullptr ? nullptr
-                                                            : program.entries[k].operation->id;
+    return k >= 0 && program.entries[k].code == tape_code::other ? program.entries[k].operation->id
+                                                                 : nullptr;
   }
   static consteval int operand(int i, int k) { return program.operand(program.order[i], k); }
   static consteval int operand_storage(int i, int k) {
@@ -414,13 +414,14 @@ DUET_ALWAYS_INLINE constexpr void take_sines_on_tape(Values& v, std::integer_seq
    ...);
 }
 
-template <tape_code Code, const char* Id, int Parameter, kind K>
+template <tape_code Code, const duet::detail::type_mark* Id, int Parameter, kind K>
 struct operation_of_step : operation_of_code<Code, Parameter, K> {};
-template <const char* Id, int Parameter, kind K>
+template <const duet::detail::type_mark* Id, int Parameter, kind K>
 struct operation_of_step<tape_code::other, Id, Parameter, K> {
   using type = duet::detail::type_of_id<Id>;
 };
-template <tape_code Code, const char* Id, int Parameter, kind K, class Real, class... X>
+template <tape_code Code, const duet::detail::type_mark* Id, int Parameter, kind K, class Real,
+          class... X>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operate(const X&... x) {
   if constexpr (Code == tape_code::zero) {
     return leaf<zero_node<K>, numbers_as<Real>>::value({});
@@ -435,15 +436,16 @@ template <tape_code Code, const char* Id, int Parameter, kind K, class Real, cla
     }
   }
 }
-template <class Program, tape_code Code, const char* Id, int Parameter, int Step, kind Kind,
-          class Values, int... K>
+template <class Program, tape_code Code, const duet::detail::type_mark* Id, int Parameter, int Step,
+          kind Kind, class Values, int... K>
 [[nodiscard]] DUET_ALWAYS_INLINE constexpr auto operate_on_many(Values& v,
                                                                 std::integer_sequence<int, K...>) {
   return operate<Code, Id, Parameter, Kind, typename Values::real>(
       values_of<Program::operand_storage(Step, K)>(v)[Program::operand(Step, K)]...);
 }
 
-template <class Program, std::uint64_t Key, const char* Id, bool AtOnce, class Values>
+template <class Program, std::uint64_t Key, const duet::detail::type_mark* Id, bool AtOnce,
+          class Values>
 DUET_ALWAYS_INLINE constexpr void run_on_tape(Values& v, std::uint64_t positions) {
   constexpr auto code = tape_code(Key % 32);
   constexpr int count = int(Key >> 5 & 127);

@@ -119,7 +119,8 @@ struct recipe<applied_node<Operation, X...>> {
   }();
   template <class Use, class Held>
   static constexpr int add(tape_builder& tape) {
-    constexpr const char* id = &duet::detail::type_id<applied_node<Operation, X...>>;
+    constexpr const duet::detail::type_mark* id =
+        &duet::detail::type_id<applied_node<Operation, X...>>;
     const int known = tape.recalled(hash<Held>, id, Use::order);
     if (known >= 0) {
       return known;

@@ -173,7 +173,7 @@ struct tape_term {
   [[nodiscard]] constexpr bool is() const {
     if constexpr (code_of<Operation> == tape_code::other) {
       return code() == tape_code::other &&
-             entry().operation->id == &duet::detail::type_id<Operation>;
+             duet::detail::is_same_type(entry().operation->id, &duet::detail::type_id<Operation>);
     } else {
       return code() == code_of<Operation>;
     }
