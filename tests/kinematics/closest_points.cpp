@@ -241,6 +241,25 @@ TEST_CASE("closest_points: the normal of crossing axes is perpendicular to both"
   CHECK((distance_gradient.gradient - crossed.normal).norm() == 0);
 }
 
+TEST_CASE("closest_points: axes that cross or coincide up to round-off") {
+  duet_test::random_source random(12);
+  for (int k = 0; k < 300; ++k) {
+    const vector along = point(random, 1), axis = point(random, 1);
+    const auto on = [&](const vector& direction) {
+      return vector(random.uniform(-2, 2) * direction);
+    };
+    // Through the origin, where the coordinates of the nearest points are round-off.
+    check(capsule<>(on(along), vector(random.uniform(-2, 0) * on(along)), .1),
+          capsule<>(vector(-random.uniform(0, 2) * axis), vector(random.uniform(0, 2) * axis), .2));
+    check(capsule<>(vector::Zero(), vector::Zero(), 0),
+          capsule<>(vector(-random.uniform(0, 2) * axis), vector(random.uniform(0, 2) * axis), .2));
+    // On one line.
+    const vector middle = point(random, 1);
+    check(capsule<>(vector(middle + on(along)), vector(middle + on(along)), .1),
+          capsule<>(vector(middle + on(along)), vector(middle + on(along)), .2));
+  }
+}
+
 TEST_CASE("closest_points: results in 50 digits are exact, in double accurate to round-off") {
   duet_test::random_source random(3);
   for (int k = 0; k < 15; ++k) {

@@ -57,8 +57,8 @@ template <class T>
   return cross(components(a), components(b));
 }
 
-/// Unit vector perpendicular to both, or to one if the other has no length or the same direction:
-/// constant.
+/// Unit vector perpendicular to both, or to the longer one if the other has no length or, up to
+/// round-off, the same direction: constant.
 template <class T>
 [[nodiscard]] vector3<T> across(const vector3<T>& a, const vector3<T>& b) {
   using std::sqrt;
@@ -71,7 +71,8 @@ template <class T>
   };
   const vector3<R> along = longer(real(a), real(b));
   vector3<R> result = cross_product(real(a), real(b));
-  if (result.squaredNorm() == 0) {
+  if (result.squaredNorm() <=
+      std::numeric_limits<R>::epsilon() * real(a).squaredNorm() * real(b).squaredNorm()) {
     result = longer(cross_product(along, vector3<R>(vector3<R>::UnitX())),
                     cross_product(along, vector3<R>(vector3<R>::UnitY())));
   }
@@ -108,7 +109,9 @@ template <class T>
   const vector3<T> difference = x - nearest;
   const T square = difference.squaredNorm();
   const R rounding = 8 * std::numeric_limits<R>::epsilon();
-  if (innermost(square) <= rounding * rounding * innermost(x.squaredNorm())) {
+  // Ends of both segments, from which x and `nearest` are computed, may be far from the origin.
+  const T size = x.squaredNorm() + along.squaredNorm() + axis.squaredNorm();
+  if (innermost(square) <= rounding * rounding * innermost(size)) {
     const vector3<T> out = across(along, axis);
     return {T(out.dot(difference) - radius), out};
   }
