@@ -241,6 +241,53 @@ TEST_CASE("closest_points: the normal of crossing axes is perpendicular to both"
   CHECK((distance_gradient.gradient - crossed.normal).norm() == 0);
 }
 
+TEST_CASE("closest_points: segments parallel to a face of a rotated box") {
+  const auto run = [](const capsule<>& c, const box<>& b) {
+    check(c, b);
+    Eigen::Matrix<double, 6, 1> ends;
+    ends << c.from, c.to;
+    const auto distance_gradient = gradient<duet_test::shared_tag>(
+        [&](const auto& x) {
+          using T = std::decay_t<decltype(x[0])>;
+          const vector3<T> first = x.template head<3>(), last = x.template tail<3>();
+          return closest_points(capsule<T>(first, last, T(c.radius)), b).distance;
+        },
+        ends);
+    if (distance_gradient.value + c.radius > 1e-9) {
+      const vector first = distance_gradient.gradient.head<3>(),
+                   last = distance_gradient.gradient.tail<3>();
+      CHECK((first + last - closest_points(c, b).normal).norm() < 1e-9);
+      CHECK(first.norm() + last.norm() < 1 + 1e-9);
+    }
+  };
+  duet_test::random_source random(11);
+  for (int k = 0; k < 300; ++k) {
+    const dual_quaternion<double> where = random_pose(random);
+    const box<> b{where, k % 3 == 0 ? vector(.5, 1, 0) : vector(.5, 1, 2)};
+    // Round-off tilts the segment by up to 1e-16 in the frame of the box.
+    vector from = point(random, 3), to = point(random, 3);
+    from[k % 3] = to[k % 3] = random.uniform(0, 3);
+    if (k % 2 == 0) {
+      from[(k + 1) % 3] = to[(k + 1) % 3] = random.uniform(-3, 3);
+    }
+    run(capsule<>(transform_point(where, from), transform_point(where, to), .1), b);
+  }
+  // Round-off puts the nearest point within the segment.
+  const auto rotated_by = [](double w, double x, double y, double z) {
+    return pose(quaternion<double>(w, x, y, z), vector(0, 0, 0));
+  };
+  run(capsule<>(vector(0.016625076805275363, -0.24058689145783807, -0.4794871711223409),
+                vector(-0.49458398608485266, -1.1592226023610437, -0.036278608030170745), 0),
+      {rotated_by(-0.94763009375035523, 0.22074204032129013, 0.067739504341646897,
+                  0.22063888280408525),
+       vector(0, 0.94135876768341431, 0)});
+  run(capsule<>(vector(-0.7575699361890561, 0.070779250782768255, -0.5170834761609675),
+                vector(-1.3989547020142603, 1.5224790980273635, 0.084706213544185172), 0),
+      {rotated_by(-0.55631362439303478, -0.66979911385548385, -0.47816698171290928,
+                  0.11506796249460698),
+       vector(0, 0.20000000000000001, 0.46617421301107731)});
+}
+
 TEST_CASE("closest_points: axes that cross or coincide up to round-off") {
   duet_test::random_source random(12);
   for (int k = 0; k < 300; ++k) {

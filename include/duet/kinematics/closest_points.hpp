@@ -328,7 +328,11 @@ template <class T>
     }
     const T t = -slope / growth;
     if (innermost(t) <= crossings.t[k + 1]) {
-      return within_segment(t);
+      // Along a segment parallel to the faces up to round-off t is ill-conditioned, as for
+      // capsules, and may be far before this interval.
+      const bool is_parallel = innermost(growth) < 1e-12 * innermost(along.squaredNorm());
+      const R t_real = std::max(R(innermost(t)), crossings.t[k]);
+      return is_parallel || t_real > innermost(t) ? T(t_real) : t;
     }
   }
   return T(1);
