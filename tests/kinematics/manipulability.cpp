@@ -142,6 +142,9 @@ TEST_CASE("manipulability: a bounded_chain equals the serial_chain of the same j
   const Eigen::VectorXd x = regular;
   CHECK(max_abs_difference(manipulability_gradient(chain, x).gradient,
                            manipulability_gradient(panda, regular).gradient) < 1e-14);
+  const bounded_chain<9> rigid(std::span<const joint<>>{});
+  CHECK(manipulability(rigid, Eigen::VectorXd(0)) == 1);
+  CHECK(manipulability_gradient(rigid, Eigen::VectorXd(0)).gradient.size() == 0);
 }
 
 } // namespace

@@ -57,7 +57,7 @@ template <bool WithGradient, class M>
     if constexpr (WithGradient) {
       result.gradient = by_lane([](const auto& x) { return volume_of<true>(x).gradient; }, m);
     }
-  } else {
+  } else if (m.cols() > 0) { // a determinant of no columns is 1
     const Eigen::ColPivHouseholderQR<M> qr(m);
     const auto& r = qr.matrixQR();
     const Eigen::Index n = m.cols();
