@@ -205,6 +205,19 @@ TEST_CASE("with_tool, with_base, with_locked_joint: a chain from a file keeps it
   CHECK(with_limits(chain, "elbow", {-.1, .2}).limits(2).upper == .2);
 }
 
+TEST_CASE("with_locked_joint: coordinates of any size") {
+  const serial_chain<2> chain(std::array<joint<>, 2>{joint<>{.kind = joint_kind::continuous},
+                                                     joint<>{.kind = joint_kind::prismatic}});
+  const Eigen::Matrix<double, 1, 1> zero(0.);
+  for (const double theta : {-1e30, -1e10, -2e9, 1e9, 1e19, 1e300}) {
+    CHECK(
+        max_abs_difference(rotation_matrix(rotation(with_locked_joint(chain, 0, theta).pose(zero))),
+                           rotation_matrix(rotation(chain.pose(Eigen::Vector2d(theta, 0))))) <
+        1e-15 + 1e-16 * (std::abs(theta) < 1e10 ? std::abs(theta) : 0));
+    CHECK(translation(with_locked_joint(chain, 1, theta).pose(zero))[2] == theta);
+  }
+}
+
 TEST_CASE("with_locked_joint, with_limits, with_tool: errors name the joint and the value") {
   const auto arm = robots::ur5e();
   const auto chain = from_file();

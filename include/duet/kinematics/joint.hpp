@@ -74,6 +74,11 @@ template <class T>
     quarter = constant::pi<T>() / 2;
   }
   const T quarter_turns = angle / quarter;
+  if (!(quarter_turns < 1e9 && quarter_turns > -1e9)) { // too many to count, or NaN
+    using std::cos;
+    using std::sin;
+    return {sin(angle), cos(angle)};
+  }
   const auto quarters =
       static_cast<long long>(quarter_turns + (quarter_turns < 0 ? T(-0.5) : T(0.5)));
   const T rest = angle - T(quarters) * quarter;
