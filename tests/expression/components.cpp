@@ -8,6 +8,7 @@
 #include <duet/expression/graph/components.hpp>
 #include <duet/expression/graph/evaluate.hpp>
 #include <duet/expression/graph/formula_latex.hpp>
+#include <duet/expression/graph/read_formula.hpp>
 
 namespace test_expression_components {
 namespace {
@@ -111,6 +112,13 @@ TEST_CASE("matrices of formulas as data are written row by row") {
   const std::string text = to_latex(f);
   CAPTURE(text);
   CHECK(text.find("M_{0,0} & M_{0,1} & M_{0,2}\\\\M_{1,0}") != std::string::npos);
+}
+
+TEST_CASE("components: numbers beyond double precision are infinite") {
+  const formula_graph power = components(read_formula("(x + 1e300)^4 + 1/(x - x)"));
+  CHECK(std::isinf(evaluate(power, std::vector<double>{1})[0]));
+  const formula_graph folded = components(read_formula("min(exp(1e300^4), x) + log(x - x)"));
+  CHECK(evaluate(folded, std::vector<double>{1})[0] == -std::numeric_limits<double>::infinity());
 }
 
 TEST_CASE("components: formulas too large to be expanded are refused") {

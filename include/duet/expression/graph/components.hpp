@@ -92,6 +92,9 @@ private:
   };
 
   [[nodiscard]] graph& out() { return result_.operations(); }
+  [[nodiscard]] polynomial number_of(double x) {
+    return std::isfinite(x) ? polynomial_ring::constant(decimal_of(x)) : atom_of(out().number(x));
+  }
   /// The atom of a node of the result.
   [[nodiscard]] polynomial atom_of(int node) {
     const int a = ring_.find_atom("n" + std::to_string(node));
@@ -114,8 +117,7 @@ private:
     };
     switch (n.what) {
     case number:
-      y = std::isfinite(n.number) ? polynomial_ring::constant(decimal_of(n.number))
-                                  : atom_of(out().number(n.number));
+      y = number_of(n.number);
       return;
     case variable:
       y = atom_of(out().variable(n.index));
@@ -173,9 +175,8 @@ private:
     if (is_condition(n.what)) {
       conditions[std::size_t(k)] = node;
     } else {
-      values[std::size_t(k)] = out().is_number(node)
-                                   ? polynomial_ring::constant(decimal_of(out()[node].number))
-                                   : atom_of(node);
+      values[std::size_t(k)] =
+          out().is_number(node) ? number_of(out()[node].number) : atom_of(node);
     }
   }
   /// True for a product without angles.
@@ -236,7 +237,7 @@ private:
   [[nodiscard]] int number_node(const rational& c) {
     const double x = c.convert_to<double>();
     constexpr int max_denominator = 10000; // of fractions that one reads
-    if (decimal_of(x) == c || denominator(c) > max_denominator) {
+    if (!std::isfinite(x) || decimal_of(x) == c || denominator(c) > max_denominator) {
       return out().number(x);
     }
     return out().apply(operation::quotient, out().number(numerator(c).convert_to<double>()),
