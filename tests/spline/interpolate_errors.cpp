@@ -167,6 +167,10 @@ TEST_CASE("rotation_vector_spline: errors name rates and parameters that give no
   CHECK(over(0, 5e-324) ==
         "duet: rotation_vector_spline: parameter 0 = 0 and parameter 1 = 4.94066e-324 are too "
         "close: a derivative overflows");
+  CHECK(over(0, 1e-102) == "");
+  CHECK(over(0, 1e-104).ends_with("are too close: a derivative overflows"));
+  CHECK(over(0, 1e102) == "");
+  CHECK(over(0, 1e104).ends_with("are too far apart: a derivative underflows"));
   CHECK(over(-1.7e308, 1.7e308) ==
         "duet: rotation_vector_spline: the distance from -1.7e+308 to 1.7e+308 overflows");
 }

@@ -89,7 +89,7 @@ public:
   /// \throws invalid_sample as `align_quaternion_signs`, for parameters that do not increase and
   /// for a rate that is not finite
   /// \throws invalid_input for fewer than two data points, counts that differ, or parameters so far
-  /// apart or so close that derivatives overflow
+  /// apart or so close that derivatives underflow or overflow
   rotation_vector_spline(
       const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
       const std::vector<std::array<vector3<T>, std::size_t(Order) / 2 - 1>>& half_rates)
@@ -118,7 +118,7 @@ public:
   /// \throws invalid_sample as `normalized_quaternions`, for parameters that do not increase and if
   /// a piece does not end at the next data point
   /// \throws invalid_input for fewer than two data points, counts that differ, or parameters so far
-  /// apart or so close that derivatives overflow
+  /// apart or so close that derivatives underflow or overflow
   [[nodiscard]] static rotation_vector_spline
   from_pieces(const std::vector<real_type>& parameters, std::vector<quaternion<T>> elements,
               std::vector<std::array<vector3<T>, std::size_t(Order)>> pieces) {
@@ -175,16 +175,23 @@ private:
     return parameters;
   }
 
-  /// \throws invalid_input if parameters are so far apart, or so close, that derivatives overflow
+  /// \throws invalid_input if parameters are so far apart, or so close, that derivatives underflow
+  /// or overflow
   [[nodiscard]] static knot_spans<real_type> spans_over(const std::vector<real_type>& u) {
     const auto is_finite = [](const real_type& x) { return x - x == 0; };
     detail::require(is_finite(u.back() - u.front()),
                     "duet: rotation_vector_spline: the distance from ", u.front(), " to ", u.back(),
                     " overflows");
     for (std::size_t i = 0; i + 1 < u.size(); ++i) {
-      detail::require(is_finite(1 / (u[i + 1] - u[i])), "duet: rotation_vector_spline: parameter ",
-                      i, " = ", u[i], " and parameter ", i + 1, " = ", u[i + 1],
-                      " are too close: a derivative overflows");
+      real_type power(1); // of the step, as in the highest derivative
+      for (int k = 1; k < Order; ++k) {
+        power *= u[i + 1] - u[i];
+      }
+      const bool is_long = power > 1;
+      detail::require(
+          is_finite(power) && is_finite(1 / power), "duet: rotation_vector_spline: parameter ", i,
+          " = ", u[i], " and parameter ", i + 1, " = ", u[i + 1], " are too ",
+          is_long ? "far apart: a derivative underflows" : "close: a derivative overflows");
     }
     return knot_spans<real_type>(u);
   }
