@@ -58,6 +58,9 @@ TEST_CASE("formula_of a curve: the motion on each span of rotations and poses") 
   const std::string message = duet_test::message_of<duet::invalid_input>(
       [&] { (void)duet::formula_of(of_poses, 5, duet::frame::body); });
   CHECK(message.find("span 5 does not exist, the curve has 5 spans") != std::string::npos);
+  CHECK_THROWS_AS(
+      (void)duet::formula_of(of_poses, std::numeric_limits<std::size_t>::max(), duet::frame::body),
+      duet::invalid_input);
 }
 
 } // namespace

@@ -24,7 +24,7 @@ namespace duet {
 template <class Curve, class R, FrameConstant F>
 [[nodiscard]] expression::formula_graph formula_of(const piecewise_curve<Curve, R>& curve,
                                                    std::size_t span, F frame) {
-  detail::require(span + 1 < curve.breaks().size(), "duet: formula_of: span ", span,
+  detail::require(span < curve.breaks().size() - 1, "duet: formula_of: span ", span,
                   " does not exist, the curve has ", curve.breaks().size() - 1, " spans");
   expression::formula_graph f;
   const int u = f.add_input({.name = "u"}).nodes[0];
