@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 #pragma once
 
+#include <duet/core/compiler/type_id.hpp>
 #include <duet/core/config.hpp>
 #include <duet/core/errors.hpp>
 #include <duet/core/text/number_text.hpp>
