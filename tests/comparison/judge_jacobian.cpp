@@ -466,7 +466,7 @@ TEST_CASE("constants: arguments without columns, named in chains and as axes of 
       "for stored numbers; constants have none)",
       invalid_input);
   CHECK_THROWS_WITH_AS((void)camera({}, 4),
-                       "duet: judge_jacobian: 4 constants (expected less than the 4 arguments)",
+                       "duet: judge_jacobian: 4 constants (expected fewer than the 4 arguments)",
                        invalid_input);
 
   const auto tip = [](const auto& a, const auto& b, const auto& p, const auto& m, const auto& n,

@@ -720,7 +720,7 @@ judged_jacobian(const std::string& label, const F& f, const J& jacobian,
   problem.results = std::move(results);
   constexpr std::size_t count = sizeof...(Domains);
   require(options.constants < count, "duet: judge_jacobian: ", options.constants,
-          " constants (expected less than the ", count, " arguments)");
+          " constants (expected fewer than the ", count, " arguments)");
   std::vector<jacobian_part>& parts = problem.arguments;
   std::size_t with_columns = 0;
   [&]<std::size_t... I>(std::index_sequence<I...>) {

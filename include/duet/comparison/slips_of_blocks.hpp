@@ -623,7 +623,7 @@ protected:
         for (const bool is_inverse : {false, true}) {
           for (const bool is_left : {false, true}) {
             // The square makes the inverse of one another's.
-            // Power 0: at another vector, or, for 0, the first two terms of the series.
+            // Power 0: the Jacobian at that multiple of the vector; for 0 two terms of its series.
             for (const auto& [half, power] :
                  {std::pair(1., 1), std::pair(.5, 1), std::pair(1., 2), std::pair(.5, 0),
                   std::pair(2., 0), std::pair(0., 0)}) {

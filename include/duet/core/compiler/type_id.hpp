@@ -15,6 +15,7 @@ template <class T>
 [[nodiscard]] constexpr const char* name_for_type() {
   return __func__;
 }
+/// Object that represents a type.
 struct type_mark {
   const char* name;
 };
