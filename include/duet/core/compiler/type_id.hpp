@@ -10,29 +10,38 @@
 
 namespace duet::detail {
 
-/// The name of this function, of which each type has its own.
-template <class T>
-[[nodiscard]] constexpr const char* name_for_type() {
-  return __func__;
-}
 /// Object that represents a type.
 struct type_mark {
-  const char* name;
+  const char* name; ///< of g++, where it has to tell types apart
 };
+template <class T>
+[[nodiscard]] constexpr const char* name_for_type() {
+#if defined(__GNUC__) && !defined(__clang__)
+  return __PRETTY_FUNCTION__;
+#else
+  return nullptr;
+#endif
+}
 /// An object whose address identifies a type.
 template <class T>
 inline constexpr type_mark type_id = {name_for_type<T>()};
 
-/// True if both identify one type. (With -fsanitize=undefined, g++ compares no addresses of inline
-/// variables in constant expressions, but addresses of names of functions; linkers merge those.)
+/// True if both identify one type.
+///
+/// With -fsanitize=undefined, g++ compares no addresses of inline variables in constant
+/// expressions, as they could be null. Types are then one if their names are, which only lambdas of
+/// one function share that are not generic.
 [[nodiscard]] constexpr bool is_same_type(const type_mark* a, const type_mark* b) {
 #if defined(__GNUC__) && !defined(__clang__)
-  if (std::is_constant_evaluated()) {
+  if (std::is_constant_evaluated() && !__builtin_constant_p(a == b)) {
     return a->name == b->name;
   }
 #endif
   return a == b;
 }
+static_assert(is_same_type(&type_id<int>, &type_id<int>) &&
+                  !is_same_type(&type_id<int>, &type_id<char>),
+              "duet: the compiler does not tell types apart by addresses");
 
 #ifdef __GNUC__
 #pragma GCC diagnostic push
