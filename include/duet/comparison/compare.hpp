@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -250,10 +251,7 @@ struct complexity {
     }
   }
 
-  [[nodiscard]] bool operator<(const complexity& other) const {
-    return std::tie(characters, ratios, negative) <
-           std::tie(other.characters, other.ratios, other.negative);
-  }
+  [[nodiscard]] auto operator<=>(const complexity&) const = default;
 };
 
 /// x rounded to a number of significant decimal digits.
