@@ -54,6 +54,31 @@ TEST_CASE("central_difference_derivative: the estimated error bounds the actual 
   CHECK(error < 1e-17);
 }
 
+TEST_CASE("central_difference_derivative: the estimated error includes round-off of f and of x") {
+  const auto is_honest = [](const auto& f, auto x, auto step) {
+    const double reference = double(derivative(f, duet::real_50(x)).derivative);
+    const auto [slope, error] = central_difference_derivative(f, x, step);
+    CAPTURE(x);
+    CHECK(std::abs(double(slope) - reference) <= 10 * error);
+    return error;
+  };
+  const auto offset = [](const auto& x) {
+    using std::sin;
+    return std::decay_t<decltype(x)>(sin(x) + 1e6);
+  };
+  const auto cubic = [](const auto& x) { return std::decay_t<decltype(x)>(x * x * x); };
+  for (int i = -300; i <= 300; ++i) {
+    CHECK(is_honest(offset, i / 100.0, 0.1) < 1e-7);
+    is_honest(offset, i / 100.0, 1e-9);
+    is_honest(cubic, float(i) / 100, 0.1F);
+    is_honest(cubic, i / 100.0, 0.1);
+    is_honest(cubic, i * 1e12 + 0.3, 0.1); // near 1e14 numbers are 1/64 apart
+    is_honest(offset, i * 1e12 + 0.3, 0.1);
+  }
+  const auto at_equal_numbers = central_difference_derivative(offset, 1e20);
+  CHECK(std::isinf(at_equal_numbers.error));
+}
+
 TEST_CASE("central_difference_derivative: results of any shape are differentiated") {
   const auto rotation_at = [](const auto& t) {
     using T = std::decay_t<decltype(t)>;
