@@ -130,6 +130,23 @@ TEST_CASE_TEMPLATE("estimated_errors: not below the error, for even and uneven s
   }
 }
 
+TEST_CASE("estimated_errors: not below the error that natural ends cause") {
+  const auto motion = [](double u) { // accelerates at both ends
+    return duet::from_rotation_vector(vector3<double>(.3 * u * u, std::sin(u + 1), .1 * u));
+  };
+  for (int intervals = 30; intervals < 60; ++intervals) {
+    const auto table = uniform_table<double>(motion, intervals);
+    const auto s = duet::interpolate<duet::rotation_vector_spline<double>>(
+        table.parameters, table.elements, duet::natural{});
+    const auto errors =
+        duet::estimated_errors<duet::rotation_vector_spline<double>>(table, duet::natural{});
+    const double estimate = *std::max_element(errors.begin(), errors.end());
+    const double reference = largest_error(s, motion);
+    CHECK_GE(estimate, reference);
+    CHECK_LE(estimate, 3 * reference);
+  }
+}
+
 TEST_CASE("adaptive_table: ripples are within the bound; errors name values that are not finite or "
           "not units") {
   for (const double size : {1e-2, 1e-4}) {

@@ -185,10 +185,11 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
 /// element i − 1 is the error near sample i.
 ///
 /// A curve through every other sample misses the omitted samples by about 2^p times the error of
-/// the curve through all samples, p = `Spline::convergence`; uneven steps are accounted for. If the
-/// table resolves the motion, the largest estimate is not below the largest error. For cubic curves
-/// it is mostly up to five times as large; for quintic ones and for steps of very different lengths
-/// it may be far larger.
+/// the curve through all samples, p = `Spline::convergence`, near natural ends p = 2; uneven steps
+/// are accounted for. Rates given in `ends` count as those of the motion. If the table resolves the
+/// motion, the largest estimate is seldom below the largest error. For cubic curves it is mostly up
+/// to five times as large; for quintic ones and for steps of very different lengths it may be far
+/// larger.
 ///
 /// \throws invalid_input for fewer than nine samples
 /// \throws invalid_sample and others as `interpolate`
@@ -219,9 +220,11 @@ estimated_errors(const lookup_table<typename Spline::scalar_type>& table,
       const double t = left / (left + right), longest = std::max(t, 1 - t);
       const double shape = std::max(.1, 4 * t * (1 - t));
       // Near the ends curves converge more slowly.
-      const bool is_regular = i >= 6 && i + 6 < count && longest < .6;
-      const double safety = Spline::convergence > 4 ? 5 : is_regular ? 1.2 : 2.2;
-      misses[i] = safety * std::pow(longest, Spline::convergence) / (shape * shape) *
+      const bool is_near_end = i < 6 || i + 6 >= count;
+      const double safety = Spline::convergence > 4 ? 5 : !is_near_end && longest < .6 ? 1.2 : 2.2;
+      const int power =
+          is_near_end && ends.kind == detail::end_condition_kind::natural ? 2 : Spline::convergence;
+      misses[i] = safety * std::pow(longest, power) / (shape * shape) *
                   double(detail::miss(s(u[i]), elements[i], characteristic_length));
     }
   }
