@@ -313,6 +313,8 @@ TEST_CASE("manifolds: a full turn, and numbers that are no poses") {
   CHECK_FALSE(rotations.Minus(q.data(), zero.data(), delta.data()));
   std::array<double, 12> jacobian;
   CHECK_FALSE(rotations.MinusJacobian(zero.data(), jacobian.data()));
+  CHECK_FALSE(rotations.Plus(zero.data(), delta.data(), sum.data()));
+  CHECK_FALSE(rotations.PlusJacobian(zero.data(), jacobian.data()));
   delta[1] = infinity;
   CHECK_FALSE(rotations.Plus(q.data(), delta.data(), sum.data()));
 
@@ -329,6 +331,10 @@ TEST_CASE("manifolds: a full turn, and numbers that are no poses") {
   CHECK(poses.MinusJacobian(a.data(), of_pose.data()));
   const duet::dual_quaternion_manifold eight(quaternion_order::xyzw);
   const std::array<double, 8> unit{0, 0, 0, 1, 0, 0, 0, 0}, zeros{};
+  std::array<double, 8> moved_eight;
+  std::array<double, 48> of_eight;
+  CHECK_FALSE(eight.Plus(zeros.data(), twist.data(), moved_eight.data()));
+  CHECK_FALSE(eight.PlusJacobian(zeros.data(), of_eight.data()));
   CHECK_FALSE(eight.Minus(unit.data(), zeros.data(), twist.data()));
 }
 

@@ -263,10 +263,10 @@ public:
   }
 
   /// q exp(δ/2)
+  ///
+  /// \throws invalid_input for the zero quaternion
   void plus(const double* x, const double* delta, double* sum) const {
-    store(load_quaternion(x, order_) *
-              duet::exp(vector3<double>(delta[0] / 2, delta[1] / 2, delta[2] / 2)),
-          sum);
+    store(in_memory(x) * duet::exp(vector3<double>(delta[0] / 2, delta[1] / 2, delta[2] / 2)), sum);
   }
   /// δ of y = x exp(δ/2), up to a full turn: x and −x are a full turn apart.
   void minus(const double* y, const double* x, double* delta) const {
@@ -276,8 +276,10 @@ public:
                                     "rotation_block");
   }
   /// Derivative of `plus` with respect to δ at δ = 0, 4 × 3: ½ B(q).
+  ///
+  /// \throws invalid_input for the zero quaternion
   [[nodiscard]] Eigen::Matrix<double, 4, 3, Eigen::RowMajor> plus_jacobian(const double* x) const {
-    return 0.5 * detail::tangent_basis(load_quaternion(x, order_), order_);
+    return 0.5 * detail::tangent_basis(in_memory(x), order_);
   }
 
   /// For those who extend duet: the value over D, its tangent coordinates variables from number
@@ -293,6 +295,12 @@ public:
   }
 
 private:
+  [[nodiscard]] quaternion<double> in_memory(const double* numbers) const {
+    const quaternion<double> q = load_quaternion(numbers, order_);
+    detail::require_not_zero(q, "rotation_block");
+    return q;
+  }
+
   quaternion_order order_;
 };
 
@@ -323,6 +331,8 @@ public:
   }
 
   /// A exp(δ/2), δ = [v; ω]
+  ///
+  /// \throws invalid_input for the zero quaternion
   void plus(const double* x, const double* delta, double* sum) const {
     const auto step =
         duet::exp(dual_vector<double>(dual_vector_of(vector6<double>(vector6<double>(delta) / 2))));
@@ -341,6 +351,8 @@ public:
     result = 2 * twist_of(detail::log_vector(step, "pose_block"));
   }
   /// Derivative of `plus` with respect to δ at δ = 0, 7 × 6: [R 0; 0 ½ B(q)].
+  ///
+  /// \throws invalid_input for the zero quaternion
   [[nodiscard]] Eigen::Matrix<double, 7, 6, Eigen::RowMajor> plus_jacobian(const double* x) const {
     Eigen::Matrix<double, 7, 6, Eigen::RowMajor> result =
         Eigen::Matrix<double, 7, 6, Eigen::RowMajor>::Zero();
@@ -393,6 +405,8 @@ public:
   }
 
   /// A exp(δ/2), δ = [v; ω]
+  ///
+  /// \throws invalid_input for α = 0
   void plus(const double* x, const double* delta, double* sum) const {
     store(in_memory(x) * duet::exp(dual_vector<double>(
                              dual_vector_of(vector6<double>(vector6<double>(delta) / 2)))),
@@ -405,6 +419,8 @@ public:
                                              "dual_quaternion_block"));
   }
   /// Derivative of `plus` with respect to δ at δ = 0, 8 × 6: [0 ½ B(α); ½ B(α) ½ B(β)].
+  ///
+  /// \throws invalid_input for α = 0
   [[nodiscard]] Eigen::Matrix<double, 8, 6, Eigen::RowMajor> plus_jacobian(const double* x) const {
     const auto a = in_memory(x);
     const Eigen::Matrix<double, 4, 3> half = 0.5 * detail::tangent_basis(real_part(a), order_);
@@ -428,8 +444,9 @@ public:
 
 private:
   [[nodiscard]] dual_quaternion<double> in_memory(const double* numbers) const {
-    return make_dual_quaternion(load_quaternion(numbers, order_),
-                                load_quaternion(numbers + 4, order_));
+    const quaternion<double> alpha = load_quaternion(numbers, order_);
+    detail::require_not_zero(alpha, "dual_quaternion_block");
+    return make_dual_quaternion(alpha, load_quaternion(numbers + 4, order_));
   }
 
   quaternion_order order_;
