@@ -116,7 +116,10 @@ void write_any_table(const std::string& path, const lookup_table<T>& table, tabl
     if (is_same_file(times, path)) {
       raise(file_error(path, "is the same file as " + times));
     }
-    std::string column;
+    // Numbers that would be read as another unit by their size are below a header with theirs.
+    const bool needs_unit =
+        !table.parameters.empty() && std::abs(table.parameters.front()) >= least_guessed_time;
+    std::string column = needs_unit ? "t [s]\n" : "";
     for (const double u : table.parameters) {
       column += csv_line({u});
     }

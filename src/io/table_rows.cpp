@@ -338,11 +338,11 @@ struct row_format {
 /// keep their unit when they are written and read again.
 [[nodiscard]] std::size_t guessed_digits(std::string_view cell) {
   const double size = std::abs(parse_number(cell).value_or(0));
-  return size >= 1e20                              ? 0
-         : size >= 1e17                            ? 9
-         : size < 1e11 || size != std::floor(size) ? 0
-         : size >= 1e14                            ? 6
-                                                   : 3;
+  return size >= 1e20                                            ? 0
+         : size >= 1e17                                          ? 9
+         : size < least_guessed_time || size != std::floor(size) ? 0
+         : size >= 1e14                                          ? 6
+                                                                 : 3;
 }
 
 /// Number of digits of a unit of time in a header: 9 for ns, 0 for s.

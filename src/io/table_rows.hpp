@@ -20,6 +20,9 @@
 namespace duet::detail {
 DUET_ABI_BEGIN
 
+/// Smallest time without a unit that may be read as another unit than seconds.
+inline constexpr double least_guessed_time = 1e11;
+
 /// Time in seconds. Adjacent doubles for seconds since 1970 differ by 2.4e-7 s, so the integer and
 /// the fractional part are stored as well: differences of times have all digits of the file.
 class file_time {

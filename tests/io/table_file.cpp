@@ -145,6 +145,14 @@ TEST_CASE("save_table, load_table: poses in every format have the same parameter
           2e-14);
   }
   CHECK(duet::load_table<screw>(file.path).parameters[99] == 99);
+
+  for (const double first : {99999999999., 1e11, 1e14, 1.7e18, 1.5e20, -2e17}) {
+    for (std::size_t i = 0; i < table.parameters.size(); ++i) { // as of other units than seconds
+      table.parameters[i] = first + 1e6 * double(i);
+    }
+    duet::save_table(file.path, table, table_format::kitti, times.path);
+    CHECK(duet::load_table<screw>(file.path, times.path).parameters == table.parameters);
+  }
 }
 
 TEST_CASE("save_table: the files of every format, character by character") {

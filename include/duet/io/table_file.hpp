@@ -145,7 +145,8 @@ DUET_ABI_BEGIN
 /// 2^23 s on and for the nearest doubles to integer nanoseconds; KITTI matrices hold quaternions to
 /// round-off, without their sign.
 ///
-/// \param times  file for the parameters of KITTI's format, one a line; empty: not written
+/// \param times  file for the parameters of KITTI's format, one a line, below `t [s]` if the first
+/// would be read as another unit by its size; empty: not written
 /// \throws invalid_input if the numbers of parameters and elements differ, for rotations in a
 /// format of poses, for `times` with another format than KITTI's, and for times that EuRoC's format
 /// cannot distinguish
