@@ -517,22 +517,26 @@ struct zero_on_circle {
   double off = 0;        ///< logarithm of the distance from the origin
   bool is_real = false;  ///< true if the distance is 1 to round-off
   bool is_single = true; ///< true if no other zero is close
+
+  /// True if it may be a solution; others are nearly real only where two solutions meet slowly.
+  [[nodiscard]] bool is_near() const { return off < .2; }
 };
 
 [[nodiscard]] std::vector<zero_on_circle>
 zeros_on_circle(std::span<const std::complex<double>> roots) {
-  constexpr double real = 1e-9, nearly_real = .2, neighbourhood = .02;
+  constexpr double real = 1e-9, farthest = .5, neighbourhood = .02;
   std::vector<zero_on_circle> result;
   for (const std::complex<double>& z : roots) {
     const double off = std::log(std::abs(z)); // the conjugate pair has −off
-    if (off > -real && off < nearly_real) {
+    if (off > -real && off < farthest) {
       result.push_back({std::arg(z), off, off < real});
     }
   }
   for (zero_on_circle& one : result) {
-    one.is_single = std::count_if(result.begin(), result.end(), [&](const zero_on_circle& other) {
-                      return std::abs(wrap_angle(other.angle - one.angle)) < neighbourhood;
-                    }) == 1;
+    one.is_single =
+        std::count_if(result.begin(), result.end(), [&](const zero_on_circle& other) {
+          return other.is_near() && std::abs(wrap_angle(other.angle - one.angle)) < neighbourhood;
+        }) == 1;
   }
   return result;
 }
@@ -610,7 +614,8 @@ private:
   /// \return true if the determinant does not vanish identically and every real zero led to a
   /// separate solution
   bool add(const loop_order& order, double by, std::uint64_t seed) {
-    constexpr double singular = 1e-4, vanishing = 1e-6, sound = .05, nearly_real = .05;
+    constexpr double singular = 1e-4, vanishing = 1e-6, sound = .05, nearly_real = .05,
+                     nearly_closed = .02;
     constexpr int max_coinciding = 4;
     const System system(disturbed(order.loop, by, seed));
     const auto roots = system.roots();
@@ -625,10 +630,18 @@ private:
     is_certain_ = roots.regularity > 100 * singular && order.quality > sound;
     for (const zero_on_circle& zero : zeros_on_circle(roots.values)) {
       std::size_t at = zero.is_real && zero.is_single ? known(order, zero.angle) : not_found;
+      bool is_candidate = zero.is_near();
       if (at == not_found) {
         system.solution_at(zero.angle, [&](const six_coordinates& theta) {
-          at = solutions_.add(order.in_loop(theta));
+          const six_coordinates start = order.in_loop(theta);
+          // Two solutions between which the loop stays nearly closed may become a complex pair that
+          // far off the circle; its real part nearly closes the loop.
+          is_candidate = is_candidate || is_nearly_closed(start, nearly_closed);
+          at = is_candidate ? solutions_.add(start) : not_found;
         });
+      }
+      if (!is_candidate) {
+        continue;
       }
       is_certain_ = is_certain_ && zero.is_real && zero.is_single;
       has_close_pair_ = has_close_pair_ || (!zero.is_real && zero.off < nearly_real);
@@ -644,6 +657,12 @@ private:
   }
 
   static constexpr std::size_t not_found = loop_solutions::not_found;
+
+  /// True if the closure error is below a fraction of the loop's size.
+  [[nodiscard]] bool is_nearly_closed(const six_coordinates& theta, double fraction) const {
+    const closure_error closure(loop_, theta);
+    return closure.twist.norm() < fraction * closure.size;
+  }
 
   /// Index of the only solution near an angle at which the determinant vanishes, if it was found.
   [[nodiscard]] std::size_t known(const loop_order& order, double angle) const {

@@ -367,6 +367,27 @@ TEST_CASE("all_inverse_kinematics: clustered zeros in one order of the joints lo
   }
 }
 
+TEST_CASE("all_inverse_kinematics: solutions that meet slowly, complex for displaced loops, are "
+          "found") {
+  // Two solutions are 0.1 apart, with a closure error below 1e-4 between them.
+  const double part = pi / 12;
+  const std::array<dh_row<>, 6> rows{{{.a = .25, .d = .1, .alpha = part * 12},
+                                      {.a = .1, .d = .25, .alpha = part * -6, .theta = part * -7},
+                                      {.a = .5, .d = 1, .alpha = part * 6, .theta = part * -8},
+                                      {.a = .1, .alpha = part * 6},
+                                      {.a = .1, .d = .5, .alpha = part * 6, .theta = part * -10},
+                                      {.d = .2, .alpha = part * 6, .theta = part * 2}}};
+  const chain arm = from_dh(rows);
+  vector theta(6);
+  theta << -2.163807244768, 0.034832850718, 2.374786580631, -2.085275319023, 2.143824946693,
+      -2.146058028917;
+  CHECK(smallest_singular_value(arm, theta) < 1e-3);
+  for (int k = 0; k < 60; ++k) { // round-off selects the order of the joints
+    CHECK(check_complete(arm, theta).solutions.size() == 6);
+    theta[k % 6] += 1e-9 * (k % 7 + 1);
+  }
+}
+
 /// Arms with right angles in configurations of quarter turns, where many solutions share angles.
 TEST_CASE("all_inverse_kinematics: solutions that share angles are all found") {
   constexpr double q = pi / 2;
