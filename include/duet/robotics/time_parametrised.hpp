@@ -114,8 +114,8 @@ DUET_ABI_BEGIN
 /// With jerk limits the motion is locally optimal (docs/how-to/limit_jerk.md), and
 /// accelerations are continuous: zero at ends at rest, free at ends in motion.
 ///
-/// \param path  joint path: a `motion_plan` or a vector of joint coordinates, equal neighbours
-/// allowed
+/// \param path  joint path: a `motion_plan` or a vector of joint coordinates; neighbours at a
+/// distance of at most 1e-10 (1 + |q|) count as one
 /// \param velocity  limit of each joint, in coordinates per second, positive or infinite
 /// \param acceleration  limit of each joint, per second², positive and finite
 /// \throws invalid_input for no waypoints, coordinates that are not finite, limits that are not
