@@ -23,6 +23,7 @@ namespace duet {
 namespace detail {
 
 DUET_TEST_INSTANTIATED comparison compared(const std::string&, const formula_pair&,
+                                           const std::vector<coordinates>&,
                                            std::vector<worst_errors>, const comparison_options&);
 
 DUET_TEST_INSTANTIATED class cubic_equations<double>;

@@ -5,6 +5,7 @@
 #include <duet/comparison/measure.hpp>
 #include <duet/comparison/sampler.hpp>
 #include <duet/core/config.hpp>
+#include <duet/core/function_reference.hpp>
 #include <duet/core/progress.hpp>
 #include <duet/core/text/number_text.hpp>
 #include <duet/derivative/argument.hpp>
@@ -461,81 +462,37 @@ inline constexpr bool takes_inputs =
 
 /// Two formulas and their inputs. The code common to all comparisons does not depend on their
 /// types, so that it is compiled once.
-class formula_pair {
-public:
-  virtual ~formula_pair() = default;
-  [[nodiscard]] virtual std::vector<coordinates> points(const comparison_options&) const = 0;
-  [[nodiscard]] virtual bool contains(const coordinates& point) const = 0;
-  [[nodiscard]] virtual std::string describe(const coordinates& point) const = 0;
+struct formula_pair {
+  function_reference<bool(const coordinates& point)> contains;
+  function_reference<std::string(const coordinates& point)> describe;
   /// Differences at a point in every precision.
-  virtual void measure_at(const coordinates& point, std::span<difference> out) const = 0;
+  function_reference<void(const coordinates& point, std::span<difference>)> measure_at;
   /// Errors of a component, in the first and the last precision; NaN if one result is not finite.
-  [[nodiscard]] virtual std::array<double, 2> errors_at(const coordinates& point,
-                                                        std::size_t component) const = 0;
-  [[nodiscard]] virtual counterexample values_at(const coordinates& point) const = 0;
+  function_reference<std::array<double, 2>(const coordinates& point, std::size_t)> errors_at;
+  function_reference<counterexample(const coordinates& point)> values_at;
 };
 
-/// \tparam T  the scalars
-template <class F, class G, class Inputs, class... T>
-class formula_pair_of final : public formula_pair {
-public:
-  formula_pair_of(const std::string& label, const F& automatic, const G& closed_form,
-                  const Inputs& inputs, double tolerance)
-      : label_(label), automatic_(automatic), closed_form_(closed_form), inputs_(inputs),
-        tolerance_(tolerance) {}
-
-  [[nodiscard]] std::vector<coordinates> points(const comparison_options& options) const override {
-    return inputs_.points(options.samples, options.seed);
-  }
-  [[nodiscard]] bool contains(const coordinates& point) const override {
-    return inputs_.contains(point);
-  }
-  [[nodiscard]] std::string describe(const coordinates& point) const override {
-    return inputs_.describe(point);
-  }
-  void measure_at(const coordinates& point, std::span<difference> out) const override {
-    std::size_t k = 0;
-    ((out[k++] = measure<T>(label_, automatic_, closed_form_, inputs_, point, tolerance_)), ...);
-  }
-  [[nodiscard]] std::array<double, 2> errors_at(const coordinates& point,
-                                                std::size_t component) const override {
-    using scalars = std::tuple<T...>;
-    return {error_at<std::tuple_element_t<0, scalars>>(point, component),
-            error_at<std::tuple_element_t<sizeof...(T) - 1, scalars>>(point, component)};
-  }
-  [[nodiscard]] counterexample values_at(const coordinates& point) const override {
-    return {describe(point), evaluate_at<double>(automatic_, inputs_, point),
-            evaluate_at<double>(closed_form_, inputs_, point)};
-  }
-
-private:
-  template <class S>
-  [[nodiscard]] double error_at(const coordinates& point, std::size_t component) const {
-    const auto errors = errors_of(evaluate_at<S>(automatic_, inputs_, point),
-                                  evaluate_at<S>(closed_form_, inputs_, point));
-    return component < errors.size() ? static_cast<double>(errors[component]) : 0.0;
-  }
-
-  const std::string& label_;
-  const F& automatic_;
-  const G& closed_form_;
-  const Inputs& inputs_;
-  double tolerance_;
-};
+/// Error of a component of the result over T.
+template <class T, class F, class G, class Inputs>
+[[nodiscard]] double error_at(const F& automatic, const G& closed_form, const Inputs& inputs,
+                              const coordinates& point, std::size_t component) {
+  const auto errors = errors_of(evaluate_at<T>(automatic, inputs, point),
+                                evaluate_at<T>(closed_form, inputs, point));
+  return component < errors.size() ? static_cast<double>(errors[component]) : 0.0;
+}
 
 /// \param errors  of every precision, with only their digits filled in
 /// \tparam Pair   formula_pair
 template <class Pair>
-[[nodiscard]] comparison compared(const std::string& label, const Pair& pair,
-                                  std::vector<worst_errors> errors,
-                                  const comparison_options& options) {
+[[nodiscard]] comparison
+compared(const std::string& label, const Pair& pair, const std::vector<coordinates>& points,
+         std::vector<worst_errors> errors, const comparison_options& options) {
   struct sample {
     std::size_t point;
     double ulps;
     suspect error;
   };
   std::vector<difference> differences(errors.size());
-  const std::vector<coordinates> points = pair.points(options);
   comparison result;
   result.label = label;
   result.samples = points.size();
@@ -649,14 +606,31 @@ template <class... T, class F, class G, class Inputs>
   if constexpr (sizeof...(T) == 0) {
     return compare<double, long double>(label, automatic, closed_form, inputs, options);
   } else {
-    // Checked here, so that compilers name the caller's line: virtual functions are compiled
-    // elsewhere.
-    using results [[maybe_unused]] =
+    using results [[maybe_unused]] = // checked first, so that compilers name the caller's line
         std::tuple<detail::result_type<T, F, Inputs>..., detail::result_type<T, G, Inputs>...>;
-    const detail::formula_pair_of<F, G, Inputs, T...> pair(label, automatic, closed_form, inputs,
-                                                           options.tolerance);
+    using scalars = std::tuple<T...>;
+    using first = std::tuple_element_t<0, scalars>;
+    using last = std::tuple_element_t<sizeof...(T) - 1, scalars>;
+    const auto contains = [&](const coordinates& point) { return inputs.contains(point); };
+    const auto describe = [&](const coordinates& point) { return inputs.describe(point); };
+    const auto measure_at = [&](const coordinates& point, std::span<detail::difference> out) {
+      std::size_t k = 0;
+      ((out[k++] =
+            detail::measure<T>(label, automatic, closed_form, inputs, point, options.tolerance)),
+       ...);
+    };
+    const auto errors_at = [&](const coordinates& point, std::size_t component) {
+      return std::array{detail::error_at<first>(automatic, closed_form, inputs, point, component),
+                        detail::error_at<last>(automatic, closed_form, inputs, point, component)};
+    };
+    const auto values_at = [&](const coordinates& point) {
+      return counterexample{describe(point), detail::evaluate_at<double>(automatic, inputs, point),
+                            detail::evaluate_at<double>(closed_form, inputs, point)};
+    };
     return detail::compared<detail::formula_pair>(
-        label, pair, {worst_errors{.digits = std::numeric_limits<T>::digits10}...}, options);
+        label, {contains, describe, measure_at, errors_at, values_at},
+        inputs.points(options.samples, options.seed),
+        {worst_errors{.digits = std::numeric_limits<T>::digits10}...}, options);
   }
 }
 
