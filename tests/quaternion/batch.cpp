@@ -227,5 +227,14 @@ TEST_CASE("batches: eight and sixteen lanes, in several registers, agree with ea
                   std::vector(single.rbegin(), single.rend()));
 }
 
+TEST_CASE("batches: one lane agrees with a number") {
+  const auto q = orientations<double>();
+  check_lanes<1>([](const auto& a) { return log(a); }, limit, q);
+  check_lanes<1>([](const auto& a) { return duet::euler<duet::zyx>(a); }, 2 * limit, q);
+  check_lanes<1>(
+      [](const auto& a) { return duet::from_rotation_matrix(rotation_matrix(normalized(a))); },
+      2 * limit, q);
+}
+
 } // namespace
 } // namespace test_quaternion_batch

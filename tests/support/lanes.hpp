@@ -121,7 +121,7 @@ template <int W, class F, class X, class... Rest>
 void check_lanes(const F& f, double limit, const std::vector<X>& x,
                  const std::vector<Rest>&... rest) {
   using duet::lane;
-  for (std::size_t shift = 0; shift < x.size(); shift += W / 2) {
+  for (std::size_t shift = 0; shift < x.size(); shift += std::max(W / 2, 1)) {
     const auto joined = [&](const auto& from) {
       return duet::from_lanes<W>(
           [&](std::size_t i) { return from[(shift + 3 * i) % from.size()]; });

@@ -402,10 +402,10 @@ template <std::size_t W, class Row>
 /// plain numbers. For arguments without lanes it is f itself.
 template <class F, class... X>
 [[nodiscard]] auto by_lane(const F& f, const X&... x) {
-  constexpr int width = std::max({lane_count<X>...});
-  if constexpr (width == 1) {
+  if constexpr (!(Batched<typename structure<X>::scalar> || ...)) {
     return f(x...);
   } else {
+    constexpr int width = std::max({lane_count<X>...});
     using result = std::decay_t<decltype(f(lane(x, 0)...))>;
     std::array<result, std::size_t(width)> results;
     for (int i = 0; i < width; ++i) {
