@@ -107,6 +107,21 @@ TEST_CASE("second_order_dual: sums, products, quotients and functions of several
   check_everything<long double, 4>();
 }
 
+TEST_CASE("second_order_dual: quotients whose divisor's cube overflows or vanishes") {
+  for (const double unit : {1e-140, 1e-105, 1e105, 1e140}) {
+    using number = second_order_dual<double, 2>;
+    const double x = 3 * unit, y = -2 * unit;
+    const number q = number::variable(x, 0) / number::variable(y, 1);
+    CAPTURE(unit);
+    CHECK(q.value() == x / y);
+    CHECK(q.partial(0) * y == doctest::Approx(1));
+    CHECK(q.partial(1) * y == doctest::Approx(1.5));
+    CHECK(q.second_partial(0, 0) == 0);
+    CHECK(q.second_partial(1, 0) * y * y == doctest::Approx(-1));
+    CHECK(q.second_partial(1, 1) * y * y == doctest::Approx(-3));
+  }
+}
+
 TEST_CASE("second_order_dual: structural zeros survive") {
   using D = second_order_dual<double, 2>;
   const D constant = 0;

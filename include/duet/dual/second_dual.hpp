@@ -9,8 +9,10 @@
 #include <duet/dual/promotion.hpp>
 
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 #include <tuple>
 #include <type_traits>
 
@@ -137,6 +139,18 @@ namespace detail {
 
 /// Tag of the ε with respect to which slopes are differentiated.
 struct curvature_tag {};
+
+/// False if the value of x, a built-in number, has lost digits or vanished by underflow, or is
+/// zero.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE auto is_normal(const T& x) {
+  if constexpr (std::floating_point<lane_type_t<T>>) {
+    using std::abs;
+    return abs(innermost(x)) >= std::numeric_limits<lane_type_t<T>>::min();
+  } else {
+    return true;
+  }
+}
 
 } // namespace detail
 
@@ -339,9 +353,12 @@ public:
     const T slope = -inverse * inverse;
     const T curvature = detail::integer<T>(-2) * slope * inverse;
     const T value = a.value_ / b.value_;
-    if (!all(detail::is_all_finite(curvature))) [[unlikely]] {
-      return composed<2>(value, {&a, &b}, {inverse, T(a.value_ * slope)},
-                         {{{T(0), slope}, {slope, T(a.value_ * curvature)}}});
+    if (!all(detail::is_all_finite(curvature) && detail::is_normal(curvature))) [[unlikely]] {
+      // By the quotient, as powers of the inverse overflow or vanish long before it does.
+      const T slope_of_quotient = -(value * inverse);
+      return composed<2>(
+          value, {&a, &b}, {inverse, slope_of_quotient},
+          {{{T(0), slope}, {slope, T(detail::integer<T>(-2) * slope_of_quotient * inverse)}}});
     }
     second_order_dual result = product(a, b.composed(inverse, slope, curvature));
     result.value_ = value;
