@@ -256,7 +256,8 @@ TEST_CASE("singular points: the nine cases of pow") {
               {{0, 1}, 0, {1, 0}}, {{0, 0.5}, 0, {infinity, 0}}, {{0, 0}, 1, {0, -infinity}},
               {{0, -1}, infinity, {-infinity, -infinity}}, {{-2, 2}, 4, {-4, nan}},
               {{-2, 0}, 1, {0, nan}}, {{-2, -1}, -0.5, {-0.25, nan}}, {{-2, 0.5}, nan, {nan, nan}},
-              {{infinity, 0}, 1, {0, infinity}});
+              {{infinity, 0}, 1, {0, infinity}}, {{infinity, 2}, infinity, {infinity, infinity}},
+              {{infinity, -2}, 0, {0, 0}});
 }
 
 TEST_CASE("singular points: compositions") {

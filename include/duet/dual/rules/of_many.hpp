@@ -13,6 +13,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <type_traits>
 
@@ -281,7 +282,7 @@ struct power {
   }
 };
 
-/// x ↦ b^x. For b = 0 the value jumps at x = 0 and is flat beyond.
+/// x ↦ b^x. For b = 0 the value jumps at x = 0 and is flat beyond, for b = ∞ likewise below.
 template <class Base>
 struct exponential {
   Base base;
@@ -302,13 +303,26 @@ struct exponential {
         innermost(base) == detail::integer<Base>(0) && detail::quiet_less(R(0), real_x);
     const auto is_flat =
         detail::is_constant(base) || detail::quiet_less(R(scalar_traits<T>::order), real_x);
-    return select(
-        vanishes && is_flat, [] { return T(0); },
-        [&] {
-          return select(
-              vanishes, [&] { return T(detail::with_innermost(regular, real_type_t<T>(0))); },
-              [&] { return regular; });
-        });
+    return select((vanishes && is_flat) || vanishes_at_infinity(real_x), [] { return T(0); },
+                  [&] {
+                    return select(
+                        vanishes,
+                        [&] { return T(detail::with_innermost(regular, real_type_t<T>(0))); },
+                        [&] { return regular; });
+                  });
+  }
+
+private:
+  /// True if b = ∞ and x < 0: ∞^x log ∞ vanishes, with all its derivatives.
+  template <class R>
+  [[nodiscard]] auto vanishes_at_infinity([[maybe_unused]] const R& x) const {
+    using real = real_type_t<Base>;
+    if constexpr (Real<real> && Real<R> && !detail::is_recording<R>) {
+      return innermost(base) == std::numeric_limits<real>::infinity() &&
+             detail::quiet_less(x, R(0));
+    } else {
+      return false;
+    }
   }
 };
 
