@@ -35,8 +35,11 @@ public:
 
   [[nodiscard]] std::string type() const { return is_single_ ? "float" : "double"; }
   [[nodiscard]] std::string number(double x) const {
-    return is_single_ && std::isfinite(x) ? number_literal(static_cast<float>(x)) + "f"
-                                          : number_literal(x, "NAN", "INFINITY");
+    if (!is_single_) {
+      return number_literal(x, "NAN", "INFINITY");
+    }
+    const auto single = static_cast<float>(x); // infinite if x is beyond its range
+    return number_literal(single, "NAN", "INFINITY") + (std::isfinite(single) ? "f" : "");
   }
   [[nodiscard]] std::string function(const std::string& name) const {
     return is_cpp() ? "std::" + name : name + (is_single_ ? "f" : "");
