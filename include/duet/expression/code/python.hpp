@@ -77,7 +77,7 @@ def _duet_fma(x, y, z):
     try:
         return float(exact) if exact != 0 else float(rounded)
     except OverflowError:
-        return math.copysign(math.inf, exact)
+        return math.inf if exact > 0 else -math.inf
 
 
 )");
