@@ -108,15 +108,23 @@ private:
     y = gammaln(x);
   elseif x == fix(x)
     y = Inf;
+  elseif x > -1e-17 % the products of the reflection would vanish
+    y = -log(-x);
   else % by reflection
     y = log(pi / abs(sin(pi * (x - round(x))) * x)) - gammaln(-x);
   end
 end
 )";
     case operation::pow:
-      return R"(function y = duet_pow(a, b)
-  if a < 0 && (isinf(b) || (isinf(a) && b ~= fix(b))), a = -a; end
-  if a < 0 && b ~= fix(b), y = NaN; else, y = a ^ b; end
+      return R"(function y = duet_pow(a, b) % Octave's a ^ b is complex for some whole b
+  if a < 0 && b ~= fix(b) && ~isinf(a)
+    y = NaN;
+  elseif a < 0
+    y = abs(a) ^ b;
+    if mod(b, 2) == 1, y = -y; end
+  else
+    y = a ^ b;
+  end
 end
 )";
     case operation::fma:
