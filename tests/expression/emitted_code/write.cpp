@@ -117,6 +117,8 @@ std::vector<code_case> cases() {
   const double infinity = std::numeric_limits<double>::infinity();
   add("infinite",
       trace([&](auto x) { return max(min(x, decltype(x)(infinity)), decltype(x)(-infinity)); }, u));
+  add("large_constants",
+      trace([](auto x) { return max(min(x, decltype(x)(1e300)), decltype(x)(-1e300)); }, u));
   add("elementary", trace(
                         [](auto x) {
                           using std::atan2;
@@ -180,17 +182,51 @@ std::vector<code_case> cases() {
                return std::array{tgamma(x), lgamma(x)};
              },
              u),
-         {{-2.5}, {-1.5}, {-0.3}, {0.1}, {1.0}, {2.0}, {5.5}, {20.0}, {-1.0}, {-0.0}, {0.0}});
+         {{-2.5},
+          {-1.5},
+          {-0.3},
+          {0.1},
+          {1.0},
+          {2.0},
+          {5.5},
+          {20.0},
+          {-1.0},
+          {-0.0},
+          {0.0},
+          {-1e-310}});
   add_at("divided",
          trace(
              [](auto x, auto y) {
                return std::array{fmod(x, y), remainder(x, y), pow(x, y), atan2(x, y), hypot(x, y)};
              },
              u, lambda),
-         {{5, 3},        {-5, 3},       {5.5, -1},    {3, 2},           {-3, 2},
-          {5, 2},        {0.9, 0.3},    {1e300, 0.7}, {1e-310, 3e-320}, {1.5e308, 1.2e308},
-          {1, infinity}, {infinity, 1}, {1, 0},       {0, 0},           {-8, 1.0 / 3},
-          {-2, 3},       {-2, -3},      {0.1, 1e-3},  {-1, infinity},   {7, -infinity}});
+         {{5, 3},
+          {-5, 3},
+          {5.5, -1},
+          {3, 2},
+          {-3, 2},
+          {5, 2},
+          {0.9, 0.3},
+          {1e300, 0.7},
+          {1e-310, 3e-320},
+          {1.5e308, 1.2e308},
+          {1, infinity},
+          {infinity, 1},
+          {1, 0},
+          {0, 0},
+          {-8, 1.0 / 3},
+          {-2, 3},
+          {-2, -3},
+          {0.1, 1e-3},
+          {-1, infinity},
+          {7, -infinity},
+          {-1, 0x1p40 + 1},
+          {-1.5, 3e9},
+          {-1, -8589934593},
+          {-2, -1e17},
+          {-infinity, 0.5}});
+  add_at("fused", trace([](auto x, auto y) { return fma(x, y, y); }, u, lambda),
+         {{2, 3}, {1e200, 1e200}, {1e200, -1e200}, {-1e308, 10}, {infinity, 1}, {1e-200, 1e-200}});
   return result;
 }
 
