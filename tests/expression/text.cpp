@@ -98,6 +98,8 @@ TEST_CASE("LaTeX") {
   CHECK(to_latex(exp(-x * x) * sin(x)) == R"(e^{-x^{2}} \sin(x))");
   CHECK(to_latex(erf(x) + asin(x * x)) == R"(\operatorname{erf}(x) + \arcsin\left(x^{2}\right))");
   CHECK(to_latex(2.5e-7 * x) == R"(2.5 \cdot 10^{-7} x)");
+  CHECK(to_latex(std::numeric_limits<double>::infinity() * x) == R"(\infty x)");
+  CHECK(to_latex(-std::numeric_limits<double>::infinity() * x) == R"(-\infty x)");
   CHECK(to_latex(x * 1e20) == R"(10^{20} x)");
   CHECK(to_latex(pow(-2.5e-7 * x, c<2>)) == R"(\left(2.5 \cdot 10^{-7}\right)^{2} x^{2})");
   CHECK(to_latex(abs(x)) == R"(\left|x\right|)");

@@ -36,11 +36,15 @@ namespace duet::expression {
 
 namespace detail {
 
-/// A number, with ×10^n in LaTeX.
+/// A number, with ×10^n and ∞ in LaTeX.
 [[nodiscard]] inline printed printed_number(notation style, std::string digits) {
   const std::size_t e = digits.find('e');
   const auto negative = precedence::negative_number;
   const bool is_negative = digits[0] == '-';
+  if (style != notation::text && (digits == "inf" || digits == "-inf")) {
+    return {is_negative ? "-\\infty" : "\\infty", is_negative ? negative : precedence::atom, style,
+            factor_order::number};
+  }
   if (style != notation::text && e != std::string::npos) {
     const std::size_t exponent = digits.find_first_not_of("+0", e + 1);
     const std::string factor = digits.substr(0, e);
