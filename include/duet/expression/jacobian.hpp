@@ -4,6 +4,8 @@
 #include <duet/core/config.hpp>
 #include <duet/derivative/frame.hpp>
 #include <duet/derivative/jacobian.hpp>
+#include <duet/dual_quaternion/dual_quaternion.hpp>
+#include <duet/dual_quaternion/pose.hpp>
 #include <duet/expression/arm/pose_chain.hpp>
 #include <duet/expression/tape/derivation.hpp>
 #include <duet/expression/tape/program.hpp>
@@ -11,6 +13,7 @@
 #include <duet/expression/tree/formula.hpp>
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/variables.hpp>
+#include <duet/quaternion/rotation.hpp>
 
 #include <Eigen/Core>
 
@@ -47,8 +50,7 @@ struct jacobian_of<motion_list<Motions...>, Frame> {
 
   template <class Node, class Bindings>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto of(const Bindings& b) {
-    if constexpr (is_pose_chain<Node> && std::is_same_v<Frame, spatial_frame> &&
-                  std::is_same_v<typename Bindings::scalar, double>) {
+    if constexpr (is_pose_chain<Node> && std::is_same_v<typename Bindings::scalar, double>) {
       return by_factors<Node>(b);
     } else {
       return by_columns<Node>(b);
@@ -65,8 +67,19 @@ private:
   template <class Node>
   [[nodiscard]] DUET_ALWAYS_INLINE static auto by_factors(const auto& b) {
     returned<double, dual_quaternion<double>, 6> result;
-    using chain = pose_chain<typename factors<Node>::type, Motions...>;
+    constexpr bool is_hybrid = std::is_same_v<Frame, hybrid_frame>;
+    using chain = pose_chain<std::conditional_t<is_hybrid, body_frame, Frame>,
+                             typename factors<Node>::type, Motions...>;
     result.value = chain::evaluate(result.jacobian.data(), b);
+    if constexpr (is_hybrid) { // from body to fixed axes
+      const auto r = rotation_matrix(duet::rotation(result.value));
+      for (int j = 0; j < result.jacobian.cols(); ++j) {
+        auto column = result.jacobian.col(j);
+        const vector3<double> v = r * column.template head<3>();
+        const vector3<double> omega = r * column.template tail<3>();
+        column << v, omega;
+      }
+    }
     return result;
   }
 

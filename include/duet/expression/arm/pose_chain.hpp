@@ -21,8 +21,9 @@
 #include <utility>
 
 /// \file
-/// Products of rigid motions and their spatial Jacobians in doubles, factor by factor: the column
-/// of a joint is its axis, displaced by the factors before it.
+/// Products of rigid motions and their Jacobians in doubles, factor by factor: the spatial column
+/// of a joint is its axis, displaced by the factors before it. Columns in body axes are the
+/// negative spatial ones of the inverse, whose factors are inverse and in the opposite order.
 
 namespace duet::expression::detail {
 
@@ -95,12 +96,12 @@ struct link_of<applied_node<op::translation_along, N, D>> {
   }
 };
 
-/// Puts the values of factors, two entries each, and their rates on a tape: those of a factor for
-/// all motions, one factor after the other.
-template <class Factors, class... Motions>
+/// Puts the values of factors, two entries each, and their rates in the frame on a tape: those of a
+/// factor for all motions, one factor after the other.
+template <class Frame, class Factors, class... Motions>
 struct build_chain;
-template <class... Factors, class... Motions>
-struct build_chain<mp11::mp_list<Factors...>, Motions...> {
+template <class Frame, class... Factors, class... Motions>
+struct build_chain<Frame, mp11::mp_list<Factors...>, Motions...> {
   static constexpr int factors = int(sizeof...(Factors)), motions = int(sizeof...(Motions));
   static constexpr int root_count = factors * (2 + motions);
   static constexpr int initial_capacity = 256;
@@ -127,7 +128,7 @@ struct build_chain<mp11::mp_list<Factors...>, Motions...> {
     for (int m = Pass * motions_in_pass; m < end; ++m) {
       motion.template add_rates<use>(tape, size, inputs + m, 1);
       int k = 0;
-      ((roots[rate_root(k, m)] = column_of<link_of<Factors>::kind_of_rate, spatial_frame>(
+      ((roots[rate_root(k, m)] = column_of<link_of<Factors>::kind_of_rate, Frame>(
                                      motion, tape_term<use>{&tape, moving[k]})
                                      .index,
         ++k),
@@ -137,18 +138,20 @@ struct build_chain<mp11::mp_list<Factors...>, Motions...> {
 };
 
 /// Evaluation of a product of rigid motions, factor by factor.
-template <class Factors, class... Motions>
+///
+/// \tparam Frame  of the Jacobian: `spatial_frame` or `body_frame`
+template <class Frame, class Factors, class... Motions>
 struct pose_chain;
-template <class... Factors, class... Motions>
-struct pose_chain<mp11::mp_list<Factors...>, Motions...> {
+template <class Frame, class... Factors, class... Motions>
+struct pose_chain<Frame, mp11::mp_list<Factors...>, Motions...> {
   /// Returns the pose and writes its Jacobian into 6 × n doubles, column by column.
   [[nodiscard]] DUET_ALWAYS_INLINE static dual_quaternion<double> evaluate(double* jacobian,
                                                                            const auto& b) {
     return evaluated_program<build>(b, [jacobian](auto& values) DUET_INLINE_LAMBDA {
       using program = typename std::remove_reference_t<decltype(values)>::program;
       moving_frame f;
-      [&]<int... K>(std::integer_sequence<int, K...>) DUET_INLINE_LAMBDA {
-        (append<program, K, Factors>(f, jacobian, values), ...);
+      [&]<int... Step>(std::integer_sequence<int, Step...>) DUET_INLINE_LAMBDA {
+        (append<program, Step>(f, jacobian, values), ...);
       }
       (std::make_integer_sequence<int, count>{});
       for (int m = 0; m < motions; ++m) {
@@ -156,15 +159,23 @@ struct pose_chain<mp11::mp_list<Factors...>, Motions...> {
           std::fill_n(jacobian + 6 * m, 6, 0.0);
         }
       }
-      return f.pose();
+      if constexpr (is_inverse) {
+        return conj(f.pose());
+      } else {
+        return f.pose();
+      }
     });
   }
 
 private:
-  using build = build_chain<mp11::mp_list<Factors...>, Motions...>;
+  using build = build_chain<Frame, mp11::mp_list<Factors...>, Motions...>;
   static constexpr int count = build::factors, motions = build::motions;
+  /// True if the inverse is evaluated, from the last factor to the first.
+  static constexpr bool is_inverse = std::is_same_v<Frame, body_frame>;
 
-  /// The motions that move each factor, and the first factor that each motion moves.
+  static constexpr int factor_at(int step) { return is_inverse ? count - 1 - step : step; }
+
+  /// The motions that move each factor, and the first of the steps' factors that each motion moves.
   struct factor_motions {
     int size[std::size_t(count)] = {};
     int motion[std::size_t(count)][std::size_t(motions)] = {};
@@ -175,7 +186,8 @@ private:
     factor_motions result;
     for (int m = 0; m < motions; ++m) {
       result.first_factor[m] = count;
-      for (int k = count - 1; k >= 0; --k) {
+      for (int step = count - 1; step >= 0; --step) {
+        const int k = factor_at(step);
         if (!Program::is_zero_root(build::rate_root(k, m))) {
           result.motion[k][result.size[k]++] = m;
           result.first_factor[m] = k;
@@ -185,26 +197,36 @@ private:
     return result;
   }();
   static constexpr int first_rotation = [] {
-    int k = 0;
-    static_cast<void>(((link_of<Factors>::link::rotates || (++k, false)) || ...));
-    return k;
+    constexpr bool rotates[] = {link_of<Factors>::link::rotates...};
+    int step = 0;
+    while (step < count && !rotates[factor_at(step)]) {
+      ++step;
+    }
+    return step;
   }();
 
-  /// Writes the columns of a factor, and appends it to the frame.
-  template <class Program, int K, class Factor>
+  /// Writes the columns of a factor, and appends it, or its inverse, to the frame.
+  template <class Program, int Step>
   DUET_ALWAYS_INLINE static void append(moving_frame& f, [[maybe_unused]] double* jacobian,
                                         auto& values) {
-    using link = typename link_of<Factor>::link;
+    constexpr int k = factor_at(Step);
+    using factor = link_of<mp11::mp_at_c<mp11::mp_list<Factors...>, std::size_t(k)>>;
+    using link = typename factor::link;
     [&]<int... W>(std::integer_sequence<int, W...>) DUET_INLINE_LAMBDA {
-      (write<Program, K, writes<Program>.motion[K][W]>(link{}, f, jacobian, values), ...);
+      (write<Program, k, writes<Program>.motion[k][W]>(link{}, f, jacobian, values), ...);
     }
-    (std::make_integer_sequence<int, writes<Program>.size[K]>{});
-    constexpr bool is_first = K <= first_rotation;
-    if constexpr (link_of<Factor>::value_count == 2) {
-      f.template append<is_first>(link{}, values.template get<2 * K>(),
-                                  values.template get<2 * K + 1>());
+    (std::make_integer_sequence<int, writes<Program>.size[k]>{});
+    constexpr bool is_first = Step <= first_rotation;
+    const auto& value = values.template get<2 * k>();
+    if constexpr (factor::value_count == 2) {
+      const double sine = is_inverse ? -value : value;
+      f.template append<is_first>(link{}, sine, values.template get<2 * k + 1>());
+    } else if constexpr (!is_inverse) {
+      f.template append<is_first>(link{}, value);
+    } else if constexpr (factor::kind_of_rate == kind::scalar) {
+      f.template append<is_first>(link{}, -value);
     } else {
-      f.template append<is_first>(link{}, values.template get<2 * K>());
+      f.template append<is_first>(link{}, conj(value));
     }
   }
   template <class Program, int K, int M, class Link>
