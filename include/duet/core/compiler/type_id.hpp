@@ -12,8 +12,9 @@ namespace duet::detail {
 
 /// Object that represents a type.
 struct type_mark {
-  const char* name; ///< of g++, where it has to tell types apart
+  const char* name; ///< name of the type by g++, otherwise null
 };
+/// A text that names the type, by g++.
 template <class T>
 [[nodiscard]] constexpr const char* name_for_type() {
 #if defined(__GNUC__) && !defined(__clang__)
@@ -29,8 +30,8 @@ inline constexpr type_mark type_id = {name_for_type<T>()};
 /// True if both identify one type.
 ///
 /// With -fsanitize=undefined, g++ compares no addresses of inline variables in constant
-/// expressions, as they could be null. Types are then one if their names are, which only lambdas of
-/// one function share that are not generic.
+/// expressions, as they could be null. Names then decide, which two lambdas of one function share
+/// if neither is generic.
 [[nodiscard]] constexpr bool is_same_type(const type_mark* a, const type_mark* b) {
 #if defined(__GNUC__) && !defined(__clang__)
   if (std::is_constant_evaluated() && !__builtin_constant_p(a == b)) {

@@ -22,8 +22,9 @@
 
 /// \file
 /// Products of rigid motions and their Jacobians in doubles, factor by factor: the spatial column
-/// of a joint is its axis, displaced by the factors before it. Columns in body axes are the
-/// negative spatial ones of the inverse, whose factors are inverse and in the opposite order.
+/// of a joint is its axis, displaced by the factors before it. The columns of a product in body
+/// axes are the spatial ones of its inverse with the opposite sign; the factors of the inverse are
+/// the inverse factors in the opposite order.
 
 namespace duet::expression::detail {
 
