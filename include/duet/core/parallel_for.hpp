@@ -19,19 +19,6 @@
 
 namespace duet {
 
-/// Execution options: number of threads and progress report.
-struct execution {
-  unsigned threads = 1; ///< number of threads; 0: as many as the machine has cores
-  /// Called after every block, by one thread at a time, with increasing progress, at last with all:
-  /// see `parallel_for_blocks`.
-  progress_callback report = {};
-};
-
-/// Single-threaded: everything in the calling thread.
-inline constexpr execution one_core{1};
-/// As many threads as the machine has cores.
-inline constexpr execution all_cores{0};
-
 namespace detail {
 
 /// Blocks are handed out from the first to the last, so that when one throws all before it are

@@ -11,7 +11,7 @@
 #include <type_traits>
 
 /// \file
-/// Progress of a long run, and its early termination.
+/// Progress of a long run, its early termination, and the number of its threads.
 
 namespace duet {
 
@@ -56,6 +56,19 @@ private:
   const void* object_ = nullptr;
   bool (*call_)(const void*, const progress&) = nullptr;
 };
+
+/// Execution options: number of threads and progress report.
+struct execution {
+  unsigned threads = 1; ///< number of threads; 0: as many as the machine has cores
+  /// Called after every block, by one thread at a time, with increasing progress, at last with all:
+  /// see `parallel_for_blocks`.
+  progress_callback report = {};
+};
+
+/// Single-threaded: everything in the calling thread.
+inline constexpr execution one_core{1};
+/// As many threads as the machine has cores.
+inline constexpr execution all_cores{0};
 
 /// A run ended early by its progress callback.
 class cancelled : public std::runtime_error {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
-#include <duet/core/parallel_for.hpp>
+#include <duet/core/progress.hpp>
 #include <duet/derivative/argument.hpp>
 #include <duet/dual_quaternion/dual_quaternion.hpp>
 #include <duet/kinematics/chain_view.hpp>
