@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
+#include <initializer_list>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -36,9 +37,8 @@ public:
     // there.
     const scope least = scopes_.front();
     std::erase_if(scopes_, [&](const scope& at) {
-      return std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-        return fits(s, at, of(s.exact, at), 1e-8);
-      });
+      return fits_all(
+          at, [&](const jacobian_sample& s) { return of(s.exact, at); }, 1e-8);
     });
     if (scopes_.empty()) {
       scopes_ = {least};
@@ -63,24 +63,17 @@ public:
       if (problem_.written) {
         try_charts();
         try_regions();
-        if (slips_.empty()) {
-          try_parts_by_intermediates();
-        }
-        if (slips_.empty()) {
-          try_stored_numbers();
-        }
-        if (slips_.empty()) {
-          try_chains();
-        }
-        if (slips_.empty()) {
-          try_other_arms();
-          try_axes_of_results();
-        }
-        if (slips_.empty()) {
-          try_weights();
-        }
-        if (slips_.empty()) {
-          try_other_terms();
+        for (const std::function<void()>& attempts : std::initializer_list<std::function<void()>>{
+                 [&] { try_parts_by_intermediates(); }, [&] { try_stored_numbers(); },
+                 [&] { try_chains(); },
+                 [&] {
+                   try_other_arms();
+                   try_axes_of_results();
+                 },
+                 [&] { try_weights(); }, [&] { try_other_terms(); }}) {
+          if (slips_.empty()) {
+            attempts();
+          }
         }
         for (const jacobian_slip& s : weak_) {
           if (!slips_.empty()) {
@@ -130,9 +123,6 @@ private:
     std::vector<intermediate> list;
     const Eigen::Index columns = tangent_size(inputs_);
     const bool is_right = problem_.side == perturbation::right;
-    const auto rotation_of_part = [](const jacobian_part& m, const vector& x) {
-      return Eigen::Matrix3d(rotation_matrix(rotation_at(m, x)));
-    };
     for (const jacobian_part& m : inputs_) {
       if (!m.is_motion()) {
         continue;
@@ -166,44 +156,42 @@ private:
                      : w != nullptr ? Eigen::Vector3d(x.segment<3>(w->state))
                                     : Eigen::Vector3d::Zero();
             };
-            z.evaluate = [=, this, &m, &v](const vector& x) {
-              const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+            const auto axes_at = [=, &m](const vector& x) -> Eigen::Matrix3d {
+              const Eigen::Matrix3d r = rotation_matrix(rotation_at(m, x));
+              return is_back ? Eigen::Matrix3d(r.transpose()) : r;
+            };
+            z.rotated = [=, &v](const vector& x) {
+              const Eigen::Vector3d point = x.segment<3>(v.state);
+              const Eigen::Vector3d before =
+                  is_back ? Eigen::Vector3d(point - offset_at(x)) : point;
+              return std::pair(Eigen::Vector3d(product_of(axes_at(x), before)), before);
+            };
+            z.evaluate = [=, this, &m, &v, rotated_at = z.rotated](const vector& x) {
+              const Eigen::Matrix3d one = Eigen::Matrix3d::Identity(), axes = axes_at(x);
               // By right perturbation: of R p + t, R, -R p^ and R; of R^T (p - t), -1, y^ and R^T.
-              const Eigen::Matrix3d r = rotation_of_part(m, x), back = r.transpose();
-              const Eigen::Vector3d point = x.segment<3>(v.state), offset = offset_at(x);
-              const Eigen::Vector3d value = is_back
-                                                ? Eigen::Vector3d(product_of(back, point - offset))
-                                                : Eigen::Vector3d(product_of(r, point) + offset);
+              const auto [rotated, before] = rotated_at(x);
               matrix j = matrix::Zero(3, columns);
-              j.middleCols(v.first, 3) = is_back ? back : r;
+              j.middleCols(v.first, 3) = axes;
               if (is_pose) {
-                j.middleCols(m.first, 3) = is_back ? Eigen::Matrix3d(-one) : r;
+                j.middleCols(m.first, 3) = is_back ? Eigen::Matrix3d(-one) : axes;
               } else if (w != nullptr) {
-                j.middleCols(w->first, 3) = is_back ? Eigen::Matrix3d(-back) : one;
+                j.middleCols(w->first, 3) = is_back ? Eigen::Matrix3d(-axes) : one;
               }
               j.middleCols(m.first + m.dimension - 3, 3) =
-                  is_back ? matrix(cross_matrix(value)) : product_of(r, cross_matrix(-point));
+                  is_back ? matrix(cross_matrix(rotated)) : product_of(axes, cross_matrix(-before));
               if (!is_right) {
                 const matrix adjoint = Ad(conj(pose_at(m, x)));
                 j.middleCols(m.first, m.dimension) =
                     product_of(j.middleCols(m.first, m.dimension),
                                adjoint.bottomRightCorner(m.dimension, m.dimension));
               }
-              return evaluation_of(value, j);
+              return evaluation_of(is_back ? rotated : Eigen::Vector3d(rotated + offset_at(x)), j);
             };
-            z.rotated = [=, &m, &v](const vector& x) {
-              const Eigen::Matrix3d r = rotation_of_part(m, x);
-              const Eigen::Vector3d point = x.segment<3>(v.state);
-              const Eigen::Vector3d before =
-                  is_back ? Eigen::Vector3d(point - offset_at(x)) : point;
-              return std::pair(Eigen::Vector3d(product_of(is_back ? r.transpose() : r, before)),
-                               before);
-            };
-            z.set = [=, &m, &v](vector x, const vector& value) {
-              const Eigen::Matrix3d r = rotation_of_part(m, x);
-              x.segment<3>(v.state) =
-                  is_back ? Eigen::Vector3d(product_of(r, value) + offset_at(x))
-                          : Eigen::Vector3d(product_of(r.transpose(), value - offset_at(x)));
+            z.set = [=, &v](vector x, const vector& value) {
+              const Eigen::Matrix3d back = axes_at(x).transpose();
+              x.segment<3>(v.state) = is_back
+                                          ? Eigen::Vector3d(product_of(back, value) + offset_at(x))
+                                          : Eigen::Vector3d(product_of(back, value - offset_at(x)));
               return x;
             };
             list.push_back(std::move(z));
@@ -338,23 +326,20 @@ private:
     jacobian_problem part = problem_;
     part.written = nullptr;
     part.arguments.clear();
-    Eigen::Index first = 0;
     std::vector<Eigen::Index> order; // columns as returned
     for (const jacobian_part& a : problem_.arguments) {
       const Eigen::Index count = a.vector_size();
       if (count > 0) {
         part.arguments.push_back({a.type == kind::number ? kind::number : kind::vector,
-                                  a.vector_name(), a.vector_first(), first, count});
+                                  a.vector_name(), a.vector_first(), a.state, count});
       }
       for (Eigen::Index k = 0; k < count; ++k) {
         order.push_back(a.state + k);
       }
-      first += count;
       if (a.is_motion()) {
-        part.arguments.push_back({kind::vector, a.name, a.state, first, 4});
-        first += 4;
-        const bool is_w_first = problem_.order == quaternion_order::wxyz;
         const Eigen::Index q = a.state + count;
+        part.arguments.push_back({kind::vector, a.name, a.state, q, 4});
+        const bool is_w_first = problem_.order == quaternion_order::wxyz;
         for (const Eigen::Index k : {0, 1, 2, 3}) {
           order.push_back(q + (is_w_first ? k : (k + 3) % 4));
         }
@@ -404,12 +389,10 @@ private:
     const auto exact_at = [&](const vector& x, const jacobian_evaluation& truth) {
       const matrix tangent = truth.jacobian.template cast<double>();
       matrix result(tangent.rows(), stored);
-      std::size_t next = 0;
       for (const jacobian_part& a : problem_.arguments) {
         const matrix chart = chart_derivative(a, x, problem_.side, quaternion_order::wxyz);
-        result.middleCols(part.arguments[next].first, a.state_size()) =
+        result.middleCols(a.state, a.state_size()) =
             divided(tangent.middleCols(a.first, a.dimension), chart);
-        next += a.type == kind::pose ? 2 : 1;
       }
       if (change) {
         const auto [argument, by_norm] = change(x, truth, tangent);
@@ -436,16 +419,13 @@ private:
       }
       // Beyond unit quaternions the handwritten function may be continued otherwise: columns of
       // other rotations become the exact ones plus their error in tangent coordinates.
-      std::size_t next = 0;
       for (const jacobian_part& a : problem_.arguments) {
         if (a.is_motion() && (last_ < a.first || first_ >= a.first + a.dimension)) {
-          const Eigen::Index column = part.arguments[next].first;
           const matrix chart = chart_derivative(a, s.state, problem_.side, quaternion_order::wxyz);
-          s.written.middleCols(column, a.state_size()) =
-              s.exact.middleCols(column, a.state_size()) +
+          s.written.middleCols(a.state, a.state_size()) =
+              s.exact.middleCols(a.state, a.state_size()) +
               divided(error.middleCols(a.first, a.dimension), chart);
         }
-        next += a.type == kind::pose ? 2 : 1;
       }
       s.allowed += 1e-12 * largest_entry(s.exact);
       s.is_wrong = largest_entry(s.written - s.exact) > s.allowed;

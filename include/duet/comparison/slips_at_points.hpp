@@ -153,42 +153,39 @@ protected:
           }
         }
       }
+      const auto add_other_state = [&](const jacobian_part& b) {
+        if (a.type == b.type && a.dimension == b.dimension) {
+          add(message("another state: ", b.name, " for ", a.name),
+              [&a, &b, size](vector& x) { x.segment(a.state, size) = x.segment(b.state, size); });
+        }
+      };
       for (const jacobian_part& b : inputs_) {
         if (&a == &b) {
           continue;
         }
-        if (a.type == b.type && a.dimension == b.dimension) {
-          add(message("another state: ", b.name, " for ", a.name),
-              [&a, &b, size](vector& x) { x.segment(a.state, size) = x.segment(b.state, size); });
-          if (&a < &b) {
-            add(message(a.name, " and ", b.name, " exchanged"), [&a, &b, size](vector& x) {
-              x.segment(a.state, size).swap(x.segment(b.state, size));
-            });
-          }
+        add_other_state(b);
+        if (a.type == b.type && a.dimension == b.dimension && &a < &b) {
+          add(message(a.name, " and ", b.name, " exchanged"), [&a, &b, size](vector& x) {
+            x.segment(a.state, size).swap(x.segment(b.state, size));
+          });
         }
         if (a.is_motion() && b.is_motion()) {
           for (const bool is_inverse : {false, true}) {
-            const auto factor = [&b, is_inverse](const vector& x) {
-              return is_inverse ? conj(rotation_at(b, x)) : rotation_at(b, x);
-            };
-            add(message("another point: ", a.name, " times ", b.name, is_inverse ? "^-1" : "",
-                        " for ", a.name),
-                [&a, factor](vector& x) {
-                  set_rotation(x, a, quaternion<double>(rotation_at(a, x) * factor(x)));
-                });
-            add(message("another point: ", b.name, is_inverse ? "^-1" : "", " times ", a.name,
-                        " for ", a.name),
-                [&a, factor](vector& x) {
-                  set_rotation(x, a, quaternion<double>(factor(x) * rotation_at(a, x)));
-                });
+            for (const bool is_left : {false, true}) {
+              const std::string other = b.name + (is_inverse ? "^-1" : "");
+              add(message("another point: ", is_left ? other : a.name, " times ",
+                          is_left ? a.name : other, " for ", a.name),
+                  [&a, &b, is_inverse, is_left](vector& x) {
+                    const quaternion<double> q = rotation_at(a, x), p = rotation_at(b, x),
+                                             factor = is_inverse ? conj(p) : p;
+                    set_rotation(x, a, is_left ? factor * q : q * factor);
+                  });
+            }
           }
         }
       }
       for (const jacobian_part& b : problem_.context) {
-        if (a.type == b.type && a.dimension == b.dimension) {
-          add(message("another state: ", b.name, " for ", a.name),
-              [&a, &b, size](vector& x) { x.segment(a.state, size) = x.segment(b.state, size); });
-        }
+        add_other_state(b);
         if (b.vector_state() >= 0 && a.is_motion()) {
           add_other_axes(add, b, a);
         }
@@ -240,8 +237,7 @@ protected:
   void try_parts_of_sums() {
     for (const jacobian_part& a : inputs_) {
       if (a.is_motion()) {
-        try_parts_by(a.name, [&](const vector& state, double factor) {
-          vector x = state;
+        try_parts_by(a.name, [&](vector x, double factor) {
           set_rotation(x, a, factor == 0 ? quaternion<double>(1) : conj(rotation_at(a, x)));
           return x;
         });
@@ -251,17 +247,15 @@ protected:
       }
       const Eigen::Index first = a.vector_first(), count = a.vector_size();
       const std::string name = a.vector_name();
-      try_parts_by(name, [&](const vector& state, double factor) {
-        vector x = state;
-        x.segment(first, count) *= factor;
-        return x;
-      });
-      for (Eigen::Index k = 0; k < count && count > 1; ++k) {
-        try_parts_by(message(name, "[", k, "]"), [&](const vector& state, double factor) {
-          vector x = state;
-          x[first + k] *= factor;
+      const auto try_components = [&](const std::string& of, Eigen::Index from, Eigen::Index size) {
+        try_parts_by(of, [&](vector x, double factor) {
+          x.segment(from, size) *= factor;
           return x;
         });
+      };
+      try_components(name, first, count);
+      for (Eigen::Index k = 0; k < count && count > 1; ++k) {
+        try_components(message(name, "[", k, "]"), first + k, 1);
       }
     }
   }

@@ -46,17 +46,16 @@ protected:
                    [&](const jacobian_sample& s) { return s.is_wrong == is_wrong; });
     }
     double worst = 0;
-    const auto error_of = [](const jacobian_sample& s) {
-      return largest_entry(s.written - s.exact) / largest_entry(s.exact);
+    const auto relative_error = [](const jacobian_sample& s) {
+      return largest_entry(error_of(s)) / largest_entry(s.exact);
     };
     if (samples_[0].outer.size() == 0) {
       for (const jacobian_sample& s : samples_) {
-        worst = s.is_wrong ? std::max(worst, error_of(s)) : worst;
+        worst = s.is_wrong ? std::max(worst, relative_error(s)) : worst;
       }
       for (jacobian_sample& s : samples_) { // round-off leaves at least half of the digits
-        s.little_error = s.is_wrong && error_of(s) < 1e-6 * std::min(worst, 1.)
-                             ? largest_entry(s.written - s.exact)
-                             : 0;
+        const bool is_little = s.is_wrong && relative_error(s) < 1e-6 * std::min(worst, 1.);
+        s.little_error = is_little ? largest_entry(error_of(s)) : 0;
       }
     }
     find_wrong_entries();
@@ -78,14 +77,29 @@ protected:
     return m.block(s.row, s.column, s.rows, s.columns);
   }
 
+  /// Error of all that is written, and of the rows in the columns of a rectangle; what a term of a
+  /// rectangle makes of it.
+  [[nodiscard]] static matrix error_of(const jacobian_sample& s) {
+    return s.outer.size() > 0 ? matrix(s.written - product_of(s.outer, s.exact))
+                              : matrix(s.written - s.exact);
+  }
+  [[nodiscard]] static matrix error_in(const jacobian_sample& s, const scope& at) {
+    return s.outer.size() > 0 ? matrix(error_of(s).middleCols(at.column, at.columns))
+                              : of(error_of(s), at);
+  }
+  [[nodiscard]] static matrix effect_of(const jacobian_sample& s, const scope& at,
+                                        const matrix& term) {
+    return s.outer.size() > 0 ? product_of(s.outer.middleCols(at.row, at.rows), term) : term;
+  }
+
   void find_wrong_entries() {
     first_row_ = first_ = std::numeric_limits<Eigen::Index>::max();
     for (const jacobian_sample& s : samples_) {
       const bool has_factor = s.outer.size() > 0; // rows are not those of the written matrix
-      const matrix exact = has_factor ? product_of(s.outer, s.exact) : s.exact;
-      for (Eigen::Index i = 0; s.is_wrong && i < exact.rows(); ++i) {
-        for (Eigen::Index k = 0; k < exact.cols(); ++k) {
-          if (!(std::abs(s.written(i, k) - exact(i, k)) <= s.allowed)) {
+      const matrix error = error_of(s);
+      for (Eigen::Index i = 0; s.is_wrong && i < error.rows(); ++i) {
+        for (Eigen::Index k = 0; k < error.cols(); ++k) {
+          if (!(std::abs(error(i, k)) <= s.allowed)) {
             first_row_ = has_factor ? first_row_ : std::min(first_row_, i);
             last_row_ = has_factor ? last_row_ : std::max(last_row_, i);
             first_ = std::min(first_, k);
@@ -107,82 +121,66 @@ protected:
     }
   }
 
+  /// Rows of a result, or columns of an argument: a single one, half of them or all.
+  struct lines {
+    std::string name;
+    Eigen::Index first, count;
+    std::string position = {}; ///< of a single one of several, as "row 2 of "
+  };
+
+  /// \param what  "row" or "column"
+  [[nodiscard]] static std::vector<lines> lines_of(const jacobian_part& part, const char* what) {
+    std::vector<lines> list;
+    for (Eigen::Index k = 0; k < part.dimension; ++k) {
+      list.push_back(
+          {part.name, part.first + k, 1, part.dimension > 1 ? message(what, " ", k, " of ") : ""});
+    }
+    if (part.dimension == 6) {
+      const bool is_pose = part.type == kind::pose;
+      list.push_back({part.name + (is_pose ? ".translation" : "[0..2]"), part.first, 3});
+      list.push_back({part.name + (is_pose ? ".rotation" : "[3..5]"), part.first + 3, 3});
+    } else if (part.type == kind::vector && part.dimension == 4) {
+      list.push_back({part.name + "[1..3]", part.first + 1, 3});
+    }
+    list.push_back({part.name, part.first, part.dimension});
+    return list;
+  }
+
   /// All rectangles of the structure that contain the wrong entries, the least first.
   void find_scopes() {
-    const auto halves = [](const jacobian_part& part) {
-      std::vector<std::pair<std::string, Eigen::Index>> list;
-      if (part.dimension == 6) {
-        const bool is_pose = part.type == kind::pose;
-        list = {{part.name + (is_pose ? ".translation" : "[0..2]"), part.first},
-                {part.name + (is_pose ? ".rotation" : "[3..5]"), part.first + 3}};
-      } else if (part.type == kind::vector && part.dimension == 4) {
-        list = {{part.name + "[1..3]", part.first + 1}};
-      }
-      return list;
-    };
-    // A matrix of one row or column is named as a whole.
-    const auto line = [](const char* what, Eigen::Index i, Eigen::Index count,
-                         const std::string& of) {
-      return count > 1 ? message(what, " ", i, " of ", of) : of;
-    };
     for (const jacobian_part& r : problem_.results) {
       for (const jacobian_part& a : problem_.arguments) {
-        const std::string block = message("d ", r.name, " / d ", a.name);
-        for (Eigen::Index i = 0; i < r.dimension; ++i) {
-          for (Eigen::Index k = 0; k < a.dimension; ++k) {
-            add_scope(r.dimension * a.dimension > 1 ? message("entry (", i, ", ", k, ") of ", block)
-                                                    : block,
-                      r.first + i, 1, a.first + k, 1, &a, &r);
+        const std::vector<lines> rows = lines_of(r, "row"), columns = lines_of(a, "column");
+        for (const int pass : {0, 1, 2}) { // of single rows, of single columns, of all others
+          for (const lines& row : rows) {
+            for (const lines& column : columns) {
+              if (pass != (row.count == 1 ? 0 : column.count == 1 ? 1 : 2)) {
+                continue;
+              }
+              const bool is_entry = row.count * column.count == 1 && r.dimension * a.dimension > 1;
+              add_scope(message(is_entry ? message("entry (", row.first - r.first, ", ",
+                                                   column.first - a.first, ") of ")
+                                         : row.position + column.position,
+                                "d ", row.name, " / d ", column.name),
+                        row.first, row.count, column.first, column.count, &a, &r);
+            }
           }
-          for (const auto& [half, first] : halves(a)) {
-            add_scope(line("row", i, r.dimension, message("d ", r.name, " / d ", half)),
-                      r.first + i, 1, first, 3, &a, &r);
-          }
-          add_scope(line("row", i, r.dimension, block), r.first + i, 1, a.first, a.dimension, &a,
-                    &r);
         }
-        for (Eigen::Index k = 0; k < a.dimension; ++k) {
-          for (const auto& [half, first] : halves(r)) {
-            add_scope(line("column", k, a.dimension, message("d ", half, " / d ", a.name)), first,
-                      3, a.first + k, 1, &a, &r);
-          }
-          add_scope(line("column", k, a.dimension, block), r.first, r.dimension, a.first + k, 1, &a,
-                    &r);
-        }
-        for (const auto& [row, first_row] : halves(r)) {
-          for (const auto& [column, first] : halves(a)) {
-            add_scope(message("d ", row, " / d ", column), first_row, 3, first, 3, &a, &r);
-          }
-          add_scope(message("d ", row, " / d ", a.name), first_row, 3, a.first, a.dimension, &a,
-                    &r);
-        }
-        for (const auto& [column, first] : halves(a)) {
-          add_scope(message("d ", r.name, " / d ", column), r.first, r.dimension, first, 3, &a, &r);
-        }
-        add_scope(block, r.first, r.dimension, a.first, a.dimension, &a, &r);
       }
     }
     const Eigen::Index rows = tangent_size(problem_.results),
                        columns = tangent_size(problem_.arguments);
     for (const jacobian_part& r : problem_.results) {
-      for (Eigen::Index i = 0; i < r.dimension; ++i) {
-        add_scope(line("row", i, r.dimension, message("d ", r.name)), r.first + i, 1, 0, columns,
-                  nullptr, &r);
+      for (const lines& row : lines_of(r, "row")) {
+        add_scope((row.count > 1 ? "all of " : row.position) + "d " + row.name, row.first,
+                  row.count, 0, columns, nullptr, &r);
       }
-      for (const auto& [half, first] : halves(r)) {
-        add_scope(message("all of d ", half), first, 3, 0, columns, nullptr, &r);
-      }
-      add_scope(message("all of d ", r.name), r.first, r.dimension, 0, columns, nullptr, &r);
     }
     for (const jacobian_part& a : problem_.arguments) {
-      for (Eigen::Index k = 0; k < a.dimension; ++k) {
-        add_scope(line("column", k, a.dimension, message("d / d ", a.name)), 0, rows, a.first + k,
-                  1, &a, nullptr);
+      for (const lines& column : lines_of(a, "column")) {
+        add_scope((column.count > 1 ? "all of " : column.position) + "d / d " + column.name, 0,
+                  rows, column.first, column.count, &a, nullptr);
       }
-      for (const auto& [half, first] : halves(a)) {
-        add_scope(message("all of d / d ", half), 0, rows, first, 3, &a, nullptr);
-      }
-      add_scope(message("all of d / d ", a.name), 0, rows, a.first, a.dimension, &a, nullptr);
     }
     for (auto a = problem_.arguments.begin(); a != problem_.arguments.end(); ++a) {
       const auto end = std::find_if(a, problem_.arguments.end(), [](const jacobian_part& part) {
@@ -212,6 +210,18 @@ protected:
                      of(s.exact, at), candidate);
   }
 
+  /// True if a rectangle is the written one at all samples.
+  ///
+  /// \param proposed  (sample): the rectangle; empty if the hypothesis does not apply
+  template <class Proposed>
+  [[nodiscard]] bool fits_all(const scope& at, const Proposed& proposed,
+                              double relative = 1e-9) const {
+    return std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
+      const matrix candidate = proposed(s);
+      return candidate.size() > 0 && fits(s, at, candidate, relative);
+    });
+  }
+
   /// The derivative at another state; NaN where the function refuses it.
   [[nodiscard]] matrix derivative_at(const vector& state) const {
     matrix result = matrix::Constant(samples_[0].exact.rows(), samples_[0].exact.cols(), NAN);
@@ -230,12 +240,8 @@ protected:
     for (std::size_t n = 0; n < count; ++n) {
       list.push_back(&samples_[wrong - 1 - n * wrong / count]);
     }
-    const auto error = [](const jacobian_sample* x) {
-      return largest_entry(x->outer.size() > 0 ? matrix(x->written - product_of(x->outer, x->exact))
-                                               : matrix(x->written - x->exact));
-    };
-    std::sort(list.begin(), list.end(), [&](const jacobian_sample* x, const jacobian_sample* y) {
-      return error(x) > error(y);
+    std::sort(list.begin(), list.end(), [](const jacobian_sample* x, const jacobian_sample* y) {
+      return largest_entry(error_of(*x)) > largest_entry(error_of(*y));
     });
     return list;
   }
@@ -265,10 +271,7 @@ protected:
   /// Accepts a hypothesis for the least rectangle in which it is right at all samples.
   bool attempt(const std::string& name, const hypothesis& propose) {
     for (const scope& at : scopes_) {
-      if (std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-            const matrix candidate = propose(s, at);
-            return candidate.size() > 0 && fits(s, at, candidate);
-          })) {
+      if (fits_all(at, [&](const jacobian_sample& s) { return propose(s, at); })) {
         accept(name, at.name);
         return true;
       }
@@ -831,18 +834,6 @@ protected:
   /// its own for every sample: beyond it, round-off leaves less than half of the digits.
   static constexpr double most_condition = 1e8; // 1/sqrt(epsilon), rounded
 
-  /// Rows of the error in the columns of a rectangle, and what a term of a rectangle makes of it.
-  [[nodiscard]] static matrix error_in(const jacobian_sample& s, const scope& at) {
-    return s.outer.size() > 0
-               ? matrix(
-                     (s.written - product_of(s.outer, s.exact)).middleCols(at.column, at.columns))
-               : matrix(of(s.written, at) - of(s.exact, at));
-  }
-  [[nodiscard]] static matrix effect_of(const jacobian_sample& s, const scope& at,
-                                        const matrix& term) {
-    return s.outer.size() > 0 ? product_of(s.outer.middleCols(at.row, at.rows), term) : term;
-  }
-
   /// The coefficient of a term in an error.
   [[nodiscard]] static double coefficient(const matrix& error, const matrix& value) {
     const double square = value.squaredNorm();
@@ -871,10 +862,10 @@ protected:
       right += product_of(columns.transpose(), error.reshaped());
     }
     const Eigen::Vector3d c = least_norm_solution(normal, right);
-    if (!c.allFinite() || c.norm() == 0 ||
-        !std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-          return fits(s, at, of(s.exact, at) + term(s, c), 1e-8);
-        })) {
+    const auto changed = [&](const jacobian_sample& s) -> matrix {
+      return of(s.exact, at) + term(s, c);
+    };
+    if (!c.allFinite() || c.norm() == 0 || !fits_all(at, changed, 1e-8)) {
       return false;
     }
     accept(message(name, " (", to_text(float(c[0])), ", ", to_text(float(c[1])), ", ",

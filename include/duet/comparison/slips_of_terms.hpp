@@ -161,8 +161,7 @@ protected:
                    }));
       }
       if ((!is_whole || count < 2) &&
-          std::all_of(samples_.begin(), samples_.end(),
-                      [&](const auto& s) { return fits(s, at, of(s.exact, at) + first); })) {
+          fits_all(at, [&](const auto& s) -> matrix { return of(s.exact, at) + first; })) {
         accept("one summand: off by a constant", at.name);
         return;
       }
@@ -293,12 +292,12 @@ protected:
                              1e-6 * largest_entry(errors.back());
       }
       // Weighted terms by a factor of NAN.
-      const auto explains = [&](const jacobian_sample& s, std::size_t t, std::size_t f,
-                                double factor) {
+      const auto changed = [&](const jacobian_sample& s, std::size_t t, std::size_t f,
+                               double factor) -> matrix {
         matrix value = terms_of(s, at)[t].value * numbers_of(s, !is_square).values[f];
         value *=
             std::isnan(factor) ? coefficient(error_in(s, at), effect_of(s, at, value)) : factor;
-        return fits(s, at, of(s.exact, at) + value, 1e-8);
+        return of(s.exact, at) + value;
       };
       terms[0] = terms_of(*used[0], at);
       const auto allowed_of = [&](std::size_t n) {
@@ -319,10 +318,10 @@ protected:
             return false;
           }
         }
-        return !is_lost && factor != 0 &&
-               std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-                 return explains(s, t, f, is_weighted ? NAN : factor);
-               });
+        const auto proposed = [&](const jacobian_sample& s) {
+          return changed(s, t, f, is_weighted ? NAN : factor);
+        };
+        return !is_lost && factor != 0 && fits_all(at, proposed, 1e-8);
       };
       for (const bool is_weighted : {false, true}) {
         for (std::size_t t = 0; t < terms[0].size(); ++t) {
@@ -421,8 +420,8 @@ protected:
           const bool is_specific =
               !terms[t].name.ends_with("^T") && terms[t].name != "the identity matrix";
           if (is_specific && fits(*used[0], at, factor * terms[t].value) &&
-              std::all_of(samples_.begin(), samples_.end(), [&](const jacobian_sample& s) {
-                return fits(s, at, factor * terms_of(s, at)[t].value);
+              fits_all(at, [&](const jacobian_sample& s) -> matrix {
+                return factor * terms_of(s, at)[t].value;
               })) {
             accept(message("another term instead: ", to_text(float(factor)), " ", terms[t].name),
                    at.name);
@@ -532,14 +531,11 @@ protected:
   void try_entry() {
     const Eigen::Index i = first_row_, k = first_;
     const scope& at = scopes_.front();
-    const auto all = [&](const auto& predicate) {
-      return std::all_of(samples_.begin(), samples_.end(), predicate);
-    };
     for (Eigen::Index r = 0; r < samples_[0].exact.rows(); ++r) {
       for (Eigen::Index c = 0; c < samples_[0].exact.cols(); ++c) {
         for (const double sign : {1., -1.}) {
-          if ((r != i || c != k) && all([&](const jacobian_sample& s) {
-                return fits(s, at, matrix::Constant(1, 1, sign * s.exact(r, c)));
+          if ((r != i || c != k) && fits_all(at, [&](const jacobian_sample& s) -> matrix {
+                return matrix::Constant(1, 1, sign * s.exact(r, c));
               })) {
             accept(message("wrong index: ", sign < 0 ? "minus " : "", "entry (", r, ", ", c,
                            ") of the matrix"),
