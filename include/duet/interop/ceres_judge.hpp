@@ -112,37 +112,16 @@ private:
   const Blocks& blocks_;
 };
 
-/// Largest error of PlusJacobian as the derivative of Plus, of the largest entry.
-[[nodiscard]] inline double plus_jacobian_error(const ceres::Manifold& manifold,
-                                                const std::vector<double>& x) {
-  const int size = manifold.AmbientSize(), dimension = manifold.TangentSize();
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> jacobian(size, dimension);
-  if (!manifold.PlusJacobian(x.data(), jacobian.data())) {
-    return 1;
-  }
-  double error = 0;
-  for (int k = 0; k < dimension; ++k) {
-    const auto moved = [&](double h) {
-      Eigen::VectorXd delta = Eigen::VectorXd::Zero(dimension), y(size);
-      delta[k] = h;
-      manifold.Plus(x.data(), delta.data(), y.data());
-      return y;
-    };
-    error = std::max(error, (central_difference_derivative(moved, 0.).derivative - jacobian.col(k))
-                                .cwiseAbs()
-                                .maxCoeff());
-  }
-  return error / jacobian.cwiseAbs().maxCoeff();
-}
-
-/// Largest error of the Jacobian by block k times PlusJacobian, of the largest entry.
+/// Largest errors, of the largest entry, of PlusJacobian as the derivative of Plus, and of the
+/// Jacobian by block k times PlusJacobian.
 template <class Function>
-[[nodiscard]] double product_error(const Function& function, const ceres::Manifold& manifold,
-                                   std::vector<std::vector<double>> numbers, std::size_t k) {
+[[nodiscard]] std::pair<double, double>
+errors_of_plus(const Function& function, const ceres::Manifold& manifold,
+               std::vector<std::vector<double>> numbers, std::size_t k) {
   const int size = manifold.AmbientSize(), dimension = manifold.TangentSize();
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> plus(size, dimension);
   if (!manifold.PlusJacobian(numbers[k].data(), plus.data())) {
-    return 1;
+    return {1, 1};
   }
   Eigen::Index first = 0;
   for (std::size_t i = 0; i < k; ++i) {
@@ -151,19 +130,23 @@ template <class Function>
   const Eigen::MatrixXd product =
       product_of(function.evaluated(numbers).second.middleCols(first, size), plus);
   const std::vector<double> x = numbers[k];
-  double error = 0, scale = 1e-300;
-  for (int j = 0; j < dimension; ++j) {
-    const auto moved = [&](double h) {
-      Eigen::VectorXd delta = Eigen::VectorXd::Zero(dimension);
-      delta[j] = h;
-      manifold.Plus(x.data(), delta.data(), numbers[k].data());
-      return function.evaluated(numbers).first;
-    };
-    const Eigen::VectorXd exact = central_difference_derivative(moved, 0.).derivative;
-    error = std::max(error, (exact - product.col(j)).cwiseAbs().maxCoeff());
-    scale = std::max(scale, exact.cwiseAbs().maxCoeff());
-  }
-  return error / scale;
+  const auto error_of = [&](const Eigen::MatrixXd& jacobian, const auto& f) {
+    double error = 0, scale = 1e-300;
+    for (int j = 0; j < dimension; ++j) {
+      const auto moved = [&](double h) -> Eigen::VectorXd {
+        Eigen::VectorXd delta = Eigen::VectorXd::Zero(dimension);
+        delta[j] = h;
+        manifold.Plus(x.data(), delta.data(), numbers[k].data());
+        return f();
+      };
+      const Eigen::VectorXd exact = central_difference_derivative(moved, 0.).derivative;
+      error = std::max(error, (exact - jacobian.col(j)).cwiseAbs().maxCoeff());
+      scale = std::max(scale, exact.cwiseAbs().maxCoeff());
+    }
+    return error / scale;
+  };
+  return {error_of(plus, [&] { return Eigen::VectorXd::Map(numbers[k].data(), size); }),
+          error_of(product, [&] { return function.evaluated(numbers).first; })};
 }
 
 DUET_ABI_END
@@ -222,9 +205,10 @@ judge_jacobian(const std::string& label, const ceres::CostFunction& f,
            n += std::max<std::size_t>(points.size() / 32, 1)) {
         const auto numbers = std::apply([&](const X&... x) { return function.stored(x...); },
                                         inputs.template make<double>(points[n]));
-        plus_error = std::max(plus_error, detail::plus_jacobian_error(*manifolds[k], numbers[k]));
-        product_error =
-            std::max(product_error, detail::product_error(function, *manifolds[k], numbers, k));
+        const auto [of_plus, of_product] =
+            detail::errors_of_plus(function, *manifolds[k], numbers, k);
+        plus_error = std::max(plus_error, of_plus);
+        product_error = std::max(product_error, of_product);
       }
       constexpr double digits = 1e-7; // of differences
       if (plus_error > digits) {
