@@ -113,6 +113,45 @@ inline constexpr bool is_tuple = false;
 template <class... X>
 inline constexpr bool is_tuple<std::tuple<X...>> = true;
 
+/// f of each element of an array, a `std::vector` or a tuple, and of the elements of `more` at the
+/// same index, in order.
+template <class F, class X, class... More>
+void for_each_element(const F& f, X& x, More&... more) {
+  if constexpr (is_tuple<std::remove_const_t<X>>) {
+    const auto visit = [&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+      f(std::get<K>(x), std::get<K>(more)...);
+    };
+    [&]<std::size_t... I>(std::index_sequence<I...>) {
+      (visit(std::integral_constant<std::size_t, I>{}), ...);
+    }
+    (std::make_index_sequence<std::tuple_size_v<X>>{});
+  } else {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      f(x[i], more[i]...);
+    }
+  }
+}
+
+/// The array, `std::vector` or tuple of f of each element, in order.
+template <class F, class T>
+[[nodiscard]] auto map_elements(const F& f, const std::vector<T>& x) {
+  std::vector<decltype(f(x[0]))> y;
+  y.reserve(x.size());
+  for (const T& each : x) {
+    y.push_back(f(each));
+  }
+  return y;
+}
+template <class F, class T, std::size_t N>
+[[nodiscard]] auto map_elements(const F& f, const std::array<T, N>& x) {
+  return std::apply([&](const auto&... each) { return std::array{f(each)...}; }, x);
+}
+template <class F, class... X>
+[[nodiscard]] auto map_elements(const F& f, const std::tuple<X...>& x) {
+  return std::apply([&](const X&... each) { return std::tuple<decltype(f(each))...>{f(each)...}; },
+                    x);
+}
+
 template <class X>
 struct vector_argument;
 

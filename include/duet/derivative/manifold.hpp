@@ -100,37 +100,37 @@ struct manifold<X> {
   template <class Frame>
   [[nodiscard]] static Eigen::Matrix<scalar, dimension, 1> velocity(const X&, const X& rate,
                                                                     Frame) {
-    Eigen::Matrix<scalar, dimension, 1> result(rate.size());
-    for (Eigen::Index i = 0; i < rate.size(); ++i) {
-      result[i] = rate(i);
-    }
-    return result;
+    return rate.reshaped();
   }
 };
 
 namespace detail {
 
-/// Functions that arrays and `std::vector`s share.
-template <class X, int Dimension>
-struct manifold_of_sequence {
+/// Tangent space of an array, a `std::vector` or a tuple: that of its elements.
+template <class X, int Dimension, class T>
+struct manifold_of_elements {
   static constexpr int dimension = Dimension;
-  using element = typename X::value_type;
-  using scalar = typename manifold<element>::scalar;
+  using scalar = T;
   [[nodiscard]] static Eigen::Index size(const X& x) {
     Eigen::Index sum = 0;
-    for (const element& each : x) {
-      sum += tangent_dimension(each);
-    }
+    for_each_element([&](const auto& each) { sum += tangent_dimension(each); }, x);
     return sum;
+  }
+  template <class Delta, class Frame = spatial_frame>
+  [[nodiscard]] static auto plus(const X& x, const Delta& delta, Frame frame = {}) {
+    Eigen::Index first = 0;
+    return map_elements([&](const auto& each) { return moved_part(each, delta, frame, first); }, x);
   }
   template <class Frame>
   [[nodiscard]] static auto velocity(const X& x, const X& rate, Frame frame) {
     Eigen::Matrix<scalar, dimension, 1> result;
     result.resize(tangent_dimension(x));
     Eigen::Index first = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      write_velocity<element>(x[i], rate[i], frame, result, first);
-    }
+    for_each_element(
+        [&](const auto& each, const auto& its_rate) {
+          write_velocity(each, its_rate, frame, result, first);
+        },
+        x, rate);
     return result;
   }
 };
@@ -139,69 +139,25 @@ struct manifold_of_sequence {
 
 template <class X>
   requires requires { manifold<X>::dimension; }
-struct manifold<std::vector<X>>
-    : detail::manifold_of_sequence<std::vector<X>, int(Eigen::Dynamic)> {
-  template <class Delta, class Frame = spatial_frame>
-  [[nodiscard]] static auto plus(const std::vector<X>& x, const Delta& delta, Frame frame = {}) {
-    Eigen::Index first = 0;
-    std::vector<decltype(detail::moved_part(x[0], delta, frame, first))> y;
-    y.reserve(x.size());
-    for (const X& each : x) {
-      y.push_back(detail::moved_part(each, delta, frame, first));
-    }
-    return y;
-  }
-};
+struct manifold<std::vector<X>> : detail::manifold_of_elements<std::vector<X>, int(Eigen::Dynamic),
+                                                               typename manifold<X>::scalar> {};
 
 template <class X, std::size_t N>
   requires requires { manifold<X>::dimension; }
 struct manifold<std::array<X, N>>
-    : detail::manifold_of_sequence<std::array<X, N>, manifold<X>::dimension == Eigen::Dynamic
-                                                         ? int(Eigen::Dynamic)
-                                                         : int(N) * manifold<X>::dimension> {
-  template <class Delta, class Frame = spatial_frame>
-  [[nodiscard]] static auto plus(const std::array<X, N>& x, const Delta& delta, Frame frame = {}) {
-    Eigen::Index first = 0;
-    return std::apply(
-        [&](const auto&... each) {
-          return std::array{detail::moved_part(each, delta, frame, first)...};
-        },
-        x);
-  }
-};
+    : detail::manifold_of_elements<std::array<X, N>,
+                                   manifold<X>::dimension == Eigen::Dynamic
+                                       ? int(Eigen::Dynamic)
+                                       : int(N) * manifold<X>::dimension,
+                                   typename manifold<X>::scalar> {};
 
 template <class... X>
   requires(requires { manifold<X>::dimension; } && ...)
-struct manifold<std::tuple<X...>> {
-  static constexpr int dimension = ((manifold<X>::dimension == Eigen::Dynamic) || ...)
-                                       ? Eigen::Dynamic
-                                       : (manifold<X>::dimension + ...);
-  using scalar = std::common_type_t<typename manifold<X>::scalar...>;
-  [[nodiscard]] static Eigen::Index size(const std::tuple<X...>& x) {
-    return std::apply([](const X&... each) { return (detail::tangent_dimension(each) + ...); }, x);
-  }
-  template <class Delta, class Frame = spatial_frame>
-  [[nodiscard]] static auto plus(const std::tuple<X...>& x, const Delta& delta, Frame frame = {}) {
-    Eigen::Index first = 0;
-    return std::apply(
-        [&](const X&... each) { // braces, so that elements are taken in order
-          return std::tuple<decltype(detail::moved_part(each, delta, frame, first))...>{
-              detail::moved_part(each, delta, frame, first)...};
-        },
-        x);
-  }
-  template <class Frame>
-  [[nodiscard]] static auto velocity(const std::tuple<X...>& x, const std::tuple<X...>& rate,
-                                     Frame frame) {
-    Eigen::Matrix<scalar, dimension, 1> result;
-    result.resize(detail::tangent_dimension(x));
-    Eigen::Index first = 0;
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      (detail::write_velocity<X>(std::get<I>(x), std::get<I>(rate), frame, result, first), ...);
-    }
-    (std::index_sequence_for<X...>{});
-    return result;
-  }
-};
+struct manifold<std::tuple<X...>>
+    : detail::manifold_of_elements<std::tuple<X...>,
+                                   ((manifold<X>::dimension == Eigen::Dynamic) || ...)
+                                       ? int(Eigen::Dynamic)
+                                       : (manifold<X>::dimension + ...),
+                                   std::common_type_t<typename manifold<X>::scalar...>> {};
 
 } // namespace duet

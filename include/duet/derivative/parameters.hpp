@@ -92,96 +92,57 @@ struct parameters<X> {
   }
 };
 
-/// Functions that arrays and `std::vector`s share.
+/// Arrays, `std::vector`s and tuples.
 template <class X>
-struct parameters_of_sequence {
-  using element = parameters<typename X::value_type>;
+struct parameters_of_elements {
+  static auto at(const X& x, Eigen::Index first, const auto& coordinate) {
+    return map_elements(
+        [&]<class Each>(const Each& each) {
+          return parameters<Each>::at(each, std::exchange(first, first + tangent_dimension(each)),
+                                      coordinate);
+        },
+        x);
+  }
   static void values(const X& x, Eigen::VectorXd& v, Eigen::Index first) {
-    for (const auto& each : x) {
-      element::values(each, v, first);
-      first += tangent_dimension(each);
-    }
+    for_each_element(
+        [&]<class Each>(const Each& each) {
+          parameters<Each>::values(each, v, std::exchange(first, first + tangent_dimension(each)));
+        },
+        x);
   }
   static std::string name(const X& x, Eigen::Index k) {
-    std::size_t i = 0;
-    for (; k >= tangent_dimension(x[i]); ++i) {
-      k -= tangent_dimension(x[i]);
-    }
-    return message("[", i, "]", element::name(x[i], k));
+    std::string result;
+    int i = 0;
+    for_each_element(
+        [&]<class Each>(const Each& each) {
+          const Eigen::Index count = tangent_dimension(each);
+          if (0 <= k && k < count) {
+            result = message(is_tuple<X> ? "argument " : "[", i, is_tuple<X> ? "" : "]",
+                             parameters<Each>::name(each, k));
+          }
+          k -= count;
+          ++i;
+        },
+        x);
+    return result;
   }
 };
 
 template <ParameterSet X>
-struct parameters<std::vector<X>> : parameters_of_sequence<std::vector<X>> {
-  static auto at(const std::vector<X>& x, Eigen::Index first, const auto& coordinate) {
-    std::vector<decltype(parameters<X>::at(x[0], first, coordinate))> y;
-    y.reserve(x.size());
-    for (const X& each : x) {
-      y.push_back(parameters<X>::at(each, first, coordinate));
-      first += tangent_dimension(each);
-    }
-    return y;
-  }
-};
-
+struct parameters<std::vector<X>> : parameters_of_elements<std::vector<X>> {};
 template <ParameterSet X, std::size_t N>
-struct parameters<std::array<X, N>> : parameters_of_sequence<std::array<X, N>> {
-  static auto at(const std::array<X, N>& x, Eigen::Index first, const auto& coordinate) {
-    const auto next = [&](const X& each) {
-      return parameters<X>::at(each, std::exchange(first, first + tangent_dimension(each)),
-                               coordinate);
-    };
-    return std::apply([&](const auto&... each) { return std::array{next(each)...}; }, x);
-  }
-};
-
+struct parameters<std::array<X, N>> : parameters_of_elements<std::array<X, N>> {};
 template <ParameterSet... X>
   requires(sizeof...(X) > 0)
-struct parameters<std::tuple<X...>> {
-  static auto at(const std::tuple<X...>& x, Eigen::Index first, const auto& coordinate) {
-    return std::apply(
-        [&](const X&... each) { // braces, so that elements are taken in order
-          return std::tuple<decltype(parameters<X>::at(each, first, coordinate))...>{
-              parameters<X>::at(each, std::exchange(first, first + tangent_dimension(each)),
-                                coordinate)...};
-        },
-        x);
-  }
-  static void values(const std::tuple<X...>& x, Eigen::VectorXd& v, Eigen::Index first) {
-    std::apply(
-        [&](const X&... each) {
-          (parameters<X>::values(each, v, std::exchange(first, first + tangent_dimension(each))),
-           ...);
-        },
-        x);
-  }
-  static std::string name(const std::tuple<X...>& x, Eigen::Index k) {
-    std::string result;
-    int argument = 0;
-    const auto visit = [&]<class Each>(const Each& each) {
-      const Eigen::Index count = tangent_dimension(each);
-      if (0 <= k && k < count) {
-        result = message("argument ", argument, parameters<Each>::name(each, k));
-      }
-      k -= count;
-      ++argument;
-    };
-    std::apply([&](const X&... each) { (visit(each), ...); }, x);
-    return result;
-  }
-};
+struct parameters<std::tuple<X...>> : parameters_of_elements<std::tuple<X...>> {};
 
 /// Replaces rotations and poses by units, from which steps deviate by round-off.
 template <class X>
 void normalise(X& x) {
   if constexpr (requires { manifold<X>::takes_rates_of_any_scalar; } && !VectorLike<X>) {
     x = normalized(x);
-  } else if constexpr (is_tuple<X>) {
-    std::apply([](auto&... each) { (normalise(each), ...); }, x);
-  } else if constexpr (!EigenMatrix<X> && requires { x.begin(); }) {
-    for (auto& each : x) {
-      normalise(each);
-    }
+  } else if constexpr (is_tuple<X> || (!EigenMatrix<X> && requires { x.begin(); })) {
+    for_each_element([](auto& each) { normalise(each); }, x);
   }
 }
 
