@@ -181,23 +181,27 @@ template <class Parts>
   return names;
 }
 
-/// Throws the error of a link or a joint, with its line if it is from a file.
-template <class Part>
-[[noreturn]] void bad_part(const robot_description& robot, const Part& part,
-                           const std::string& what) {
-  const std::string tag = requires { part.motion; }
-  ? "joint" : "link";
-  const std::string text = "<" + tag + " name=\"" + part.name + "\">: " + what;
-  if (robot.file.empty()) {
-    raise(invalid_input(printable("duet: kinematic_tree: " + text)));
-  }
-  raise(file_error(robot.file, part.line, text));
-}
-[[noreturn]] inline void bad_robot(const robot_description& robot, const std::string& what) {
+/// Throws the error of a robot, with its file and its line in it if it is from a file.
+template <class... Line>
+[[noreturn]] void bad_robot(const robot_description& robot, const std::string& what, Line... line) {
   if (robot.file.empty()) {
     raise(invalid_input(printable("duet: kinematic_tree: " + what)));
   }
-  raise(file_error(robot.file, what));
+  raise(file_error(robot.file, line..., what));
+}
+/// Throws the error of a link or a joint, whose text is in pieces.
+template <class Part, class... What>
+[[noreturn]] void bad_part(const robot_description& robot, const Part& part, const What&... what) {
+  const char* const tag = requires { part.motion; }
+  ? "joint" : "link";
+  bad_robot(robot, message("<", tag, " name=\"", part.name, "\">: ", what...), part.line);
+}
+template <class Part, class... What>
+void require_part(bool condition, const robot_description& robot, const Part& part,
+                  const What&... what) {
+  if (!condition) {
+    bad_part(robot, part, what...);
+  }
 }
 
 } // namespace detail

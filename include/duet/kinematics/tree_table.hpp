@@ -145,9 +145,8 @@ private:
 
   void find_links() {
     for (const tree_link& link : robot_.links) {
-      if (!table_.link_numbers.emplace(link.name, int(table_.link_numbers.size())).second) {
-        bad_part(robot_, link, "another link has this name");
-      }
+      require_part(table_.link_numbers.emplace(link.name, int(table_.link_numbers.size())).second,
+                   robot_, link, "another link has this name");
     }
     if (robot_.links.empty()) {
       bad_robot(robot_, "the description has no links");
@@ -157,8 +156,8 @@ private:
   [[nodiscard]] std::size_t link_of(const tree_joint& joint, const std::string& name) const {
     const auto found = table_.link_numbers.find(name);
     if (found == table_.link_numbers.end()) {
-      bad_part(robot_, joint,
-               "no link \"" + name + "\": " + closest_names(name, names_of(robot_.links)));
+      bad_part(robot_, joint, "no link \"", name,
+               "\": ", closest_names(name, names_of(robot_.links)));
     }
     return std::size_t(found->second);
   }
@@ -168,16 +167,14 @@ private:
     below_.resize(robot_.links.size());
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
       const tree_joint& joint = robot_.joints[j];
-      if (!joint_numbers_.emplace(joint.name, int(j)).second) {
-        bad_part(robot_, joint, "another joint has this name");
-      }
+      require_part(joint_numbers_.emplace(joint.name, int(j)).second, robot_, joint,
+                   "another joint has this name");
       require_joint(joint.motion, j, "kinematic_tree", joint.name);
       below_[link_of(joint, joint.parent)].push_back(int(j));
       int& above = above_[link_of(joint, joint.child)];
       if (above >= 0) {
-        bad_part(robot_, joint,
-                 "the link \"" + joint.child + "\" already has the parent joint \"" +
-                     joint_at(above).name + "\"");
+        bad_part(robot_, joint, "the link \"", joint.child, "\" already has the parent joint \"",
+                 joint_at(above).name, "\"");
       }
       above = int(j);
     }
@@ -187,12 +184,10 @@ private:
   void find_order() {
     std::vector<std::size_t> links; // links reached so far
     for (std::size_t i = 0; i < above_.size(); ++i) {
-      if (above_[i] < 0 && !links.empty()) {
-        bad_part(robot_, robot_.links[i],
-                 "it is a second root, the first is \"" + robot_.links[links[0]].name + "\"");
-      }
       if (above_[i] < 0) {
         links.push_back(i);
+        require_part(links.size() == 1, robot_, robot_.links[i],
+                     "it is a second root, the first is \"", robot_.links[links[0]].name, "\"");
       }
     }
     for (std::size_t i = 0; i < links.size(); ++i) {
@@ -211,8 +206,8 @@ private:
         is_reached[i] = 1;
         i = std::size_t(table_.link_numbers.at(joint_at(above_[i]).parent));
       }
-      bad_part(robot_, joint_at(above_[i]),
-               "it closes a cycle at the link \"" + robot_.links[i].name + "\"");
+      bad_part(robot_, joint_at(above_[i]), "it closes a cycle at the link \"",
+               robot_.links[i].name, "\"");
     }
   }
 
@@ -249,9 +244,7 @@ private:
       auto j = int(start);
       while (joint_at(j).mimic && joint_at(j).motion.kind != joint_kind::fixed &&
              source_of(j).own < 0) {
-        if (is_open[std::size_t(j)] != 0) {
-          bad_part(robot_, joint_at(j), "it mimics itself");
-        }
+        require_part(is_open[std::size_t(j)] == 0, robot_, joint_at(j), "it mimics itself");
         is_open[std::size_t(j)] = 1;
         open.push_back(j);
         j = leader_of(j);
@@ -269,20 +262,16 @@ private:
     const tree_joint& joint = joint_at(j);
     const auto found = joint_numbers_.find(joint.mimic->joint);
     if (found == joint_numbers_.end()) {
-      bad_part(robot_, joint,
-               "it mimics no joint \"" + joint.mimic->joint +
-                   "\": " + closest_names(joint.mimic->joint, names_of(robot_.joints)));
+      bad_part(robot_, joint, "it mimics no joint \"", joint.mimic->joint,
+               "\": ", closest_names(joint.mimic->joint, names_of(robot_.joints)));
     }
     for (const tree_joint* each : {&joint, &joint_at(found->second)}) {
-      if (each->motion.coordinates() != 1) {
-        bad_part(robot_, joint,
-                 "it mimics \"" + joint.mimic->joint + "\", but \"" + each->name + "\" has " +
-                     std::to_string(each->motion.coordinates()) + " coordinates (expected 1)");
-      }
+      require_part(each->motion.coordinates() == 1, robot_, joint, "it mimics \"",
+                   joint.mimic->joint, "\", but \"", each->name, "\" has ",
+                   each->motion.coordinates(), " coordinates (expected 1)");
     }
-    if (!std::isfinite(joint.mimic->multiplier) || !std::isfinite(joint.mimic->offset)) {
-      bad_part(robot_, joint, "the multiplier or the offset of its mimic is not finite");
-    }
+    require_part(std::isfinite(joint.mimic->multiplier) && std::isfinite(joint.mimic->offset),
+                 robot_, joint, "the multiplier or the offset of its mimic is not finite");
     return found->second;
   }
   void follow(int j, const coordinate_source& leader) {
@@ -303,9 +292,8 @@ private:
       is_possible = limits.lower <= limits.upper;
     }
     if (!is_possible) {
-      bad_part(robot_, joint,
-               "no coordinate of \"" + by.joint + "\" satisfies its limits " +
-                   to_text(range.lower) + " to " + to_text(range.upper));
+      bad_part(robot_, joint, "no coordinate of \"", by.joint, "\" satisfies its limits ",
+               to_text(range.lower), " to ", to_text(range.upper));
     }
   }
 
@@ -330,8 +318,8 @@ private:
     for (std::size_t i = 0; i < robot_.links.size(); ++i) {
       if (const auto& inertia = robot_.links[i].inertia) {
         if (!(inertia->mass >= 0 && std::isfinite(inertia->mass))) {
-          bad_part(robot_, robot_.links[i],
-                   "the mass is " + to_text(inertia->mass) + " (expected >= 0)");
+          bad_part(robot_, robot_.links[i], "the mass is ", to_text(inertia->mass),
+                   " (expected >= 0)");
         }
         const frame_on_node& frame = table_.links[i];
         mass_on_node& sum = table_.masses[std::size_t(frame.node + 1)];
