@@ -415,7 +415,13 @@ public:
   /// The arguments over T, as a tuple.
   template <class T>
   [[nodiscard]] auto make(std::span<const double> point) const {
-    return make_each<T>(point, std::index_sequence_for<Domains...>{});
+    std::size_t first = 0;
+    return std::apply(
+        [&](const auto&... domain) { // braces, so that arguments are made in order
+          return std::tuple<decltype(domain.template make<T>(point))...>{domain.template make<T>(
+              point.subspan(std::exchange(first, first + domain.size()), domain.size()))...};
+        },
+        domains_);
   }
 
 private:
@@ -518,14 +524,6 @@ private:
         add([&](std::size_t index, std::size_t count) { return index == chosen ? k : count; });
       }
     }
-  }
-
-  template <class T, std::size_t... I>
-  [[nodiscard]] auto make_each(std::span<const double> point, std::index_sequence<I...>) const {
-    std::array<std::size_t, sizeof...(Domains) + 1> first{};
-    ((first[I + 1] = first[I] + std::get<I>(domains_).size()), ...);
-    return std::make_tuple(std::get<I>(domains_).template make<T>(
-        point.subspan(first[I], std::get<I>(domains_).size()))...);
   }
 
   std::tuple<Domains...> domains_;
