@@ -430,9 +430,7 @@ private:
       s.allowed += 1e-12 * largest_entry(s.exact);
       s.is_wrong = largest_entry(s.written - s.exact) > s.allowed;
     }
-    for (const jacobian_slip& slip : jacobian_slip_search(part, samples).found()) {
-      accept(slip.name, slip.block + ", by stored numbers");
-    }
+    append(jacobian_slip_search(part, samples).found(), ", by stored numbers");
   }
 
   /// \param j  with columns for arguments and constants

@@ -364,7 +364,7 @@ public:
     }
     if (error > s.allowed && error < 1e-4 * scale) {
       s.allowed += rounding_effect(s);
-    } else if (const double most = 1e-10 * scale; has_error_between(s, s.allowed, most)) {
+    } else if (const double most = 1e-10 * scale; error_of(s, most) > s.allowed) {
       s.allowed = std::min(s.allowed + rounding_effect(s), most); // of other entries than the slip
     }
     return error <= s.allowed ? verdict::agrees : verdict::disagrees;
@@ -447,29 +447,18 @@ public:
     return {row, column};
   }
 
-  /// The largest error of a finite entry.
-  [[nodiscard]] static double error_of(const jacobian_sample& s) {
+  /// The largest error of a finite entry, of those up to a bound.
+  [[nodiscard]] static double error_of(const jacobian_sample& s, double most = INFINITY) {
     double largest = 0;
     for (Eigen::Index i = 0; i < s.exact.size(); ++i) {
       const double error = double(std::abs(s.written(i) - s.truth.jacobian(i)));
-      largest = error > largest ? error : largest;
+      largest = error > largest && error <= most ? error : largest;
     }
     return largest;
   }
 
 private:
   static constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
-
-  /// True if the error of an entry is in a range.
-  [[nodiscard]] static bool has_error_between(const jacobian_sample& s, double least, double most) {
-    for (Eigen::Index i = 0; i < s.exact.size(); ++i) {
-      const double error = double(std::abs(s.written(i) - s.truth.jacobian(i)));
-      if (error > least && error <= most) {
-        return true;
-      }
-    }
-    return false;
-  }
 
   /// Change of the Jacobian per relative change of the state; of both sides the smaller.
   [[nodiscard]] double sensitivity(const jacobian_sample& s) const {

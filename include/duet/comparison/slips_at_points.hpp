@@ -331,10 +331,8 @@ protected:
 
   /// Properties of an input, by which right and wrong samples may be distinguished.
   struct feature {
-    std::string name;
+    std::string name; ///< as "angle of q", "length of p", "sign of t" or "commuting"
     double value;
-    bool is_angle;
-    bool has_sign; ///< else a length
   };
 
   [[nodiscard]] std::vector<feature> features_of(const jacobian_sample& s) const {
@@ -345,33 +343,29 @@ protected:
         if (p.is_motion()) {
           const quaternion<double> q = rotation_at(p, state);
           const Eigen::Vector3d v(q.x(), q.y(), q.z());
-          list.push_back({message("angle of ", p.name), 2 * std::atan2(v.norm(), std::abs(q.w())),
-                          true, false});
+          list.push_back({"angle of " + p.name, 2 * std::atan2(v.norm(), std::abs(q.w()))});
           axes.push_back(v);
         }
         if (p.vector_state() >= 0) {
           const Eigen::Vector3d v = state.segment<3>(p.vector_state());
-          list.push_back({message("length of ", p.name), v.norm(), true, false});
+          list.push_back({"length of " + p.name, v.norm()});
           axes.push_back(v);
         } else if (p.type == kind::vector && p.dimension == 6) {
-          list.push_back({message("length of ", p.name, "[3..5]"),
-                          state.segment<3>(p.state + 3).norm(), true, false});
+          list.push_back({"length of " + p.name + "[3..5]", state.segment<3>(p.state + 3).norm()});
         } else if (p.type == kind::number) {
-          list.push_back({message("size of ", p.name), std::abs(state[p.state]), true, false});
-          list.push_back({message("sign of ", p.name), state[p.state], false, true});
+          list.push_back({"size of " + p.name, std::abs(state[p.state])});
+          list.push_back({"sign of " + p.name, state[p.state]});
         }
       }
     };
     add(inputs_, s.state);
     add(problem_.results, s.truth.value);
-    const std::vector<motion> all = motions();
-    for (const motion& m : all) {
+    for (const motion& m : motions()) {
       if (m.other != nullptr) {
         const quaternion<double> q =
             conj(rotation_at(*m.other, s.state)) * rotation_at(*m.part, s.state);
-        list.push_back({message("angle of ", m.name),
-                        2 * std::atan2(std::hypot(q.x(), q.y(), q.z()), std::abs(q.w())), true,
-                        false});
+        list.push_back({"angle of " + m.name,
+                        2 * std::atan2(std::hypot(q.x(), q.y(), q.z()), std::abs(q.w()))});
       }
     }
     double apart = 0;
@@ -381,7 +375,7 @@ protected:
       }
     }
     if (axes.size() > 1) {
-      list.push_back({"commuting", apart, false, false});
+      list.push_back({"commuting", apart});
     }
     return list;
   }
@@ -405,26 +399,25 @@ protected:
   /// Regions of wrong inputs: a branch for small angles or near a half turn, one sheet of the
   /// double cover, everywhere but at the identity or for commuting rotations.
   void try_regions() {
-    std::vector<std::vector<feature>> features;
-    for (const jacobian_sample& s : samples_) {
-      features.push_back(features_of(s));
+    const scope& block = scopes_.front();
+    // Two slips may vanish at the same inputs, so that one block must contain all that is wrong.
+    if (block.argument == nullptr || block.result == nullptr) {
+      return;
     }
+    std::vector<std::vector<feature>> features;
     std::vector<bool> counts; // no slip shows where the block is zero
     for (const jacobian_sample& s : samples_) {
-      counts.push_back(s.is_wrong || largest_entry(of(s.exact, scopes_.front())) >
-                                         1e-3 * largest_entry(samples_[0].exact));
+      features.push_back(features_of(s));
+      counts.push_back(s.is_wrong ||
+                       largest_entry(of(s.exact, block)) > 1e-3 * largest_entry(samples_[0].exact));
     }
     const double pi = constant::pi<double>();
-    // Two slips may vanish at the same inputs, so that one block must contain all that is wrong.
-    const bool is_one_block =
-        scopes_.front().argument != nullptr && scopes_.front().result != nullptr;
     for (const jacobian_part& a : inputs_) {
-      if (a.is_motion() && is_one_block && is_of_one_sheet(a)) {
-        accept(message("right on one sheet of the double cover only: of ", a.name),
-               scopes_.front().name);
+      if (a.is_motion() && is_of_one_sheet(a)) {
+        accept(message("right on one sheet of the double cover only: of ", a.name), block.name);
       }
     }
-    for (std::size_t f = 0; f < features[0].size() && is_one_block; ++f) {
+    for (std::size_t f = 0; f < features[0].size(); ++f) {
       double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
       for (std::size_t n = 0; n < samples_.size(); ++n) {
         if (!counts[n]) {
@@ -445,33 +438,33 @@ protected:
           has_between = has_between || (x <= most[1] && x >= std::max(least[1], .1 * most[1]));
         }
       }
-      const feature& about = features[0][f];
+      const std::string& about = features[0][f].name;
+      const bool is_commuting = about == "commuting", has_branches = !is_commuting && !has_between;
+      const bool is_only_at_zero = most[0] < least[1] && most[0] < 1e-3;
       if (most[0] == -INFINITY) {
         continue;
       }
-      if (about.has_sign) {
+      if (about.starts_with("sign of ")) {
         if ((most[1] < 0 && least[0] >= 0) || (least[1] > 0 && most[0] <= 0)) {
-          accept(message("right for one sign only of ", about.name, most[1] < 0 ? " < 0" : " > 0",
+          accept(message("right for one sign only of ", about, most[1] < 0 ? " < 0" : " > 0",
                          " is wrong"),
-                 scopes_.front().name);
+                 block.name);
         }
-      } else if (about.is_angle && !has_between && most[1] < .5 && above < INFINITY) {
-        accept(message("only in the branch of small values: ", about.name, " up to ",
+      } else if (has_branches && most[1] < .5 && above < INFINITY) {
+        accept(message("only in the branch of small values: ", about, " up to ",
                        to_text(float(most[1])), " wrong, from ", to_text(float(above)), " right"),
-               scopes_.front().name);
-      } else if (about.is_angle && !has_between && least[1] > pi - .5 && most[1] < pi + 1e-6 &&
-                 below > -INFINITY) {
-        accept(message("only in the branch beside a half turn: ", about.name, " from ",
+               block.name);
+      } else if (has_branches && least[1] > pi - .5 && most[1] < pi + 1e-6 && below > -INFINITY) {
+        accept(message("only in the branch beside a half turn: ", about, " from ",
                        to_text(float(least[1])), " wrong, up to ", to_text(float(below)), " right"),
-               scopes_.front().name);
-      } else if (about.is_angle && most[0] < least[1] && most[0] < 1e-3 &&
-                 about.name.substr(0, 5) == "angle") {
-        weak_.push_back({message("right only at the identity: ", about.name, " up to ",
-                                 to_text(float(most[0]))),
-                         scopes_.front().name});
-      } else if (about.name == "commuting" && most[0] < least[1] && most[0] < 1e-3) {
-        weak_.push_back({"right only for commuting rotations: where all axes are parallel",
-                         scopes_.front().name});
+               block.name);
+      } else if (is_only_at_zero && about.starts_with("angle")) {
+        weak_.push_back(
+            {message("right only at the identity: ", about, " up to ", to_text(float(most[0]))),
+             block.name});
+      } else if (is_only_at_zero && is_commuting) {
+        weak_.push_back(
+            {"right only for commuting rotations: where all axes are parallel", block.name});
       }
     }
   }
