@@ -339,23 +339,29 @@ template <class D>
   return sum + power * tail;
 }
 
-/// dᵐP_l/dxᵐ by the recurrence of P_l^m upwards from (2m − 1)!!
-template <class D>
-[[nodiscard]] D legendre_by_recurrence(unsigned l, unsigned m, const D& x) {
-  using real = real_type_t<D>;
-  if (m > l) {
-    return D(0);
-  }
-  D below(0), p(1);
-  for (unsigned k = 1; k < m; ++k) {
-    p = p * real(2 * k + 1);
-  }
-  for (unsigned k = m; k < l; ++k) {
-    const D above = (real(2 * k + 1) * x * p - real(k + m) * below) / real(k + 1 - m);
+/// p_n by the recurrence p_{k+1} = next(k, p_k, p_{k−1}) upwards from p_m = `first` and 0.
+template <class D, class Next>
+[[nodiscard]] D upwards(unsigned m, unsigned n, const D& first, const Next& next) {
+  D below(0), p = first;
+  for (unsigned k = m; k < n; ++k) {
+    const D above = next(k, p, below);
     below = p;
     p = above;
   }
   return p;
+}
+
+/// dᵐP_l/dxᵐ by the recurrence of P_l^m upwards from (2m − 1)!!
+template <class D>
+[[nodiscard]] D legendre_by_recurrence(unsigned l, unsigned m, const D& x) {
+  using real = real_type_t<D>;
+  D first(m > l ? 0 : 1);
+  for (unsigned k = 1; k < m; ++k) {
+    first = first * real(2 * k + 1);
+  }
+  return upwards(m, l, first, [&](unsigned k, const D& p, const D& below) -> D {
+    return (real(2 * k + 1) * x * p - real(k + m) * below) / real(k + 1 - m);
+  });
 }
 
 /// √((2l + 1)/4π (l − m)!/(l + m)!) P_l^m, upwards from that of l = m, x = cos θ and s = −sin θ.
@@ -367,21 +373,19 @@ template <class D>
   if (m > l) {
     return D(0);
   }
-  D below(0), p(real(sqrt(1 / (4 * constant::pi<real>()))));
+  D first(real(sqrt(1 / (4 * constant::pi<real>()))));
   for (unsigned k = 1; k <= m; ++k) {
-    p = p * (real(sqrt(1 + 1 / (2 * real(k)))) * s);
+    first = first * (real(sqrt(1 + 1 / (2 * real(k)))) * s);
   }
   const auto order = real(m);
   real b(0);
-  for (unsigned k = m; k < l; ++k) {
+  return upwards(m, l, first, [&](unsigned k, const D& p, const D& below) {
     const real n = real(k) + 1;
     const real a = sqrt((4 * n * n - 1) / ((n - order) * (n + order)));
     const D above = a * (x * p - b * below);
     b = 1 / a;
-    below = p;
-    p = above;
-  }
-  return p;
+    return above;
+  });
 }
 
 } // namespace detail
@@ -485,25 +489,17 @@ template <SpecialArgument D>
 template <SpecialArgument D>
 [[nodiscard]] D hermite(unsigned n, const D& x) {
   using real = real_type_t<D>;
-  D below(0), h(1);
-  for (unsigned k = 0; k < n; ++k) {
-    const D above = 2 * (x * h - real(k) * below);
-    below = h;
-    h = above;
-  }
-  return h;
+  return detail::upwards(0, n, D(1), [&](unsigned k, const D& h, const D& below) -> D {
+    return 2 * (x * h - real(k) * below);
+  });
 }
 /// Associated Laguerre polynomial L_n^m(x).
 template <SpecialArgument D>
 [[nodiscard]] D assoc_laguerre(unsigned n, unsigned m, const D& x) {
   using real = real_type_t<D>;
-  D below(0), p(1);
-  for (unsigned k = 0; k < n; ++k) {
-    const D above = ((real(2 * k + m + 1) - x) * p - real(k + m) * below) / real(k + 1);
-    below = p;
-    p = above;
-  }
-  return p;
+  return detail::upwards(0, n, D(1), [&](unsigned k, const D& p, const D& below) -> D {
+    return ((real(2 * k + m + 1) - x) * p - real(k + m) * below) / real(k + 1);
+  });
 }
 /// Laguerre polynomial L_n(x).
 [[nodiscard]] auto laguerre(unsigned n, const SpecialArgument auto& x) {
