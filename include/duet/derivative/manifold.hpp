@@ -47,23 +47,6 @@ template <class X>
   }
 }
 
-/// Part x of an object moved by its coordinates in δ, which begin at `first`; advances `first`.
-template <class X, class Delta, class Frame>
-[[nodiscard]] auto moved_part(const X& x, const Delta& delta, Frame frame, Eigen::Index& first) {
-  const Eigen::Index size = tangent_dimension(x);
-  const Eigen::Index begin = std::exchange(first, first + size);
-  return manifold<X>::plus(x, delta.template segment<manifold<X>::dimension>(begin, size), frame);
-}
-
-/// Writes the velocity of a part of an object into `result` from `first` on; advances `first`.
-template <class X, class Frame, class Result>
-void write_velocity(const X& x, const X& rate, Frame frame, Result& result, Eigen::Index& first) {
-  const auto velocity = manifold<X>::velocity(x, rate, frame);
-  constexpr int size = std::decay_t<decltype(velocity)>::SizeAtCompileTime;
-  result.template segment<size>(std::exchange(first, first + velocity.size()), velocity.size()) =
-      velocity.template cast<typename Result::Scalar>();
-}
-
 } // namespace detail
 
 template <class X>
@@ -119,7 +102,12 @@ struct manifold_of_elements {
   template <class Delta, class Frame = spatial_frame>
   [[nodiscard]] static auto plus(const X& x, const Delta& delta, Frame frame = {}) {
     Eigen::Index first = 0;
-    return map_elements([&](const auto& each) { return moved_part(each, delta, frame, first); }, x);
+    const auto moved = [&]<class Each>(const Each& each) {
+      const Eigen::Index size = tangent_dimension(each), begin = std::exchange(first, first + size);
+      return manifold<Each>::plus(
+          each, delta.template segment<manifold<Each>::dimension>(begin, size), frame);
+    };
+    return map_elements(moved, x);
   }
   template <class Frame>
   [[nodiscard]] static auto velocity(const X& x, const X& rate, Frame frame) {
@@ -127,8 +115,11 @@ struct manifold_of_elements {
     result.resize(tangent_dimension(x));
     Eigen::Index first = 0;
     for_each_element(
-        [&](const auto& each, const auto& its_rate) {
-          write_velocity(each, its_rate, frame, result, first);
+        [&]<class Each>(const Each& each, const Each& its_rate) {
+          const auto velocity = manifold<Each>::velocity(each, its_rate, frame);
+          constexpr int count = std::decay_t<decltype(velocity)>::SizeAtCompileTime;
+          result.template segment<count>(std::exchange(first, first + velocity.size()),
+                                         velocity.size()) = velocity.template cast<scalar>();
         },
         x, rate);
     return result;

@@ -431,11 +431,9 @@ private:
       second[i] = part<tag>(blocks::component(y, i), 2);
     }
     for (Eigen::Index i = 0; i < second.size() / size; ++i) {
-      if (!whitening_.empty()) {
-        second.template segment<size>(i * size) =
-            (whitening(i) * second.template segment<size>(i * size)).eval();
-      }
-      second.template segment<size>(i * size) *= roots_[i];
+      auto its = second.template segment<size>(i * size);
+      whiten(i, its);
+      its *= roots_[i];
     }
     vector right = -(jacobian_.transpose() * second) / 2;
     for (Eigen::Index k = 0; k < size_; ++k) {
@@ -491,9 +489,7 @@ private:
     double cost = 0;
     for (Eigen::Index i = 0; i < count; ++i) {
       Eigen::Matrix<R, size, 1> r = residuals_.template segment<size>(i * size);
-      if (!whitening_.empty()) {
-        r = (whitening(i) * r).eval();
-      }
+      whiten(i, r);
       const double length = r.norm();
       const double weight = options_.weights.empty() ? 1 : options_.weights[std::size_t(i)];
       const loss_at loss(options_.loss, length);
@@ -502,9 +498,7 @@ private:
         continue;
       }
       auto rows = jacobian->template middleRows<size>(i * size);
-      if (!whitening_.empty()) {
-        rows = (whitening(i) * rows).eval();
-      }
+      whiten(i, rows);
       const double root = roots_[i] = std::sqrt(weight * loss.weight);
       rows *= root;
       weighted_.template segment<size>(i * size) = root * r;
@@ -599,8 +593,12 @@ private:
     }
   }
 
-  [[nodiscard]] const matrix& whitening(Eigen::Index i) const {
-    return whitening_[whitening_.size() > 1 ? std::size_t(i) : 0];
+  /// Whitens the components of residual i, or their derivatives.
+  template <class Rows>
+  void whiten(Eigen::Index i, Rows& rows) const {
+    if (!whitening_.empty()) {
+      rows = (whitening_[whitening_.size() > 1 ? std::size_t(i) : 0] * rows).eval();
+    }
   }
 
   [[nodiscard]] vector bound(const char* name, const vector& given, double none) const {
