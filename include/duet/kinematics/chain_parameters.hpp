@@ -48,12 +48,6 @@ struct dh_row {
 
 namespace detail {
 
-/// T_x(a) R_x(α)
-template <class T>
-[[nodiscard]] constexpr placement<T> along_link(const dh_row<T>& row) {
-  return {rotation_about_axis(0, row.alpha), {row.a, T(0), T(0)}};
-}
-
 /// T_x(a) R_x(α) T_z(d) R_z(θ), with exact products of the sine and cosine of a right angle.
 template <class T>
 [[nodiscard]] constexpr placement<T> between_axes(const dh_row<T>& link, const dh_row<T>& joint) {
@@ -96,7 +90,7 @@ template <class T, std::size_t N>
     joints[i].kind = rows[i].kind;
     joints[i].origin = detail::between_axes(before, rows[i]);
     joints[i].limits = rows[i].limits;
-    link_frames[i] = detail::along_link(rows[i]);
+    link_frames[i] = {detail::rotation_about_axis(0, rows[i].alpha), {rows[i].a, T(0), T(0)}};
     before = rows[i];
   }
   return serial_chain<int(N), T>(joints, link_frames[N - 1] * tool, link_frames);

@@ -118,10 +118,6 @@ template <class S>
 [[nodiscard]] twist_column<S> sum(const twist_column<S>& a, const twist_column<S>& b) {
   return {a.v + b.v, a.omega + b.omega};
 }
-template <class S, class F>
-[[nodiscard]] twist_column<S> multiple(const F& factor, const twist_column<S>& a) {
-  return {factor * a.v, factor * a.omega};
-}
 
 /// Time derivatives of the screws of a motion, and the twists of its nodes.
 template <class S>
@@ -164,7 +160,8 @@ template <class S, class X, class V>
         rate = sum(rate, {cross(origin.translation, omega), omega});
       }
       result.screws.push_back(rate);
-      after = sum(after, multiple(S(x_dot[screw->coordinate]), twist));
+      const S speed(x_dot[screw->coordinate]);
+      after = sum(after, {speed * twist.v, speed * twist.omega});
     }
     result.nodes.push_back(after);
   }
