@@ -85,35 +85,6 @@ private:
   }
 };
 
-/// Size of a step relative to the values it changes, for rates at knots as unknowns, several
-/// vectors at each knot, from velocities upwards. Each vector is compared with its own size and
-/// with the size that follows from the rotations of the adjacent segments.
-///
-/// \param rotations  half-angle vectors of the segments
-/// \param lengths    lengths of these segments; as many as the knots if the curve is closed
-template <class R, int N>
-[[nodiscard]] R relative_step_of_rates(const std::vector<Eigen::Matrix<R, N, 1>>& x,
-                                       const std::vector<Eigen::Matrix<R, N, 1>>& step,
-                                       const std::vector<vector3<R>>& rotations,
-                                       const std::vector<R>& lengths) {
-  const std::size_t pieces = rotations.size();
-  R result(0);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const std::size_t left = i > 0 ? i - 1 : x.size() == pieces ? pieces - 1 : 0;
-    const std::size_t right = std::min(i, pieces - 1);
-    R size = std::max(R(length(rotations[left]) / lengths[left]),
-                      R(length(rotations[right]) / lengths[right]));
-    for (int k = 0; k < N; k += 3) {
-      const R moved = length(step[i], k);
-      const R now = length(x[i], k);
-      const R ratio = moved > 0 ? R(moved / std::max(size, std::max(now, moved))) : moved;
-      result = larger_or_nan(result, ratio);
-      size /= std::max(lengths[left], lengths[right]);
-    }
-  }
-  return result;
-}
-
 /// Samples of a rotation-vector spline, as steps and rotations between neighbours, and its end
 /// conditions. The unit of the parameter is about one step, so that all derivatives are of similar
 /// size.
@@ -180,22 +151,42 @@ public:
     return largest_rotation(rotations_);
   }
 
-  /// Size of a step from x relative to the values it changes. For real T.
-  template <class Unknowns>
-  [[nodiscard]] R relative_step(const Unknowns& x, const Unknowns& step) const {
-    return relative_step_of_rates(x, step, rotations_, steps_);
+  /// Size of a step from x relative to the values it changes. The unknowns are several rates at
+  /// each knot, from velocities upwards: each is compared with its own size and with the size that
+  /// follows from the rotations of the adjacent segments. For real T.
+  template <int N>
+  [[nodiscard]] R relative_step(const std::vector<Eigen::Matrix<R, N, 1>>& x,
+                                const std::vector<Eigen::Matrix<R, N, 1>>& step) const {
+    R result(0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto [left, right] = segments_at(i);
+      R size = std::max(R(length(rotations_[left]) / steps_[left]),
+                        R(length(rotations_[right]) / steps_[right]));
+      for (int k = 0; k < N; k += 3) {
+        const R moved = length(step[i], k);
+        const R now = length(x[i], k);
+        const R ratio = moved > 0 ? R(moved / std::max(size, std::max(now, moved))) : moved;
+        result = larger_or_nan(result, ratio);
+        size /= std::max(steps_[left], steps_[right]);
+      }
+    }
+    return result;
   }
 
 protected:
   /// Number of knots; the first and the last knot of a closed curve count once.
   [[nodiscard]] std::size_t knots() const { return steps_.size() + (ends_.is_cyclic ? 0 : 1); }
 
+  /// Segments before and after a knot; twice the same at an end.
+  [[nodiscard]] std::pair<std::size_t, std::size_t> segments_at(std::size_t knot) const {
+    const std::size_t last = steps_.size() - 1;
+    return {knot > 0 ? knot - 1 : ends_.is_cyclic ? last : 0, std::min(knot, last)};
+  }
+
   /// Velocity and acceleration at a sample of the parabola through it and its neighbours, as for
   /// small rotations.
   [[nodiscard]] std::pair<vector3<T>, vector3<T>> parabola(std::size_t i) const {
-    const std::size_t last = steps_.size();
-    const std::size_t left = i > 0 ? i - 1 : ends_.is_cyclic ? last - 1 : 0;
-    const std::size_t right = i < last ? i : last - 1;
+    const auto [left, right] = segments_at(i);
     const R h = steps_[left] + steps_[right];
     std::pair<vector3<T>, vector3<T>> result;
     for (int k = 0; k < 3; ++k) {
