@@ -162,11 +162,7 @@ struct jacobian_sample {
 
 /// Number of columns of a Jacobian by stored numbers.
 [[nodiscard]] inline Eigen::Index stored_size(const std::vector<jacobian_part>& parts) {
-  Eigen::Index sum = 0;
-  for (const jacobian_part& part : parts) {
-    sum += part.state_size();
-  }
-  return sum;
+  return parts.empty() ? 0 : parts.back().state + parts.back().state_size();
 }
 [[nodiscard]] inline Eigen::Index tangent_size(const std::vector<jacobian_part>& parts) {
   return parts.empty() ? 0 : parts.back().first + parts.back().dimension;

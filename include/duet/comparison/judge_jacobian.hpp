@@ -139,8 +139,7 @@ concept JudgedPose = JudgedMotion<X> && manifold<X>::dimension == 6;
 
 inline void append_part(std::vector<jacobian_part>& list, jacobian_part::kind type,
                         const std::string& name, Eigen::Index dimension) {
-  list.push_back({type, name, list.empty() ? 0 : list.back().state + list.back().state_size(),
-                  tangent_size(list), dimension});
+  list.push_back({type, name, stored_size(list), tangent_size(list), dimension});
 }
 
 /// Appends the parts of an argument or result of type X.
