@@ -168,31 +168,16 @@ namespace detail {
 /// Loss, weight ρ′(r)/r and curvature ρ″(r) of a residual of size r.
 struct loss_at {
   double loss, weight, curvature;
-
-  loss_at(const loss_function& of, double r) {
-    const double k = of.scale, s = r / k;
-    switch (of.form) {
-    case loss_function::kind::squares:
-      break;
-    case loss_function::kind::huber:
-      if (r > k) {
-        loss = k * (r - k / 2), weight = k / r, curvature = 0;
-        return;
-      }
-      break;
-    case loss_function::kind::cauchy:
-      loss = k * k / 2 * std::log1p(s * s), weight = 1 / (1 + s * s);
-      curvature = (1 - s * s) * weight * weight;
-      return;
-    case loss_function::kind::tukey: {
-      const double t = std::max(0., 1 - s * s);
-      loss = k * k / 6 * (1 - t * t * t), weight = t * t, curvature = t * (1 - 5 * s * s);
-      return;
-    }
-    }
-    loss = r * r / 2, weight = 1, curvature = 1;
-  }
 };
+[[nodiscard]] inline loss_at loss_of(const loss_function& f, double r) {
+  const double k = f.scale, s = r / k, t = std::max(0., 1 - s * s), u = 1 / (1 + s * s);
+  return f.form == loss_function::kind::tukey
+             ? loss_at{k * k / 6 * (1 - t * t * t), t * t, t * (1 - 5 * s * s)}
+         : f.form == loss_function::kind::cauchy
+             ? loss_at{k * k / 2 * std::log1p(s * s), u, (1 - s * s) * u * u}
+         : f.form == loss_function::kind::huber && r > k ? loss_at{k * (r - k / 2), k / r, 0}
+                                                         : loss_at{r * r / 2, 1, 1};
+}
 
 /// Residuals as blocks of components.
 template <VectorLike Y>
@@ -492,7 +477,7 @@ private:
       whiten(i, r);
       const double length = r.norm();
       const double weight = options_.weights.empty() ? 1 : options_.weights[std::size_t(i)];
-      const loss_at loss(options_.loss, length);
+      const loss_at loss = loss_of(options_.loss, length);
       cost += weight * loss.loss;
       if (jacobian == nullptr) {
         continue;
