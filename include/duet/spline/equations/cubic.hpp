@@ -243,13 +243,11 @@ public:
   /// Residual of an equation, a half-angle vector; end rates are scaled to the size of an
   /// increment.
   [[nodiscard]] vector3<T> residual(std::size_t row, const std::array<vector3<T>, 3>& omega) const {
-    if (has_end_rates()) {
-      if (row == 0 || row + 1 == size()) {
-        return end_residual(row == 0, omega);
-      }
-      --row;
+    if (is_end(row)) {
+      return end_residual(row == 0, omega);
     }
-    const arc& a = arcs_[row];
+    const std::size_t interval = interval_of(row);
+    const arc& a = arcs_[interval];
     // Common factors on both sides cancel, except that they rotate the factors between them. The
     // remaining vectors are as small as the rotation of the arc and have all its digits.
     std::array<vector3<T>, 3> steps;
@@ -264,18 +262,15 @@ public:
     }
     const quaternion<T> along_arc =
         exp_out_of_line(steps[0]) * exp_out_of_line(steps[1]) * exp_out_of_line(steps[2]);
-    return log_out_of_line(quaternion<T>(conj(along_arc) * rotations_[row]));
+    return log_out_of_line(quaternion<T>(conj(along_arc) * rotations_[interval]));
   }
 
   /// Equation Σ weights_j x_j = right for small rotations, which commute to first order.
   [[nodiscard]] small_angle_equation<T> small_angles(std::size_t row) const {
-    if (has_end_rates()) {
-      if (row == 0 || row + 1 == size()) {
-        return end_equation(row == 0);
-      }
-      --row;
+    if (is_end(row)) {
+      return end_equation(row == 0);
     }
-    return {arcs_[row].change, angles_[row]};
+    return {arcs_[interval_of(row)].change, angles_[interval_of(row)]};
   }
 
   /// Residuals of all equations.
@@ -311,6 +306,14 @@ private:
   [[nodiscard]] bool is_cyclic() const { return kind_ == end_condition_kind::periodic; }
   [[nodiscard]] bool has_end_rates() const {
     return !is_cyclic() && kind_ != end_condition_kind::not_a_knot;
+  }
+  /// True for the equation of a rate at an end.
+  [[nodiscard]] bool is_end(std::size_t row) const {
+    return has_end_rates() && (row == 0 || row + 1 == size());
+  }
+  /// Interval between samples of any other equation.
+  [[nodiscard]] std::size_t interval_of(std::size_t row) const {
+    return row - (has_end_rates() ? 1 : 0);
   }
 
   [[nodiscard]] static std::vector<R> knots(const std::vector<R>& u, end_condition_kind kind) {
@@ -365,14 +368,10 @@ private:
   /// affect Newton steps: J(r) r = r.)
   [[nodiscard]] gradient_by_three<R> gradient(std::size_t row,
                                               const std::array<vector3<R>, 3>& omega) const {
-    if (has_end_rates()) {
-      const bool is_first = row == 0;
-      if (is_first || row + 1 == size()) {
-        return end_gradient(end_equation(is_first).weights, omega, !is_first);
-      }
-      --row;
+    if (is_end(row)) {
+      return end_gradient(end_equation(row == 0).weights, omega, row > 0);
     }
-    const auto& [span, from, change] = arcs_[row];
+    const auto& [span, from, change] = arcs_[interval_of(row)];
     using factor = std::pair<std::size_t, R>;
     return minus_product_gradient(std::array{factor(2, -from[2]), factor(1, -from[1]),
                                              factor(0, change[0]), factor(1, from[1] + change[1]),
