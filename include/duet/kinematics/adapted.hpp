@@ -77,9 +77,7 @@ template <class C, JointOf<C> Which>
     const auto& names = chain.joint_names();
     const auto found = std::find(names.begin(), names.end(), std::string_view(which));
     if (found == names.end()) {
-      raise(invalid_input(
-          printable(message("duet: ", function, ": no joint \"", std::string_view(which),
-                            "\": ", closest_names(which, names)))));
+      unknown_name(function, "joint", which, names);
     }
     return int(found - names.begin());
   }

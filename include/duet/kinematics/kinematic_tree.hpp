@@ -93,7 +93,7 @@ public:
   [[nodiscard]] int coordinate(std::string_view name) const {
     const auto found = std::find(table_.names.begin(), table_.names.end(), name);
     if (found == table_.names.end()) {
-      fail("coordinate", name, table_.names);
+      detail::unknown_name("kinematic_tree", "coordinate", name, table_.names);
     }
     return int(found - table_.names.begin());
   }
@@ -121,7 +121,7 @@ public:
   [[nodiscard]] attached_frame<double> link(std::string_view name) const {
     const auto found = table_.link_numbers.find(std::string(name));
     if (found == table_.link_numbers.end()) {
-      fail("link", name, detail::names_of(links()));
+      detail::unknown_name("kinematic_tree", "link", name, detail::names_of(links()));
     }
     return {found->second, {}};
   }
@@ -234,13 +234,6 @@ public:
   }
 
 private:
-  [[noreturn]] static void fail(const char* what, std::string_view name,
-                                const std::vector<std::string>& names) {
-    detail::raise(
-        invalid_input(printable("duet: kinematic_tree: no " + std::string(what) + " \"" +
-                                std::string(name) + "\": " + detail::closest_names(name, names))));
-  }
-
   robot_description description_;
   detail::tree_table table_;
 };

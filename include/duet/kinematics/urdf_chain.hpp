@@ -62,9 +62,7 @@ public:
     const auto found = std::find_if(links_.begin(), links_.end(),
                                     [&](const urdf_link& each) { return each.name == name; });
     if (found == links_.end()) {
-      detail::raise(
-          invalid_input(printable("duet: urdf_chain: no link \"" + std::string(name) +
-                                  "\": " + detail::closest_names(name, detail::names_of(links_)))));
+      detail::unknown_name("urdf_chain", "link", name, detail::names_of(links_));
     }
     return found->frame;
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <duet/core/config.hpp>
+#include <duet/core/errors.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -118,6 +119,15 @@ namespace duet::detail {
   return names.size() > max_shown
              ? text + " and " + std::to_string(names.size() - max_shown) + " more"
              : text;
+}
+
+/// Throws the error of a name that does not exist.
+///
+/// \throws invalid_input with the most similar names
+[[noreturn]] inline void unknown_name(const char* function, const char* what, std::string_view name,
+                                      const std::vector<std::string>& names) {
+  raise(invalid_input(printable(message("duet: ", function, ": no ", what, " \"", name,
+                                        "\": ", closest_names(name, names)))));
 }
 
 } // namespace duet::detail
