@@ -183,15 +183,8 @@ void save_state(const X& x, Eigen::VectorXd& state, Eigen::Index& next) {
 template <class T, class X>
 [[nodiscard]] auto load_state(const Eigen::VectorXd& state, Eigen::Index& next) {
   if constexpr (JacobianParts<X>) {
-    return [&]<std::size_t... I>(std::index_sequence<I...>) { // in order: braces
-      using first = decltype(load_state<T, std::tuple_element_t<0, X>>(state, next));
-      using parts = std::conditional_t<
-          is_tuple<X>,
-          std::tuple<decltype(load_state<T, std::tuple_element_t<I, X>>(state, next))...>,
-          std::array<first, sizeof...(I)>>;
-      return parts{load_state<T, std::tuple_element_t<I, X>>(state, next)...};
-    }
-    (std::make_index_sequence<std::tuple_size_v<X>>{});
+    return map_elements([&]<class Each>(const Each&) { return load_state<T, Each>(state, next); },
+                        X());
   } else if constexpr (JudgedPose<X>) {
     const auto q = load_state<T, decltype(rotation(std::declval<const X&>()))>(state, next);
     return pose(q, load_state<T, decltype(translation(std::declval<const X&>()))>(state, next));
