@@ -151,24 +151,20 @@ constexpr void require_limits(const joint_limits<T>& limits, std::size_t i,
 template <class T>
 constexpr void require_joint(const joint<T>& joint, std::size_t i,
                              const char* function = "serial_chain", std::string_view name = {}) {
+  const auto check = [&](bool condition, const auto&... what) {
+    if (!condition) {
+      bad_joint(i, message(what...), function, name);
+    }
+  };
   const auto& t = joint.origin.translation;
-  if (!std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; })) {
-    bad_joint(i, "the origin is not finite", function, name);
-  }
-  if (!is_nearly_one(squared_norm(joint.origin.rotation))) {
-    bad_joint(i,
-              message("the rotation ", joint.origin.rotation,
-                      " of the origin is not a unit quaternion: normalized(q)"),
-              function, name);
-  }
+  check(std::all_of(t.begin(), t.end(), [](const T& x) { return x - x == 0; }),
+        "the origin is not finite");
+  check(is_nearly_one(squared_norm(joint.origin.rotation)), "the rotation ", joint.origin.rotation,
+        " of the origin is not a unit quaternion: normalized(q)");
   const auto n = components(joint.axis);
-  if (joint.kind != joint_kind::fixed && !is_nearly_one(dot(n, n))) {
-    bad_joint(i, message("the axis (", n.x, ", ", n.y, ", ", n.z, ") is not a unit vector"),
-              function, name);
-  }
-  if (!(joint.pitch - joint.pitch == 0)) {
-    bad_joint(i, message("the pitch ", joint.pitch, " is not finite"), function, name);
-  }
+  check(joint.kind == joint_kind::fixed || is_nearly_one(dot(n, n)), "the axis (", n.x, ", ", n.y,
+        ", ", n.z, ") is not a unit vector");
+  check(joint.pitch - joint.pitch == 0, "the pitch ", joint.pitch, " is not finite");
   require_limits(joint.limits, i, function, name);
 }
 
