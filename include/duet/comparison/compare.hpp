@@ -124,12 +124,8 @@ void write_counts(std::ostream& out, const Result& r) {
 
 /// Text of the components; those negligible beside the largest component are printed as 0.
 [[nodiscard]] inline std::string components_text(std::span<const double> numbers, int digits) {
-  double largest = 0;
-  for (const double x : numbers) {
-    largest = std::max(largest, std::isfinite(x) ? std::abs(x) : 0.0);
-  }
   auto out = plain_stream(digits);
-  const double nothing = largest * std::pow(10.0, -digits - 2);
+  const double nothing = largest(numbers) * std::pow(10.0, -digits - 2);
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const double x = numbers[i];
     out << (i > 0 ? ", " : "");

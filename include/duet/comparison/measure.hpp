@@ -159,10 +159,11 @@ struct difference {
 };
 
 /// Largest absolute value of a finite component.
-template <class T>
-[[nodiscard]] T largest(const std::vector<T>& components) {
+template <class Numbers>
+[[nodiscard]] auto largest(const Numbers& components) {
   using std::abs;
   using std::isfinite;
+  using T = typename Numbers::value_type;
   T result(0);
   for (const T& x : components) {
     if (isfinite(x) && abs(x) > result) {
