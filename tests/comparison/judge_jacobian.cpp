@@ -139,6 +139,33 @@ TEST_CASE("a pinhole camera: slips in blocks, and in factors of the chain") {
               {{1, 4}, {6, 11}, {13, 14}});
 }
 
+TEST_CASE("a camera in the world: a slip behind a point moved back") {
+  const auto f = [](const auto& q, const auto& t, const auto& p) {
+    const auto y = rotate(conj(q), (p - t).eval());
+    using S = std::decay_t<decltype(y[0] / y[2])>;
+    return Eigen::Matrix<S, 2, 1>(y[0] / y[2], y[1] / y[2]);
+  };
+  const auto inputs = sampler(rotations{}, vectors<3>{1}, vectors<3>{2})
+                          .named("q", "t", "p")
+                          .where([](const auto& q, const auto& t, const auto& p) {
+                            return std::abs(rotate(conj(q), Vector3d(p - t))[2]) > .2;
+                          });
+  const auto judge = [&](slip s) {
+    return judge_jacobian("image", f,
+                          [s](const rotation_type& q, const Vector3d& t, const Vector3d& p) {
+                            const Matrix3d back = rotation_matrix(q).transpose();
+                            const Vector3d y = back * (p - t);
+                            const double w = 1 / y[2];
+                            MatrixXd by_point(2, 3), moved(3, 9);
+                            by_point << w, 0, (s == 1 ? 1 : -1) * y[0] * w * w, 0, w, -y[1] * w * w;
+                            moved << (s == 2 ? -1 : 1) * hat(y), -back, back;
+                            return MatrixXd(by_point * moved);
+                          },
+                          inputs, {.samples = 60});
+  };
+  check_slips(judge, {{1, "sign", "d f / d (q^-1 (t - p))"}, {2, "sign", "d f / d q"}}, {{1, 2}});
+}
+
 TEST_CASE("rotation between two rotations: branches, sheets and Jacobians of exp") {
   const auto f = [](const auto& a, const auto& b) { return rotation_vector(conj(a) * b); };
   const auto inputs = sampler(rotations{3.1}, rotations{3.1})
