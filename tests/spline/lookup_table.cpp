@@ -199,6 +199,8 @@ TEST_CASE("adaptive_table, estimated_errors: errors name invalid bounds and too 
         "that is not empty and a positive tolerance)");
   CHECK(message(0, 1, 0, 100).find("tolerance 0 (expected") != std::string::npos);
   CHECK(message(0, 3, 1e-9, 100).ends_with(", and options.max_samples is 100"));
+  CHECK(message(0, 3, 1e-1, 8) ==
+        "duet: adaptive_table: begins with 9 samples, more than options.max_samples, which is 8");
   CHECK_THROWS_AS((void)duet::estimated_errors<rotation_curve>(uniform_table<double>(rotating, 7)),
                   duet::invalid_input);
 }

@@ -123,8 +123,9 @@ template <class Spline, class F, class R>
 /// \param f          function that returns the rotation or pose at a parameter
 /// \param tolerance  radians, for poses as `distance` with `options.characteristic_length`
 /// \param ends       end conditions of the curve
-/// \throws invalid_input for a tolerance that is not positive, an empty range, and a function value
-/// that is not finite or not a unit, with the parameter
+/// \throws invalid_input for a tolerance that is not positive, an empty range, more initial samples
+/// than `options.max_samples`, and a function value that is not finite or not a unit, with the
+/// parameter
 /// \throws no_convergence if `options.max_samples` do not reach the tolerance
 /// \throws invalid_sample and others as `interpolate`
 template <CurveType Spline, class F>
@@ -141,8 +142,10 @@ adaptive_table(const F& f, typename Spline::real_type first, typename Spline::re
   detail::require(first < last && tolerance > 0, "duet: adaptive_table: the range is from ", first,
                   " to ", last, " and the tolerance ", tolerance,
                   " (expected a range that is not empty and a positive tolerance)");
-  lookup_table<T> table;
   const std::size_t count = std::max<std::size_t>(4, options.initial_samples);
+  detail::require(count <= options.max_samples, "duet: adaptive_table: begins with ", count,
+                  " samples, more than options.max_samples, which is ", options.max_samples);
+  lookup_table<T> table;
   for (std::size_t i = 0; i < count; ++i) {
     const R u = i + 1 < count ? R(first + (last - first) * R(i) / R(count - 1)) : last;
     table.parameters.push_back(u);
