@@ -178,7 +178,7 @@ struct log10 {
   DUET_VALUE_OF_RULE(log10)
   template <class T>
   T slope(const T& x, const T&) const {
-    return detail::integer<T>(1) / (x * constant::ln10<detail::constant_t<T>>());
+    return detail::integer<T>(1) / constant::ln10<detail::constant_t<T>>() / x;
   }
 };
 
