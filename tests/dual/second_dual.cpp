@@ -122,6 +122,20 @@ TEST_CASE("second_order_dual: quotients whose divisor's cube overflows or vanish
   }
 }
 
+TEST_CASE("second_order_dual: functions whose second derivative overflows or vanishes") {
+  for (const double unit : {1e-150, 1e-103, 1e103, 1e150}) {
+    using number = second_order_dual<double, 2>;
+    const double a = 3 * unit, b = 4 * unit;
+    const number x = number::variable(a, 0), y = number::variable(b, 1);
+    const number r = sqrt(x * x + y * y);
+    CAPTURE(unit);
+    CHECK(r.partial(0) == doctest::Approx(.6));
+    CHECK(r.second_partial(0, 0) * unit == doctest::Approx(16. / 125));
+    CHECK(r.second_partial(1, 0) * unit == doctest::Approx(-12. / 125));
+    CHECK(r.second_partial(1, 1) * unit == doctest::Approx(9. / 125));
+  }
+}
+
 TEST_CASE("second_order_dual: structural zeros survive") {
   using D = second_order_dual<double, 2>;
   const D constant = 0;

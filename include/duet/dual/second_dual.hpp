@@ -245,7 +245,12 @@ public:
     const T y = rule.value(x.value_);
     const T slope = rule.slope(x.value_, y);
     const D moving_slope = rule.slope(D::variable(x.value_), D(y, slope));
-    return x.composed(y, slope, moving_slope.epsilon());
+    const T curvature = moving_slope.epsilon();
+    if (all(detail::is_all_finite(slope) && detail::is_all_finite(curvature) &&
+            detail::is_normal(curvature))) [[likely]] {
+      return x.composed_of_finite(y, slope, curvature);
+    }
+    return x.composed_along_gradient(rule, T(y), T(slope));
   }
   template <class Rule, class... Rest>
   [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual
@@ -370,15 +375,7 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual composed(const T& y, const T& slope,
                                                               const T& curvature) const {
     if (all(detail::is_all_finite(slope) && detail::is_all_finite(curvature))) [[likely]] {
-      const auto scaled = [](const T& c) DUET_INLINE_LAMBDA {
-        return [&c](const auto& p)
-                   DUET_INLINE_LAMBDA { return std::remove_cvref_t<decltype(p)>(p * c); };
-      };
-      const auto bent = gradient_type::map(scaled(curvature), gradient_);
-      return {y, gradient_type::map(scaled(slope), gradient_),
-              hessian_type::with_outer_products(
-                  [&](int k) DUET_INLINE_LAMBDA { return scaled(slope)(hessian_.packet_at(k)); },
-                  gradient_, bent)};
+      return composed_of_finite(y, slope, curvature);
     }
     return composed<1>(y, {this}, {slope}, {{{curvature}}});
   }
@@ -412,6 +409,45 @@ public:
   }
 
 private:
+  /// `composed` of slopes that are finite.
+  [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual composed_of_finite(const T& y, const T& slope,
+                                                                        const T& curvature) const {
+    const auto scaled = [](const T& c) DUET_INLINE_LAMBDA {
+      return [&c](const auto& p)
+                 DUET_INLINE_LAMBDA { return std::remove_cvref_t<decltype(p)>(p * c); };
+    };
+    const auto bent = gradient_type::map(scaled(curvature), gradient_);
+    return {y, gradient_type::map(scaled(slope), gradient_),
+            hessian_type::with_outer_products(
+                [&](int k) DUET_INLINE_LAMBDA { return scaled(slope)(hessian_.packet_at(k)); },
+                gradient_, bent)};
+  }
+  /// The function of a rule, by derivatives of its slope along the gradient, as nested dual numbers
+  /// do: f″ underflows or overflows long before f″ g does.
+  template <class Rule>
+  [[nodiscard]] DUET_OUT_OF_LINE second_order_dual composed_along_gradient(const Rule& rule,
+                                                                           const T& y,
+                                                                           const T& slope) const {
+    using D = dual<T, 1, detail::curvature_tag>;
+    const auto along = [](const T& value, const T& derivative) {
+      D result(value);
+      result.set_partial(0, derivative);
+      return result;
+    };
+    second_order_dual result(y);
+    for (int i = 0; i < N; ++i) {
+      const T first = detail::guarded_product(slope, partial(i));
+      const T moving = T(rule.slope(along(value_, partial(i)), along(y, first)).partial(0));
+      result.gradient_.set(i, first);
+      for (int j = 0; j <= i; ++j) {
+        result.hessian_.set(i, j,
+                            T(detail::guarded_product(slope, second_partial(i, j)) +
+                              detail::guarded_product(moving, partial(j))));
+      }
+    }
+    return result;
+  }
+
   template <class F, class... X>
   [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual each(const F& f, const X&... x) {
     return {T(f(x.value_...)), gradient_type::map(f, x.gradient_...),
