@@ -212,6 +212,7 @@ public:
 private:
   vector residual;
 
+  double scale_ = 1; ///< size of x: at a solution 0 that of what round-off comes from
   const char* failure_ = nullptr;
   int iterations_ = 0;
 
@@ -224,6 +225,7 @@ private:
       return true;
     }
     const X previous = x;
+    scale_ = std::max(scale_, magnitude());
     const equilibrated_matrix<n> previous_jacobian = jacobian;
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     for (double fraction = 1; fraction > 1e-6; fraction /= 2) {
@@ -233,14 +235,17 @@ private:
       if (remaining.norm() <= epsilon / 4 * magnitude() && jacobian.is_invertible()) {
         return true;
       }
-      if (remaining.norm() <= (1 - fraction / 4) * step.norm()) {
-        return false;
-      }
-      // Small steps over which the Jacobian does not change bring no gain: the remaining residual
-      // is round-off.
+      // Small steps over which the Jacobian does not change bring little or no gain: the remaining
+      // residual is round-off.
       const vector next = jacobian.solve(-residual);
-      if (fraction == 1 && step.norm() <= std::sqrt(epsilon) * std::max(1.0, magnitude()) &&
-          (next - remaining).norm() <= next.norm() / 2 && jacobian.is_invertible()) {
+      const auto is_small = [&](double limit, double change) {
+        return fraction == 1 && step.norm() <= limit * scale_ &&
+               (next - remaining).norm() <= change * next.norm() && jacobian.is_invertible();
+      };
+      if (remaining.norm() <= (1 - fraction / 4) * step.norm()) {
+        return remaining.norm() > step.norm() / 16 && is_small(epsilon, .125);
+      }
+      if (is_small(std::sqrt(epsilon), .5)) {
         return true;
       }
     }
