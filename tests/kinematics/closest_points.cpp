@@ -393,6 +393,56 @@ TEST_CASE("closest_points: gradients are finite for touching and coinciding shap
   CHECK(closest_points(sphere<>{vector(1, .2, 0), 0}, b).distance == 0);
 }
 
+/// Checks the derivatives of the distance along all coordinates and the half extents of a box.
+template <class Obstacle>
+void check_derivatives(const capsule<>& body, const Obstacle& obstacle) {
+  constexpr bool is_box = requires { obstacle.half_extents; };
+  const auto distance = [&](const auto& x) {
+    using T = std::decay_t<decltype(x[0])>;
+    const capsule<T> c(vector3<T>(body.from.cast<T>() + x.template head<3>()),
+                       vector3<T>(body.to.cast<T>() + x.template segment<3>(3)), T(body.radius));
+    if constexpr (is_box) {
+      return closest_points(c, box<T>{dual_quaternion<T>(obstacle.pose),
+                                      vector3<T>(obstacle.half_extents.template cast<T>() +
+                                                 x.template tail<3>())})
+          .distance;
+    } else {
+      return closest_points(c, obstacle).distance;
+    }
+  };
+  using coordinates = Eigen::Matrix<double, 9, 1>;
+  const auto by_duals =
+      gradient<duet_test::shared_tag>(distance, coordinates(coordinates::Zero())).gradient;
+  for (int i = 0; i < 9; ++i) {
+    const coordinates step = 1e-6 * coordinates::Unit(i);
+    const double above = (distance(step) - distance(coordinates::Zero())) / 1e-6;
+    const double below = (distance(coordinates::Zero()) - distance(coordinates(-step))) / 1e-6;
+    CAPTURE(i);
+    CHECK(by_duals[i] >= std::min(above, below) - 1e-5);
+    CHECK(by_duals[i] <= std::max(above, below) + 1e-5);
+  }
+}
+
+TEST_CASE("closest_points: derivatives where ends are nearest and where faces balance") {
+  // The end is the nearest point of the line to the other line, too, but not to its segment.
+  check_derivatives(capsule<>(vector(0, 1, .5), vector(1, -.5, 1), 1),
+                    capsule<>(vector(2, -2, -1), vector(2, -1, -1), .5));
+  // An end touches a face.
+  check_derivatives(capsule<>(vector(.5, .5, 0), vector(.6, .5, -.5), 1),
+                    box<>{pose(quaternion<double>(1), vector(.5, 1, 1)), vector(.25, 1, 1)});
+  // Faces ±z balance where x and y do, which are not the nearest.
+  check_derivatives(capsule<>(vector(0, 0, -1), vector(1, -1, 1), .5),
+                    box<>{pose(quaternion<double>(1), vector(1, 0, 0)), vector(1, 1, .25)});
+  // At the same point the opposite faces of a square balance, which are the farthest.
+  duet_test::random_source random(9);
+  for (int k = 0; k < 20; ++k) {
+    const vector along = point(random, 1);
+    const vector middle(random.uniform(.3, .5), random.uniform(.3, .5), 0);
+    check_derivatives(capsule<>(vector(middle - along), vector(middle + along), .1),
+                      box<>{pose(quaternion<double>(1), vector(0, 0, 0)), vector(1, 1, 3)});
+  }
+}
+
 TEST_CASE("require_shape: invalid shapes are rejected") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto identity_pose = pose(quaternion<double>(1), vector(0, 0, 0));

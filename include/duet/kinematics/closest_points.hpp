@@ -81,9 +81,11 @@ template <class T>
                      : vector3<T>((result / sqrt(square)).template cast<T>());
 }
 
+/// The parameter of the nearest point of a line, limited to its segment. At an end it is constant:
+/// a rate would be wrong if another condition makes the end the nearest point.
 template <class T>
 [[nodiscard]] T within_segment(const T& t) {
-  return innermost(t) < 0 ? T(0) : innermost(t) > 1 ? T(1) : t;
+  return innermost(t) <= 0 ? T(0) : innermost(t) >= 1 ? T(1) : t;
 }
 
 /// Parameter t of the point from + t · along, 0 ≤ t ≤ 1, that is nearest to x.
@@ -230,13 +232,23 @@ struct segment_and_box {
   [[nodiscard]] bool contains(const R& t) const {
     return side(0, t) == 0 && side(1, t) == 0 && side(2, t) == 0;
   }
+  /// Distance by which the face on a side, ±1, is exceeded.
+  [[nodiscard]] R excess(std::size_t i, int side, const R& t) const {
+    return side * at(i, t) - half[i];
+  }
   /// Largest excess max |x_i| − half_i.
   [[nodiscard]] R excess(const R& t) const {
-    const auto one = [&](std::size_t i) {
-      const R x = at(i, t);
-      return R((x < 0 ? R(-x) : x) - half[i]);
-    };
-    return std::max({one(0), one(1), one(2)});
+    return std::max({excess(0, 1, t), excess(0, -1, t), excess(1, 1, t), excess(1, -1, t),
+                     excess(2, 1, t), excess(2, -1, t)});
+  }
+  /// Round-off of an excess.
+  [[nodiscard]] R rounding() const {
+    using std::abs;
+    R size(0);
+    for (std::size_t i = 0; i < 3; ++i) {
+      size = std::max({size, R(abs(from[i]) + abs(along[i])), half[i]});
+    }
+    return 8 * std::numeric_limits<R>::epsilon() * size;
   }
 };
 
@@ -266,7 +278,8 @@ template <class T, class R>
 [[nodiscard]] T deepest_in_box(const segment_and_box<R>& s, const vector3<T>& from,
                                const vector3<T>& along, const vector3<T>& half) {
   T best(s.excess(R(0)) <= s.excess(R(1)) ? 0 : 1);
-  R min_excess = s.excess(innermost(best));
+  R min_excess = s.excess(innermost(best)), best_of_pair = min_excess;
+  const R rounding = s.rounding();
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       for (const int a : {-1, 1}) {
@@ -279,8 +292,17 @@ template <class T, class R>
           const T t =
               (b * from[q] - half[q] - a * from[p] + half[p]) / (a * along[p] - b * along[q]);
           const R t_real = innermost(t);
-          if (t_real > 0 && t_real < 1 && s.excess(t_real) < min_excess) {
-            min_excess = s.excess(t_real);
+          if (!(t_real > 0 && t_real < 1)) {
+            continue;
+          }
+          // At the same t other faces may balance that are not the nearest: opposite ones of a
+          // cube.
+          const R excess = s.excess(t_real);
+          const R of_pair = std::max(s.excess(i, a, t_real), s.excess(j, b, t_real));
+          if (excess < min_excess - rounding ||
+              (excess <= min_excess + rounding && of_pair > best_of_pair + rounding)) {
+            min_excess = excess;
+            best_of_pair = of_pair;
             best = t;
           }
         }
@@ -332,7 +354,7 @@ template <class T>
       // capsules, and may be far before this interval.
       const bool is_parallel = innermost(growth) < 1e-12 * innermost(along.squaredNorm());
       const R t_real = std::max(R(innermost(t)), crossings.t[k]);
-      return is_parallel || t_real > innermost(t) ? T(t_real) : t;
+      return is_parallel || t_real == crossings.t[k] ? T(t_real) : t;
     }
   }
   return T(1);
