@@ -282,6 +282,14 @@ TEST_CASE("LaTeX has the value of its formula") {
   check_values(x - (y - a) - (x + y - 2.5e-7 * x) / 1e20);
 }
 
+TEST_CASE("names with several _ or one in front are LaTeX that compiles") {
+  CHECK(to_latex(x * symbol<"_u">()) == "x {}_{u}");
+  CHECK(to_latex(symbol<"x_a_b_c">()) == "x_{a_{b_{c}}}"); // x_{a_b_c} is an error
+  CHECK(to_latex(symbol<"theta_l_hip2">()) == "\\theta_{l_{hip2}}");
+  CHECK(to_latex(symbol<"x__y_">()) == "x_{y}");
+  CHECK(to_latex(symbol<"_">()) == "\\_");
+}
+
 TEST_CASE("symbols that look alike are refused, both by their names") {
   const symbol<"theta1"> plain;
   const symbol<"theta_1"> apart;

@@ -20,12 +20,14 @@
 #include <duet/expression/tree/node.hpp>
 #include <duet/expression/tree/printed.hpp>
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
 #include <limits>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -57,6 +59,18 @@ namespace detail {
   return {digits, is_negative ? negative : precedence::atom, style, factor_order::number};
 }
 
+/// The part of a name from its first digit or _ on as a subscript, parts behind a further _ as
+/// subscripts of subscripts.
+[[nodiscard]] inline std::string latex_subscript(std::string_view name) {
+  const std::size_t begin = name.find_first_not_of('_');
+  if (begin == std::string_view::npos) {
+    return "";
+  }
+  const std::size_t end = std::min(name.find('_', begin), name.size());
+  return "_{" + std::string(name.substr(begin, end - begin)) + latex_subscript(name.substr(end)) +
+         "}";
+}
+
 /// A name in LaTeX: Greek letters by their names, digits and what follows _ as a subscript, columns
 /// with an arrow.
 [[nodiscard]] inline std::string latex_name(const std::string& name, kind k) {
@@ -78,10 +92,11 @@ namespace detail {
   if (is_matrix(k) && columns_of(k) == 1) {
     letters = "\\vec{" + letters + "}";
   }
-  if (end == std::string::npos || name.substr(end) == "_") {
-    return letters;
+  const std::string subscript = end == std::string::npos ? "" : latex_subscript(name.substr(end));
+  if (letters.empty()) { // a subscript alone would be that of what stands before
+    letters = subscript.empty() ? "\\_" : "{}";
   }
-  return letters + "_{" + name.substr(name[end] == '_' ? end + 1 : end) + "}";
+  return letters + subscript;
 }
 
 [[nodiscard]] constexpr factor_order order_of_kind(kind k) {
