@@ -53,6 +53,18 @@ TEST_CASE("gradients, Hessians, Jacobians and motions in LaTeX") {
         }).starts_with("duet: to_latex: theta1 and theta_1 both look like"));
 }
 
+TEST_CASE("formulas that are data in LaTeX: variables that look alike, functions with _") {
+  const auto message = [](const char* text) {
+    return duet_test::message_of<duet::invalid_input>(
+        [&] { (void)to_latex(read_formula(text, {.exact_constants = true})); });
+  };
+  CHECK(message("theta1*theta_1") == "duet: to_latex: theta1 and theta_1 both look like "
+                                     "\\theta_{1}: one of them needs another name");
+  CHECK(message("vector v; v[0] - v_0").starts_with("duet: to_latex: v[0] and v_0 both look like"));
+  CHECK(message("vector v; v[0] - v_1").empty());
+  CHECK(to_latex(read_formula("arc_ratio(x, y)")) == "\\operatorname{arc\\_ratio}(x, y)");
+}
+
 TEST_CASE("derivations step by step") {
   CHECK(derivation(sin(x) / x, x) ==
         "\\begin{align*}\n"

@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -113,7 +114,8 @@ namespace detail {
     break;
   }
   const std::string name(function_name_of(n.what));
-  const function_name written = {name.c_str(), ""};
+  const function_name written = {name.c_str(),
+                                 n.what == arc_ratio ? "\\operatorname{arc\\_ratio}" : ""};
   return operand_count(n.what) == 1 ? printed_call(style, written, {x[0]})
                                     : printed_call(style, written, {x[0], x[1]});
 }
@@ -143,7 +145,8 @@ inline constexpr double max_latex_size = 2000;
 
 /// The only output of a formula for a paper, to stand in mathematics mode, as `to_latex` writes
 /// typed formulas; vectors as columns, quaternions as (w, x, y, z).
-/// \throws invalid_input for several outputs, and if the formula has more than 2000 operations
+/// \throws invalid_input for several outputs, if the formula has more than 2000 operations, and for
+/// variables that look alike
 [[nodiscard]] inline std::string to_latex(const formula_graph& f) {
   using detail::latex_terms;
   const graph& g = f.operations();
@@ -153,6 +156,7 @@ inline constexpr double max_latex_size = 2000;
                         " operations");
   const std::vector<bool> needed = f.needed();
   std::vector<printed> texts(needed.size());
+  std::map<std::string, std::string> names; // by their looks
   for (int i = 0; i < g.size(); ++i) {
     const std::size_t k = std::size_t(i);
     if (!needed[k]) {
@@ -165,6 +169,13 @@ inline constexpr double max_latex_size = 2000;
       }
     }
     texts[k] = detail::latex_of_kind(detail::latex_node(g, g[i], operands), true);
+    const bool is_variable = g[i].what == operation::variable;
+    const std::string name = is_variable ? g.variable_name(g[i].index) : "the number pi";
+    if (is_variable ? name[0] != '\\' : texts[k].text == "\\pi") {
+      const auto [other, is_new] = names.emplace(texts[k].text, name);
+      duet::detail::require(is_new, "duet: to_latex: ", other->second, " and ", name,
+                            " both look like ", texts[k].text, ": one of them needs another name");
+    }
   }
   const named_value& y = f.outputs()[0];
   std::vector<std::string> numbers;
