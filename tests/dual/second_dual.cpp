@@ -122,6 +122,25 @@ TEST_CASE("second_order_dual: quotients whose divisor's cube overflows or vanish
   }
 }
 
+TEST_CASE("second_order_dual: quotients of polynomials at large and small numbers") {
+  using number = second_order_dual<double, 1>;
+  for (const double x : {1e-70, 1e-55, 1e55, 1e70}) {
+    CAPTURE(x);
+    const number u = number::variable(x, 0), inverse = 1 / (u * u), same = (u - x + 1) / (u * u);
+    CHECK(inverse.partial(0) * x * x * x == doctest::Approx(-2));
+    CHECK(inverse.second_partial(0, 0) * x * x * x * x == doctest::Approx(6));
+    CHECK(same.second_partial(0, 0) * x * x * x * x == doctest::Approx(6 - 4 * x));
+  }
+  for (const double x : {1e90, 1e150}) {
+    CAPTURE(x);
+    const number u = number::variable(x, 0), y = u / (1 + u * u);
+    CHECK(y.partial(0) * x * x == doctest::Approx(-1));
+    CHECK(y.second_partial(0, 0) * x * x * x == doctest::Approx(x < 1e100 ? 2 : 0));
+  }
+  const number huge = number::variable(1e200, 0);
+  CHECK((huge / (1 + huge * huge)).second_partial(0, 0) == 0);
+}
+
 TEST_CASE("second_order_dual: functions whose second derivative overflows or vanishes") {
   for (const double unit : {1e-150, 1e-103, 1e103, 1e150}) {
     using number = second_order_dual<double, 2>;

@@ -329,7 +329,11 @@ public:
   [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual dividing(const T& c) const {
     const T inverse = T(1) / value_;
     const T slope = -(c * inverse) * inverse;
-    return composed(T(c / value_), slope, T(detail::integer<T>(-2) * slope * inverse));
+    const T curvature = detail::integer<T>(-2) * slope * inverse;
+    if (!all(detail::is_all_finite(curvature) && detail::is_normal(curvature))) [[unlikely]] {
+      return quotient_by_value(second_order_dual(c), *this, T(c / value_), T(inverse));
+    }
+    return composed_of_finite(T(c / value_), slope, curvature);
   }
   [[nodiscard]] DUET_ALWAYS_INLINE static second_order_dual sum(const second_order_dual& a,
                                                                 const second_order_dual& b) {
@@ -359,11 +363,7 @@ public:
     const T curvature = detail::integer<T>(-2) * slope * inverse;
     const T value = a.value_ / b.value_;
     if (!all(detail::is_all_finite(curvature) && detail::is_normal(curvature))) [[unlikely]] {
-      // By the quotient, as powers of the inverse overflow or vanish long before it does.
-      const T slope_of_quotient = -(value * inverse);
-      return composed<2>(
-          value, {&a, &b}, {inverse, slope_of_quotient},
-          {{{T(0), slope}, {slope, T(detail::integer<T>(-2) * slope_of_quotient * inverse)}}});
+      return quotient_by_value(a, b, T(value), T(inverse));
     }
     second_order_dual result = product(a, b.composed(inverse, slope, curvature));
     result.value_ = value;
@@ -421,6 +421,24 @@ private:
             hessian_type::with_outer_products(
                 [&](int k) DUET_INLINE_LAMBDA { return scaled(slope)(hessian_.packet_at(k)); },
                 gradient_, bent)};
+  }
+  /// q = a/b by g = (g_a − q g_b)/b and H = (H_a − q H_b − g g_bᵀ − g_b gᵀ)/b: powers of 1/b
+  /// overflow or vanish long before q does.
+  [[nodiscard]] DUET_OUT_OF_LINE static second_order_dual
+  quotient_by_value(const second_order_dual& a, const second_order_dual& b, const T& q,
+                    const T& inverse) {
+    second_order_dual result(q);
+    for (int i = 0; i < N; ++i) {
+      const T g = a.partial(i) - detail::guarded_product(q, b.partial(i));
+      result.gradient_.set(i, detail::guarded_product(inverse, g));
+      for (int j = 0; j <= i; ++j) {
+        const T h = a.second_partial(i, j) - detail::guarded_product(q, b.second_partial(i, j)) -
+                    detail::guarded_product(result.partial(i), b.partial(j)) -
+                    detail::guarded_product(result.partial(j), b.partial(i));
+        result.hessian_.set(i, j, detail::guarded_product(inverse, h));
+      }
+    }
+    return result;
   }
   /// The function of a rule, by derivatives of its slope along the gradient, as nested dual numbers
   /// do: f″ underflows or overflows long before f″ g does.
