@@ -5,6 +5,7 @@
 
 #include <duet/duet.hpp>
 #include <duet/expression/graph/is_equal.hpp>
+#include <duet/expression/graph/read_formula.hpp>
 #include <duet/expression/graph/recorded.hpp>
 #include <duet/expression/graph/reverse.hpp>
 #include <duet/expression/graph/trace.hpp>
@@ -60,6 +61,11 @@ TEST_CASE("is_equal proves identities") {
                    x)
                    .derivative,
                2 * cos(x * x) - sin(x * x) / (x * x));
+}
+
+TEST_CASE("is_equal: nested functions of long sums are unknown in little memory") {
+  const formula_graph f = read_formula("rotation q, p, r; slerp(slerp(q, p, u), r, t)");
+  CHECK(is_equal(f, f).verdict == equality::unknown);
 }
 
 TEST_CASE("is_equal proves no equality that does not hold everywhere") {

@@ -40,6 +40,8 @@ class polynomial_ring {
 public:
   /// Bound on the pairs of terms of a product; beyond it results are meaningless.
   static constexpr std::size_t max_terms = 40000;
+  /// Bound on the characters of a text.
+  static constexpr std::size_t max_text = 10'000'000;
 
   [[nodiscard]] int find_atom(const std::string& name) {
     const auto [entry, is_new] = numbers_.emplace(name, int(atoms_.size()));
@@ -123,7 +125,7 @@ public:
     return common;
   }
 
-  /// True if a product exceeded the bound.
+  /// True if a product or text exceeded its bound.
   [[nodiscard]] bool is_too_large() const { return is_too_large_; }
 
   /// True if surely no other polynomial times p is 0, so that identities of continuous functions
@@ -187,10 +189,17 @@ public:
     }
     return result;
   }
+  /// Empty beyond a bound, as texts of functions contain those of their arguments.
   [[nodiscard]] std::string text(const polynomial& p) const {
     std::vector<std::string> terms;
+    std::size_t size = 0;
     for (const auto& [m, c] : p) {
       terms.push_back(c.str() + text(m));
+      size += terms.back().size();
+      is_too_large_ = is_too_large_ || size > max_text;
+      if (is_too_large_) {
+        return "";
+      }
     }
     std::sort(terms.begin(), terms.end());
     std::string result;
@@ -299,7 +308,7 @@ private:
 
   std::vector<atom> atoms_;
   std::map<std::string, int> numbers_;
-  bool is_too_large_ = false;
+  mutable bool is_too_large_ = false; ///< set by `text`, too
 };
 
 /// A fraction: a polynomial over a product of powers of known divisors.
