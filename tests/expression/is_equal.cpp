@@ -1,6 +1,7 @@
 // Copyright (c) 2026 the duet authors. MIT licence, see LICENSE.
 
 #include "support/message.hpp"
+#include "support/random.hpp"
 #include "support/test.hpp"
 
 #include <duet/duet.hpp>
@@ -61,6 +62,19 @@ TEST_CASE("is_equal proves identities") {
                    x)
                    .derivative,
                2 * cos(x * x) - sin(x * x) / (x * x));
+}
+
+TEST_CASE("is_equal refutes nothing by sines of angles that are round-off") {
+  duet_test::random_source random(3);
+  for (int k = 0; k < 400; ++k) {
+    const std::string c = duet::to_text(random.log_uniform(1e15, 1e25)), name = k % 3 == 0 ? "sin"
+                                                                                : k % 3 == 1
+                                                                                    ? "cos"
+                                                                                    : "stumpff0";
+    CHECK(is_equal(read_formula(name + "(" + c + " * (x + y)^2)"),
+                   read_formula(name + "(" + c + " * (x^2 + 2*x*y + y^2))"))
+              .verdict != equality::refuted);
+  }
 }
 
 TEST_CASE("is_equal: nested functions of long sums are unknown in little memory") {

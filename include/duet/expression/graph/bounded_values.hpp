@@ -114,12 +114,21 @@ private:
     for (int k = 0; k < count; ++k) {
       const S& error = error_[operand(k)];
       if (error > 0) {
-        x[std::size_t(k)] += error;
-        const S change = abs(S(value() - x_[i]));
-        error_[i] += isnan(change) ? infinity() : change;
+        S largest(0);
+        for (int step = 1; step <= (may_oscillate(n.what) ? 8 : 1); ++step) {
+          x[std::size_t(k)] = x_[operand(k)] + error / step;
+          const S change = abs(S(value() - x_[i]));
+          largest = isnan(change) ? infinity() : std::max(largest, change);
+        }
+        error_[i] += largest;
         x[std::size_t(k)] = x_[operand(k)];
       }
     }
+  }
+  /// True for functions whose value may change little over many periods.
+  [[nodiscard]] static bool may_oscillate(operation what) {
+    return what == operation::sin || what == operation::cos || what == operation::tan ||
+           what == operation::stumpff;
   }
   [[nodiscard]] static S infinity() { return std::numeric_limits<S>::infinity(); }
 
