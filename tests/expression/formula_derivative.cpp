@@ -41,6 +41,15 @@ TEST_CASE("derivative: formulas from text have the derivatives of dual numbers")
   }
 }
 
+TEST_CASE("derivative: the slope of tanh keeps its digits where tanh saturates") {
+  const formula_graph slope = derivative(read_formula("tanh(x)"), "x");
+  CHECK(to_text(slope) == "1 / cosh(x)^2");
+  for (const double x : {-30., -10., 1., 20., 300.}) {
+    CHECK(evaluate<double>(slope, {x})[0] * std::exp(2 * std::abs(x)) ==
+          doctest::Approx(4 / std::pow(1 + std::exp(-2 * std::abs(x)), 2)).epsilon(1e-14));
+  }
+}
+
 TEST_CASE("derivative: terms of sums are collected") {
   const auto text = [](const char* of) { return to_text(derivative(read_formula(of), "x")); };
   CHECK(text("x*(2 - x)") == "2 - 2 * x");

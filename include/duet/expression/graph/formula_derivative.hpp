@@ -229,7 +229,7 @@ private:
     case cosh:
       return product_of(of(sinh, x), dx);
     case tanh:
-      return product_of(difference_of(constant(1), square(y)), dx);
+      return quotient_of(dx, square(of(cosh, x))); // 1 − y² would cancel
     case asinh:
       return quotient_of(dx, of(sqrt, sum_of(square(x), constant(1))));
     case acosh:
