@@ -152,6 +152,19 @@ template <class T>
   }
 }
 
+/// True if the second derivative of a function at x has its digits: if it is 0 at an x that is not
+/// large, it is not so by underflow.
+template <class T>
+[[nodiscard]] DUET_ALWAYS_INLINE auto has_all_digits(const T& curvature, const T& x) {
+  if constexpr (std::floating_point<lane_type_t<T>>) {
+    using std::abs;
+    constexpr auto limit = lane_type_t<T>(0x1p100);
+    return is_normal(curvature) || (innermost(curvature) == 0 && abs(innermost(x)) < limit);
+  } else {
+    return true;
+  }
+}
+
 } // namespace detail
 
 DUET_ABI_BEGIN
@@ -247,7 +260,7 @@ public:
     const D moving_slope = rule.slope(D::variable(x.value_), D(y, slope));
     const T curvature = moving_slope.epsilon();
     if (all(detail::is_all_finite(slope) && detail::is_all_finite(curvature) &&
-            detail::is_normal(curvature))) [[likely]] {
+            detail::has_all_digits(curvature, x.value_))) [[likely]] {
       return x.composed_of_finite(y, slope, curvature);
     }
     return x.composed_along_gradient(rule, T(y), T(slope));
