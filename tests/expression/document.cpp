@@ -62,6 +62,9 @@ TEST_CASE("formulas that are data in LaTeX: variables that look alike, functions
                                      "\\theta_{1}: one of them needs another name");
   CHECK(message("vector v; v[0] - v_0").starts_with("duet: to_latex: v[0] and v_0 both look like"));
   CHECK(message("vector v; v[0] - v_1").empty());
+  CHECK(message("pi_ + pi") == "duet: to_latex: pi_ and the number pi both look like \\pi: one of "
+                               "them needs another name");
+  CHECK(message("x + pi*x/x + 3*pi/3").empty()); // the number, three times
   CHECK(to_latex(read_formula("arc_ratio(x, y)")) == "\\operatorname{arc\\_ratio}(x, y)");
 }
 

@@ -173,8 +173,9 @@ inline constexpr double max_latex_size = 2000;
     const std::string name = is_variable ? g.variable_name(g[i].index) : "the number pi";
     if (is_variable ? name[0] != '\\' : texts[k].text == "\\pi") {
       const auto [other, is_new] = names.emplace(texts[k].text, name);
-      duet::detail::require(is_new, "duet: to_latex: ", other->second, " and ", name,
-                            " both look like ", texts[k].text, ": one of them needs another name");
+      duet::detail::require(is_new || other->second == name, "duet: to_latex: ", other->second,
+                            " and ", name, " both look like ", texts[k].text,
+                            ": one of them needs another name");
     }
   }
   const named_value& y = f.outputs()[0];
