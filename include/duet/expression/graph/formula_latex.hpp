@@ -141,6 +141,35 @@ inline constexpr double max_latex_size = 2000;
   return size;
 }
 
+/// The message of a formula that is not written in LaTeX; empty for others.
+[[nodiscard]] inline std::string refusal_in_latex(const formula_graph& f) {
+  if (f.outputs().size() != 1) {
+    return "duet: to_latex takes a formula with one output";
+  }
+  if (written_size(f) > max_latex_size) {
+    return duet::detail::message("duet: to_latex: the formula has more than ", max_latex_size,
+                                 " operations");
+  }
+  const graph& g = f.operations();
+  const std::vector<bool> needed = f.needed();
+  std::map<std::string, std::string> names; // by their looks
+  for (int i = 0; i < g.size(); ++i) {
+    const bool is_variable = g[i].what == operation::variable;
+    const bool is_pi = g[i].what == operation::acos && g.is_number(g[i].operands[0], -1);
+    const std::string name = is_variable ? g.variable_name(g[i].index) : "the number pi";
+    if (!needed[std::size_t(i)] || !(is_variable ? name[0] != '\\' : is_pi)) {
+      continue;
+    }
+    const std::string text = is_pi ? "\\pi" : latex_variable(name).text;
+    const auto [other, is_new] = names.emplace(text, name);
+    if (!is_new) {
+      return duet::detail::message("duet: to_latex: ", other->second, " and ", name,
+                                   " both look like ", text, ": one of them needs another name");
+    }
+  }
+  return "";
+}
+
 } // namespace detail
 
 /// The only output of a formula for a paper, to stand in mathematics mode, as `to_latex` writes
@@ -150,13 +179,10 @@ inline constexpr double max_latex_size = 2000;
 [[nodiscard]] inline std::string to_latex(const formula_graph& f) {
   using detail::latex_terms;
   const graph& g = f.operations();
-  duet::detail::require(f.outputs().size() == 1, "duet: to_latex takes a formula with one output");
-  duet::detail::require(detail::written_size(f) <= detail::max_latex_size,
-                        "duet: to_latex: the formula has more than ", detail::max_latex_size,
-                        " operations");
+  const std::string refusal = detail::refusal_in_latex(f);
+  duet::detail::require(refusal.empty(), refusal);
   const std::vector<bool> needed = f.needed();
   std::vector<printed> texts(needed.size());
-  std::map<std::string, std::string> names; // by their looks
   for (int i = 0; i < g.size(); ++i) {
     const std::size_t k = std::size_t(i);
     if (!needed[k]) {
@@ -169,14 +195,6 @@ inline constexpr double max_latex_size = 2000;
       }
     }
     texts[k] = detail::latex_of_kind(detail::latex_node(g, g[i], operands), true);
-    const bool is_variable = g[i].what == operation::variable;
-    const std::string name = is_variable ? g.variable_name(g[i].index) : "the number pi";
-    if (is_variable ? name[0] != '\\' : texts[k].text == "\\pi") {
-      const auto [other, is_new] = names.emplace(texts[k].text, name);
-      duet::detail::require(is_new || other->second == name, "duet: to_latex: ", other->second,
-                            " and ", name, " both look like ", texts[k].text,
-                            ": one of them needs another name");
-    }
   }
   const named_value& y = f.outputs()[0];
   std::vector<std::string> numbers;
