@@ -152,8 +152,8 @@ template <class T>
   }
 }
 
-/// True if the second derivative of a function at x has its digits: if it is 0 at an x that is not
-/// large, it is not so by underflow.
+/// False if the second derivative of a function at x may have lost digits by underflow. One that is
+/// 0 below |x| = 2^100 is exact.
 template <class T>
 [[nodiscard]] DUET_ALWAYS_INLINE auto has_all_digits(const T& curvature, const T& x) {
   if constexpr (std::floating_point<lane_type_t<T>>) {
@@ -422,7 +422,7 @@ public:
   }
 
 private:
-  /// `composed` of slopes that are finite.
+  /// `composed` for finite slopes.
   [[nodiscard]] DUET_ALWAYS_INLINE second_order_dual composed_of_finite(const T& y, const T& slope,
                                                                         const T& curvature) const {
     const auto scaled = [](const T& c) DUET_INLINE_LAMBDA {

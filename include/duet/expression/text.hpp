@@ -59,8 +59,8 @@ namespace detail {
   return {digits, is_negative ? negative : precedence::atom, style, factor_order::number};
 }
 
-/// The part of a name from its first digit or _ on as a subscript, parts behind a further _ as
-/// subscripts of subscripts.
+/// Subscript in LaTeX of the end of a name; parts behind a further _ are subscripts of it: that of
+/// `_a_b` is _{a_{b}}.
 [[nodiscard]] inline std::string latex_subscript(std::string_view name) {
   const std::size_t begin = name.find_first_not_of('_');
   if (begin == std::string_view::npos) {

@@ -112,8 +112,8 @@ private:
   const Blocks& blocks_;
 };
 
-/// Largest errors, of the largest entry, of PlusJacobian as the derivative of Plus, and of the
-/// Jacobian by block k times PlusJacobian.
+/// Errors of PlusJacobian as the derivative of Plus, and of the Jacobian by block k times
+/// PlusJacobian, each relative to the largest exact entry.
 template <class Function>
 [[nodiscard]] std::pair<double, double>
 errors_of_plus(const Function& function, const ceres::Manifold& manifold,

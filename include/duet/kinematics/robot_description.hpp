@@ -189,7 +189,7 @@ template <class... Line>
   }
   raise(file_error(robot.file, line..., what));
 }
-/// Throws the error of a link or a joint, whose text is in pieces.
+/// Throws the error of a link or a joint; its message is joined from `what`.
 template <class Part, class... What>
 [[noreturn]] void bad_part(const robot_description& robot, const Part& part, const What&... what) {
   const char* const tag = requires { part.motion; }

@@ -121,8 +121,11 @@ namespace duet::detail {
              : text;
 }
 
-/// Throws the error of a name that does not exist.
+/// Refuses an unknown name.
 ///
+/// \param function  the function of the message
+/// \param what      the kind of thing that has the name, as "joint"
+/// \param names     all known names
 /// \throws invalid_input with the most similar names
 [[noreturn]] inline void unknown_name(const char* function, const char* what, std::string_view name,
                                       const std::vector<std::string>& names) {

@@ -141,7 +141,7 @@ inline constexpr double max_latex_size = 2000;
   return size;
 }
 
-/// The message of a formula that is not written in LaTeX; empty for others.
+/// The message with which `to_latex` refuses a formula; empty if it accepts it.
 [[nodiscard]] inline std::string refusal_in_latex(const formula_graph& f) {
   if (f.outputs().size() != 1) {
     return "duet: to_latex takes a formula with one output";
